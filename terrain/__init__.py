@@ -1,0 +1,33 @@
+"""Ground as data: families of terrain, and the heightfields that they make.
+
+Knows nothing of robots and physics engines. A terrain has a name, parameters and a
+seed; `make` turns them into a `Heightfield`, always into the same one.
+"""
+
+from terrain.bumps import Bumps
+from terrain.catalog import configuration, make, names
+from terrain.flat import Flat
+from terrain.ground import Ground
+from terrain.heightfield import Heightfield
+from terrain.lumps import Lumps
+from terrain.slope import Slope
+from terrain.spec import TerrainSpec
+from terrain.stairs import Stairs
+from terrain.text_form import parse
+from terrain.waves import Waves
+
+__all__ = [
+    "Bumps",
+    "Flat",
+    "Ground",
+    "Heightfield",
+    "Lumps",
+    "Slope",
+    "Stairs",
+    "TerrainSpec",
+    "Waves",
+    "configuration",
+    "make",
+    "names",
+    "parse",
+]

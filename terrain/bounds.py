@@ -1,0 +1,58 @@
+"""Parameters of a terrain that know what values make sense."""
+
+import dataclasses
+import numbers
+from typing import Any, TypeGuard, TypeVar
+
+from groundwalk.errors import BadValueError
+
+Parameter = float | int | tuple[float, float]
+T = TypeVar("T", float, int, tuple[float, float])
+
+
+def bounded(default: T, low: float, high: float) -> T:
+    """Declare a dataclass field with a default and inclusive bounds.
+
+    The default's type says what the field takes: a whole number, any number, or
+    a pair of numbers in increasing order.
+    """
+    return dataclasses.field(default=default, metadata={"bounds": (low, high)})
+
+
+def checked(field: dataclasses.Field[Any], value: object) -> Parameter:
+    """Return a value as the plain type of the field that `bounded` declared.
+
+    Raises:
+      BadValueError: the value has another type, or lies outside of the bounds.
+    """
+    low, high = field.metadata["bounds"]
+    span = f"from {low:g} to {high:g}, not {value!r}"
+    if isinstance(field.default, tuple):
+        pair = tuple(value) if isinstance(value, tuple | list) else ()
+        if not _increase(low, pair, high):
+            raise BadValueError(f"{field.name} must be two increasing numbers {span}")
+        return float(pair[0]), float(pair[1])
+    if isinstance(field.default, int):
+        if not _is_whole(value) or not low <= value <= high:
+            raise BadValueError(f"{field.name} must be a whole number {span}")
+        return int(value)
+    if not _is_real(value) or not low <= value <= high:
+        raise BadValueError(f"{field.name} must be a number {span}")
+    return float(value)
+
+
+def _increase(low: float, pair: tuple[Any, ...], high: float) -> bool:
+    """Whether these are exactly two numbers within bounds, the second the larger."""
+    return (
+        len(pair) == 2 and all(map(_is_real, pair)) and low <= pair[0] < pair[1] <= high
+    )
+
+
+def _is_real(value: object) -> TypeGuard[float]:
+    """Whether a value is a number; a bool is none."""
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def _is_whole(value: object) -> TypeGuard[int]:
+    """Whether a value is a whole number; a bool is none."""
+    return isinstance(value, numbers.Integral) and not isinstance(value, bool)

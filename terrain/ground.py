@@ -1,0 +1,120 @@
+"""What every family of terrain has in common: where it lies and how it starts."""
+
+import dataclasses
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from terrain.bounds import bounded, checked
+from terrain.heightfield import Heightfield
+from terrain.seeds import Seed, generator_of
+
+# PyBullet 3.2.7 loads nothing, without a word, from 2^21 samples on.
+MOST_SAMPLES = 1_000_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ground(ABC):
+    """A rectangle of ground in the world, flat where the robot starts.
+
+    Around the world's origin the height is 0 up to `start_radius_m`; over the
+    next `blend_m` the terrain fades in without a kink.
+
+    Attributes:
+      x_range_m: lowest and highest x [m]; the grid reaches at least as far.
+      y_range_m: lowest and highest y [m]; likewise.
+      spacing_m: distance between samples [m].
+      start_radius_m: radius of the flat start area [m].
+      blend_m: width of the transition from flat ground to the terrain [m].
+
+    Raises:
+      BadValueError: a parameter is no number or out of its bounds, the origin is
+        not on the ground, or there would be more than a million samples.
+    """
+
+    x_range_m: tuple[float, float] = bounded((-1.0, 5.0), -1000.0, 1000.0)
+    y_range_m: tuple[float, float] = bounded((-2.0, 2.0), -1000.0, 1000.0)
+    spacing_m: float = bounded(0.025, 0.002, 1.0)
+    start_radius_m: float = bounded(0.35, 0.0, 100.0)
+    blend_m: float = bounded(0.25, 0.01, 100.0)
+
+    def __post_init__(self) -> None:
+        """Check every parameter, and turn it into a plain Python number."""
+        for field in dataclasses.fields(self):
+            value = checked(field, getattr(self, field.name))
+            object.__setattr__(self, field.name, value)
+        for name in ("x_range_m", "y_range_m"):
+            low, high = getattr(self, name)
+            if not low <= 0.0 <= high:
+                raise BadValueError(
+                    f"{name} must hold 0, where robots start, not {(low, high)}"
+                )
+        rows, columns = self._samples(self.y_range_m), self._samples(self.x_range_m)
+        if rows * columns > MOST_SAMPLES:
+            raise BadValueError(
+                f"{rows} x {columns} samples are too many, {MOST_SAMPLES} are allowed: "
+                "shrink x_range_m and y_range_m, or widen spacing_m"
+            )
+
+    @abstractmethod
+    def heights(
+        self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
+    ) -> FloatArray:
+        """Heights on a grid [m], shape (rows, columns), the flat start included.
+
+        Args:
+          x_m: world x of the columns [m], shape (1, columns).
+          y_m: world y of the rows [m], shape (rows, 1).
+          generator: where all randomness comes from.
+        """
+
+    def make(self, seed: Seed) -> Heightfield:
+        """Make the ground that belongs to a seed: the same bits every time.
+
+        Args:
+          seed: a whole number of 0 or more, or a seed sequence.
+
+        Raises:
+          BadValueError: the seed is neither.
+        """
+        x_m, y_m = self._line(self.x_range_m), self._line(self.y_range_m)
+        heights_m = self.heights(x_m[None, :], y_m[:, None], generator_of(seed))
+        origin_m = (self.x_range_m[0], self.y_range_m[0])
+        return Heightfield(heights_m, origin_m, self.spacing_m)
+
+    def past_start(self, distance_m: FloatArray) -> FloatArray:
+        """Share of the terrain that shows at a distance from the start.
+
+        Args:
+          distance_m: distance from the origin [m], any shape.
+
+        Returns:
+          0 within `start_radius_m`, 1 from `blend_m` further on, and between them
+          the cubic t^2 (3 - 2 t), which is level at both ends.
+        """
+        t = np.clip((distance_m - self.start_radius_m) / self.blend_m, 0.0, 1.0)
+        return t * t * (3.0 - 2.0 * t)
+
+    def _require_spacings(self, name: str, least: int) -> None:
+        """Refuse a length that the grid is too coarse for."""
+        length_m, least_m = getattr(self, name), least * self.spacing_m
+        if length_m < least_m:
+            raise BadValueError(
+                f"{name} must be at least {least} spacings = {least_m:g}, "
+                f"not {length_m:g}"
+            )
+
+    def _line(self, range_m: tuple[float, float]) -> FloatArray:
+        """Coordinates of the samples that cover a range [m]."""
+        return range_m[0] + self.spacing_m * np.arange(
+            self._samples(range_m), dtype=np.float64
+        )
+
+    def _samples(self, range_m: tuple[float, float]) -> int:
+        """Number of samples that cover a range, whatever the rounding of its ends."""
+        cells = math.ceil((range_m[1] - range_m[0]) / self.spacing_m - 1e-6)
+        return max(cells, 1) + 1

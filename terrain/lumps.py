@@ -1,0 +1,63 @@
+"""Smooth random lumps, as of foam under artificial turf."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from terrain.bounds import bounded
+from terrain.ground import Ground
+
+WAVES = 256  # enough that heights are Gaussian: excess kurtosis -1.5 / 256
+DEVIATIONS_WITHIN_99_PERCENT = 2.5758293035489004  # of a normal distribution
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lumps(Ground):
+    """An isotropic Gaussian random field whose wavelengths span one octave.
+
+    The sum of 256 plane waves of equal amplitude with random directions, phases
+    and wave numbers (the spectral representation of a random field: Shinozuka
+    and Jan, Journal of Sound and Vibration 25, 1972). The sum is a function of x
+    and y, not of the grid: a seed gives the same lumps at any extent and spacing.
+    Nothing is higher than sqrt(2 * 256) rms = 9 amplitudes; in practice 2.
+
+    Attributes:
+      amplitude_m: 99 % of the ground lies within plus or minus this height [m];
+        the rms height is amplitude_m / 2.576.
+      wavelength_m: the middle of the octave [m]: wavelengths reach from
+        wavelength_m / sqrt(2) to wavelength_m * sqrt(2), evenly in their
+        logarithm. At least 4 spacings.
+    """
+
+    amplitude_m: float = bounded(0.01, 0.0, 0.5)
+    wavelength_m: float = bounded(0.25, 0.01, 100.0)
+
+    def __post_init__(self) -> None:
+        """Check that the grid can carry the shortest waves."""
+        super().__post_init__()
+        self._require_spacings("wavelength_m", 4)
+
+    @property
+    def rms_m(self) -> float:
+        """Root mean square of the heights away from the start [m]."""
+        return self.amplitude_m / DEVIATIONS_WITHIN_99_PERCENT
+
+    def heights(
+        self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
+    ) -> FloatArray:
+        """Random lumps; see `Ground.heights`."""
+        octave = generator.uniform(-0.5, 0.5, WAVES)
+        direction_rad = generator.uniform(0.0, 2.0 * math.pi, WAVES)
+        phase_rad = generator.uniform(0.0, 2.0 * math.pi, WAVES)
+        wave_number = 2.0 * math.pi / self.wavelength_m * 2.0**octave
+        along_x = np.outer(wave_number * np.cos(direction_rad), x_m)
+        along_y = np.outer(wave_number * np.sin(direction_rad), y_m)
+        along_y += phase_rad[:, np.newaxis]
+        # cos(a + b) = cos a cos b - sin a sin b saves a cosine a wave and sample;
+        # einsum, because the bits of a BLAS product may depend on its threads.
+        waves: FloatArray = np.einsum("ky,kx->yx", np.cos(along_y), np.cos(along_x))
+        waves -= np.einsum("ky,kx->yx", np.sin(along_y), np.sin(along_x))
+        shown = self.past_start(np.hypot(x_m, y_m))
+        return shown * (self.rms_m * math.sqrt(2.0 / WAVES)) * waves

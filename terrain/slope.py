@@ -1,0 +1,45 @@
+"""A tilted plane, uphill, downhill or across."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from terrain.bounds import bounded
+from terrain.ground import Ground
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slope(Ground):
+    """A plane that begins in front of the robot, where x is `start_radius_m`.
+
+    With c and s the cosine and sine of the heading, r the start radius and b the
+    blend, the height from x = r + b on is tan(angle) (c (x - r - b / 2) + s y).
+    Up to x = r the ground is flat; between them the gradient grows without a jump.
+
+    Attributes:
+      angle_rad: steepness [rad].
+      heading_rad: direction in which the ground climbs, seen from above, from +x
+        to the left [rad]: 0 is uphill, pi downhill, pi / 2 climbs to the left.
+    """
+
+    angle_rad: float = bounded(math.radians(5.0), 0.0, 0.7)
+    heading_rad: float = bounded(0.0, -2.0 * math.pi, 2.0 * math.pi)
+
+    def heights(
+        self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
+    ) -> FloatArray:
+        """A plane behind a rounded edge; see `Ground.heights`."""
+        beyond_m = x_m - self.start_radius_m
+        within_m = np.clip(beyond_m, 0.0, self.blend_m)
+        # The integral of a gradient that grows linearly over the blend.
+        forward_m = within_m**2 / (2.0 * self.blend_m) + np.maximum(
+            beyond_m - self.blend_m, 0.0
+        )
+        sideways_m = self.past_start(x_m) * y_m
+        climb_m = (
+            math.cos(self.heading_rad) * forward_m
+            + math.sin(self.heading_rad) * sideways_m
+        )
+        return math.tan(self.angle_rad) * climb_m

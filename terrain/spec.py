@@ -1,0 +1,69 @@
+"""A piece of ground in a few words: enough to make it again."""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from groundwalk.errors import BadValueError
+from terrain.bounds import Parameter
+from terrain.catalog import configuration
+from terrain.heightfield import Heightfield
+from terrain.seeds import checked_seed
+
+
+@dataclass(frozen=True)
+class TerrainSpec:
+    """Name, parameters and seed of a terrain.
+
+    Attributes:
+      name: one of `terrain.names()`.
+      parameters: any parameters of the family; what is left out is filled in, so
+        that a spec means the same ground when defaults change later.
+      seed: a whole number of 0 or more.
+
+    Raises:
+      UnknownNameError: there is no such family, or it has no such parameter.
+      BadValueError: a parameter or the seed has a value that it cannot take.
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter] = field(default_factory=dict, hash=False)
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check everything, and fill in what was left to defaults."""
+        ground = configuration(self.name, **self.parameters)
+        object.__setattr__(self, "parameters", dataclasses.asdict(ground))
+        object.__setattr__(self, "seed", checked_seed(self.seed))
+
+    def make(self) -> Heightfield:
+        """Make the ground: the same bits every time."""
+        return configuration(self.name, **self.parameters).make(self.seed)
+
+    def to_json(self) -> dict[str, object]:
+        """Describe the ground in plain types that JSON knows."""
+        parameters = {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in self.parameters.items()
+        }
+        return {"name": self.name, "parameters": parameters, "seed": self.seed}
+
+    @classmethod
+    def from_json(cls, data: object) -> "TerrainSpec":
+        """Read what `to_json` described.
+
+        Raises:
+          UnknownNameError: there is no such family, or it has no such parameter.
+          BadValueError: the data has another shape, or holds an impossible value.
+        """
+        if not isinstance(data, Mapping) or set(data) != {"name", "parameters", "seed"}:
+            raise BadValueError(
+                f"a terrain must hold exactly name, parameters and seed, not {data!r}"
+            )
+        name, parameters = data["name"], data["parameters"]
+        if not isinstance(name, str) or not isinstance(parameters, Mapping):
+            raise BadValueError(
+                "a terrain's name must be text and its parameters a table, "
+                f"not {name!r} and {parameters!r}"
+            )
+        return cls(name, parameters, data["seed"])

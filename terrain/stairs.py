@@ -1,0 +1,41 @@
+"""Stairs across the way."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from terrain.bounds import bounded
+from terrain.ground import Ground
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stairs(Ground):
+    """Equal steps along x that begin at x = `start_radius_m`; no blend.
+
+    A riser takes up the one cell behind each edge, because the samples are
+    joined by triangles. After the last step the ground stays level.
+
+    Attributes:
+      step_m: height of a step [m]; below 0 the stairs lead down.
+      tread_m: distance from one riser to the next [m]; at least 2 spacings.
+      steps: number of steps.
+    """
+
+    step_m: float = bounded(0.01, -0.5, 0.5)
+    tread_m: float = bounded(0.3, 0.01, 100.0)
+    steps: int = bounded(5, 1, 1000)
+
+    def __post_init__(self) -> None:
+        """Check that there is a level part between two risers."""
+        super().__post_init__()
+        self._require_spacings("tread_m", 2)
+
+    def heights(
+        self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
+    ) -> FloatArray:
+        """Steps, the same for all y; see `Ground.heights`."""
+        treads = (x_m - self.start_radius_m) / self.tread_m
+        # A sample on an edge belongs to the lower tread, whatever its rounding.
+        climbed = np.clip(np.ceil(treads - 1e-9), 0, self.steps)
+        return np.repeat(self.step_m * climbed, y_m.size, axis=0)
