@@ -1,0 +1,186 @@
+"""What a robot is, as data: links, joints, motors, feet and sensors.
+
+Both engines' models are made from this one description. Frames: x forward, y
+left, z up; with all joints at zero every joint frame is parallel to the root's.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.errors import BadValueError
+from robots.rigid_body import Inertial
+
+SENSORS_PER_FOOT = ("front_left", "front_right", "rear_left", "rear_right")
+
+
+@dataclass(frozen=True)
+class Capsule:
+    """A round shape of a link, to be looked at; it never touches anything.
+
+    Attributes:
+      start_m, end_m: ends of the axis in the joint's frame; equal for a sphere.
+      radius_m: the radius.
+    """
+
+    start_m: tuple[float, float, float]
+    end_m: tuple[float, float, float]
+    radius_m: float
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A geared position servo with a torque-speed line.
+
+    Its torque is `kp * (command - position) - kd * velocity`, held between
+    `stall * (-1 - velocity / no_load)` and `stall * (1 - velocity / no_load)`.
+    A board that sets the duty cycle in proportion to the position error has the
+    motor's back-EMF as its damping: kd = stall / no_load.
+
+    Attributes:
+      stall_torque_nm, no_load_speed_rad_s: the ends of the torque-speed line.
+      kp_nm_rad: stiffness.
+      kd_nm_s_rad: damping, back-EMF included.
+      rotor_kg_m2: rotor inertia behind the gear.
+    """
+
+    stall_torque_nm: float
+    no_load_speed_rad_s: float
+    kp_nm_rad: float
+    kd_nm_s_rad: float
+    rotor_kg_m2: float
+
+    def __post_init__(self) -> None:
+        """Refuse what no motor has."""
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value >= 0):
+                raise BadValueError(f"motor {name} is {value}; it must not be negative")
+
+    def shared(self, joints: int) -> "Motor":
+        """The part of this motor that each of its coupled joints gets."""
+        return Motor(
+            self.stall_torque_nm / joints,
+            self.no_load_speed_rad_s,
+            self.kp_nm_rad / joints,
+            self.kd_nm_s_rad / joints,
+            self.rotor_kg_m2 / joints,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid body, everything that is fixed to it merged in.
+
+    Attributes:
+      name: the link's name.
+      inertial: in the frame of the link's joint, without any rotor.
+      shapes: what it looks like.
+    """
+
+    name: str
+    inertial: Inertial
+    shapes: tuple[Capsule, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A hinge with a motor, and the link that it moves.
+
+    Attributes:
+      name: the joint's name, as in commands and recordings.
+      parent: index of the joint whose link carries this one, -1 for the root.
+      origin_m: (3,) in the frame of the parent link's joint.
+      axis: (3,) unit vector.
+      range_rad: lower and upper end.
+      motor: what drives it; of a coupled pair, each joint's half.
+      link: what it moves.
+    """
+
+    name: str
+    parent: int
+    origin_m: FloatArray
+    axis: FloatArray
+    range_rad: tuple[float, float]
+    motor: Motor
+    link: Link
+
+    @property
+    def moved_inertial(self) -> Inertial:
+        """The link with the motor's rotor lumped in, as both engines carry it."""
+        return self.link.inertial.with_rotor(self.axis, self.motor.rotor_kg_m2)
+
+
+@dataclass(frozen=True, eq=False)
+class Foot:
+    """A foot: its sole and its force sensors.
+
+    Attributes:
+      joint: index of the joint whose link is the foot.
+      sole_height_m: of the sole in that joint's frame; negative.
+      outline_m: (points, 2) corner points of the sole, x and y, convex.
+      sensors_m: (4, 2) force sensors, x and y, in the order SENSORS_PER_FOOT.
+    """
+
+    joint: int
+    sole_height_m: float
+    outline_m: FloatArray
+    sensors_m: FloatArray
+
+
+@dataclass(frozen=True)
+class Imu:
+    """Where the root link carries its inertial sensors, in the root's frame."""
+
+    gyroscope_m: tuple[float, float, float]
+    accelerometer_m: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A robot with a floating root.
+
+    Attributes:
+      name: the robot's name.
+      root: the floating link; its frame is the torso frame.
+      links: one per joint, in the order of the columns of all arrays.
+      coupled: pairs of joints that one motor holds at the same angle.
+      feet: left and right.
+      imu: the inertial sensors.
+    """
+
+    name: str
+    root: Link
+    links: tuple[Joint, ...]
+    coupled: tuple[tuple[int, int], ...]
+    feet: tuple[Foot, Foot]
+    imu: Imu
+
+    @cached_property
+    def joints(self) -> tuple[str, ...]:
+        """Joint names in the order of the columns of every (n, joints) array."""
+        return tuple(joint.name for joint in self.links)
+
+    @cached_property
+    def joint_range_rad(self) -> FloatArray:
+        """(joints, 2) lower and upper end of each joint."""
+        return np.array([joint.range_rad for joint in self.links])
+
+    @cached_property
+    def no_load_speed_rad_s(self) -> FloatArray:
+        """(joints,) speed of each motor without load."""
+        return np.array([joint.motor.no_load_speed_rad_s for joint in self.links])
+
+    @cached_property
+    def parents(self) -> IntArray:
+        """(joints,) index of each joint's parent joint, -1 for the root."""
+        return np.array([joint.parent for joint in self.links], np.intp)
+
+    @property
+    def mass_kg(self) -> float:
+        """The whole robot's mass."""
+        return self.root.inertial.mass_kg + sum(
+            joint.link.inertial.mass_kg for joint in self.links
+        )

@@ -1,0 +1,161 @@
+"""The MuJoCo model of a robot, made from its description.
+
+The ground is not part of it: a world adds that. Nothing of the robot touches
+anything but the soles' rims: small spheres around each sole, which meet planes
+and heightfields alike in one point each and cost a quarter of what boxes do.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from robots.description import Capsule, Description, Foot, Joint, Link
+from robots.rigid_body import Inertial
+from robots.sole import CONTACT_RADIUS_M, FRICTION, contact_points
+
+if TYPE_CHECKING:
+    import mujoco
+
+CONTACT_GROUP, SHAPE_GROUP = 3, 2
+ROOT_JOINT = "root"
+SIDES = ("left", "right")
+
+
+def mujoco_spec(description: Description) -> "mujoco.MjSpec":
+    """The robot as an editable MuJoCo specification.
+
+    Joints and actuators carry the description's joint names in its order, after
+    the floating root. A control is a position target [rad]; the actuator is a DC
+    motor whose drive voltage saturates (see `Motor`). Sensors: `gyroscope`,
+    `accelerometer`, and for each contact sphere `touch_<side>_<k>` [N].
+
+    Args:
+      description: the robot.
+
+    Returns:
+      A specification without ground, integrator implicitfast.
+    """
+    import mujoco
+
+    spec = mujoco.MjSpec()
+    spec.modelname = description.name
+    spec.compiler.degree = False
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    root = _body(spec.worldbody, description.root, description.root.inertial)
+    root.add_freejoint(name=ROOT_JOINT)
+    bodies: list[Any] = []
+    for joint in description.links:
+        parent = root if joint.parent < 0 else bodies[joint.parent]
+        body = _body(parent, joint.link, joint.moved_inertial)
+        body.pos = joint.origin_m
+        body.add_joint(
+            name=joint.name,
+            type=mujoco.mjtJoint.mjJNT_HINGE,
+            axis=joint.axis,
+            range=joint.range_rad,
+        )
+        bodies.append(body)
+        _add_motor(spec, joint)
+    for first, second in description.coupled:
+        spec.add_equality(
+            name=f"coupled_{first}_{second}",
+            type=mujoco.mjtEq.mjEQ_JOINT,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            name1=description.joints[first],
+            name2=description.joints[second],
+            data=[0, 1] + [0] * 10,
+        )
+    for side, foot in zip(SIDES, description.feet, strict=True):
+        _add_sole(spec, bodies[foot.joint], foot, side)
+    _add_imu(spec, root, description)
+    return spec
+
+
+def _body(parent: Any, link: Link, inertial: Inertial) -> Any:
+    body = parent.add_body(name=link.name)
+    body.mass = inertial.mass_kg
+    body.ipos = inertial.com_m
+    inertia = inertial.inertia_kg_m2
+    body.fullinertia = [*np.diag(inertia), inertia[0, 1], inertia[0, 2], inertia[1, 2]]
+    body.explicitinertial = True
+    for shape in link.shapes:
+        _add_shape(body, shape)
+    return body
+
+
+def _add_shape(body: Any, shape: Capsule) -> None:
+    import mujoco
+
+    kind = mujoco.mjtGeom
+    is_sphere = shape.start_m == shape.end_m
+    geom = body.add_geom(
+        type=kind.mjGEOM_SPHERE if is_sphere else kind.mjGEOM_CAPSULE,
+        size=[shape.radius_m, 0, 0],
+        mass=0,
+        contype=0,
+        conaffinity=0,
+        group=SHAPE_GROUP,
+    )
+    if is_sphere:
+        geom.pos = shape.start_m
+    else:
+        geom.fromto = [*shape.start_m, *shape.end_m]
+
+
+def _add_motor(spec: Any, joint: Joint) -> None:
+    """A DC motor whose voltage the position error sets, saturating at 1."""
+    import mujoco
+
+    motor = joint.motor
+    actuator = spec.add_actuator(
+        name=joint.name, target=joint.name, trntype=mujoco.mjtTrn.mjTRN_JOINT
+    )
+    actuator.set_to_dcmotor(
+        motorconst=[0.0, 0.0],
+        resistance=0.0,
+        nominal=[1.0, motor.stall_torque_nm, motor.no_load_speed_rad_s],
+        controller=[motor.kp_nm_rad, 0.0, motor.kd_nm_s_rad, 0.0, 0.0, 1.0],
+        ctrlspec=mujoco.mjtCtrlInput.mjINPUT_POS.value,
+    )
+
+
+def _add_sole(spec: Any, body: Any, foot: Foot, side: str) -> None:
+    import mujoco
+
+    for k, (x, y) in enumerate(contact_points(foot)):
+        centre = [x, y, foot.sole_height_m + CONTACT_RADIUS_M]
+        body.add_geom(
+            name=f"sole_{side}_{k}",
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[CONTACT_RADIUS_M, 0, 0],
+            pos=centre,
+            mass=0,
+            contype=1,
+            conaffinity=0,
+            condim=3,
+            friction=[FRICTION, 0, 0],
+            group=CONTACT_GROUP,
+        )
+        site = body.add_site(
+            name=f"touch_{side}_{k}", pos=centre, size=[2 * CONTACT_RADIUS_M, 0, 0]
+        )
+        spec.add_sensor(
+            name=site.name,
+            type=mujoco.mjtSensor.mjSENS_TOUCH,
+            objtype=mujoco.mjtObj.mjOBJ_SITE,
+            objname=site.name,
+        )
+
+
+def _add_imu(spec: Any, root: Any, description: Description) -> None:
+    import mujoco
+
+    imu, kind = description.imu, mujoco.mjtSensor
+    for name, place, sensor in (
+        ("gyroscope", imu.gyroscope_m, kind.mjSENS_GYRO),
+        ("accelerometer", imu.accelerometer_m, kind.mjSENS_ACCELEROMETER),
+    ):
+        root.add_site(name=name, pos=place)
+        spec.add_sensor(
+            name=name, type=sensor, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=name
+        )

@@ -1,0 +1,78 @@
+"""Mass, centre of mass and inertia of a rigid body, and how they add up."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """What a rigid body weighs and how it resists turning.
+
+    Attributes:
+      mass_kg: the mass.
+      com_m: (3,) centre of mass in the frame of the body's joint.
+      inertia_kg_m2: (3, 3) about the centre of mass, axes of the joint frame.
+    """
+
+    mass_kg: float
+    com_m: FloatArray
+    inertia_kg_m2: FloatArray
+
+    def __post_init__(self) -> None:
+        """Refuse a body that cannot exist."""
+        moments = np.linalg.eigvalsh(self.inertia_kg_m2)
+        if not (self.mass_kg > 0 and np.isfinite(self.com_m).all()):
+            raise BadValueError(f"a mass of {self.mass_kg} kg; it must be positive")
+        if moments[0] < 0 or moments[0] + moments[1] < moments[2] * (1 - 1e-6):
+            raise BadValueError(
+                f"principal moments of inertia {moments} kg m^2: no body has them, "
+                "two must add up to at least the third"
+            )
+
+    def moved(self, offset_m: FloatArray) -> "Inertial":
+        """The same body seen from a frame at -offset_m (parallel axes)."""
+        return Inertial(self.mass_kg, self.com_m + offset_m, self.inertia_kg_m2)
+
+    def with_rotor(self, axis: FloatArray, rotor_kg_m2: float) -> "Inertial":
+        """The body with a geared rotor's inertia about the joint axis lumped in.
+
+        Bullet has no joint armature, and the same torque computed from outside
+        explodes; a disc fixed to the link is what both engines can carry in one
+        way. A thin disc has half of its axial inertia across the axis:
+        J (E + a a^T) / 2.
+
+        Args:
+          axis: (3,) unit vector of the joint axis.
+          rotor_kg_m2: the rotor's inertia J behind the gear (times gear squared).
+        """
+        disc = rotor_kg_m2 * (np.eye(3) + np.outer(axis, axis)) / 2
+        return Inertial(self.mass_kg, self.com_m, self.inertia_kg_m2 + disc)
+
+
+def inertia_matrix(components: Sequence[float]) -> FloatArray:
+    """The (3, 3) matrix of [ixx, iyy, izz, ixy, ixz, iyz]."""
+    xx, yy, zz, xy, xz, yz = components
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], float)
+
+
+def combined(bodies: Sequence[Inertial]) -> Inertial:
+    """Bodies that are rigidly joined, all given in one frame, as one body.
+
+    The inertia about the common centre of mass follows from the parallel axis
+    theorem, I = sum_i (I_i + m_i (d_i.d_i E - d_i d_i^T)) with d_i from the common
+    centre of mass to that of body i.
+    """
+    mass = sum(body.mass_kg for body in bodies)
+    com = np.sum([body.mass_kg * body.com_m for body in bodies], axis=0) / mass
+    inertia = np.zeros((3, 3))
+    for body in bodies:
+        d = body.com_m - com
+        inertia += body.inertia_kg_m2 + body.mass_kg * (
+            d @ d * np.eye(3) - np.outer(d, d)
+        )
+    return Inertial(mass, com, inertia)
