@@ -1,0 +1,171 @@
+"""The walk engine: requests and sensor readings in, joint commands out."""
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.errors import BadValueError
+from robots.leg_geometry import FOOT_SENSORS, Biped
+from walk_engine.balance import feedback_share, low_pass, weight_of_new
+from walk_engine.batch import select
+from walk_engine.engine_config import WALK2014_CONFIG, EngineConfig
+from walk_engine.feet import resting_feet
+from walk_engine.gait import NAMES, Gait, stack
+from walk_engine.limits import Limits
+from walk_engine.posture import Posture
+from walk_engine.stepper import Progress, Stepper
+from walk_engine.velocity import Velocity
+from walk_engine.walk_state import StateArray
+
+
+class _Memory(NamedTuple):
+    """All that the engine remembers from tick to tick; the last axis counts robots."""
+
+    progress: Progress
+    rate_rad_s: FloatArray  # (2, n) filtered pitch and roll rate
+    command_rad: FloatArray  # (joints, n)
+
+
+class WalkEngine:
+    """Walk2014's gait generator for n robots of one kind, each with its own gait.
+
+    It knows no world: call `step` once a tick with what the robots measured, and send
+    them the commands that it returns. Robots do not influence each other, not in the
+    last bit. Mirrored input gives mirrored commands.
+    """
+
+    def __init__(
+        self,
+        biped: Biped,
+        gaits: Sequence[Gait] | FloatArray,
+        tick_s: float = 0.01,
+        *,
+        first_swing: Literal["left", "right"] = "left",
+        config: EngineConfig = WALK2014_CONFIG,
+    ) -> None:
+        """Make an engine whose robots are crouched and ready to walk.
+
+        Args:
+          biped: the robots' legs and joints.
+          gaits: n gaits, or their vectors as an (n, 16) array.
+          tick_s: time between two calls of `step`.
+          first_swing: the foot that is lifted first.
+          config: constants that no gait changes.
+
+        Raises:
+          BadValueError: no gait or a bad one, a tick that is not positive, or no foot.
+        """
+        if not (np.isfinite(tick_s) and tick_s > 0):
+            raise BadValueError(f"the tick is {tick_s} s; it must be positive")
+        if first_swing not in ("left", "right"):
+            raise BadValueError(
+                f"first_swing is {first_swing!r}; use 'left' or 'right'"
+            )
+        self._gait = dict(zip(NAMES, stack(gaits).T.copy(), strict=True))
+        self._tick_s = tick_s
+        self._left_first = first_swing == "left"
+        self._stepper = Stepper(biped, self._gait, tick_s, config)
+        self._posture = Posture(biped, self._gait, config)
+        self._limits = Limits.of(biped, tick_s, config.speed_fraction)
+        self._gain_s = np.stack(
+            (self._gait["gyro_sagittal"], self._gait["gyro_coronal"])
+        )
+        self._new_rate_weight = weight_of_new(self._gait, tick_s, config)
+        self.reset()
+
+    @property
+    def n(self) -> int:
+        """Number of robots."""
+        return len(self._new_rate_weight)
+
+    @property
+    def state(self) -> StateArray:
+        """(n,) what each robot is doing, a `WalkState`."""
+        return self._memory.progress.state.copy()
+
+    @property
+    def support(self) -> StateArray:
+        """(n,) the foot that supports: 1 left, -1 right, 0 both."""
+        return self._memory.progress.support
+
+    @property
+    def step_time_s(self) -> FloatArray:
+        """(n,) time since the current step or move began, 0 at rest."""
+        return self._memory.progress.ticks * self._tick_s
+
+    def start_pose(self) -> FloatArray:
+        """(n, joints) the crouched pose in which a robot is ready to walk."""
+        feet = resting_feet(self._gait["com_offset"])
+        target = self._posture.targets(feet, np.ones(self.n), np.zeros((2, 2, self.n)))
+        return self._limits.within_range(target).T.copy()
+
+    def reset(self) -> None:
+        """Forget everything: each robot is READY in its `start_pose`."""
+        self._memory = _Memory(
+            progress=self._stepper.start(self._left_first),
+            rate_rad_s=np.zeros((2, self.n)),
+            command_rad=self.start_pose().T.copy(),
+        )
+
+    def step(
+        self,
+        request: Velocity,
+        gyroscope_rad_s: FloatArray,
+        foot_force_n: FloatArray,
+        active: BoolArray | None = None,
+    ) -> FloatArray:
+        """Advance by one tick.
+
+        Args:
+          request: what the robots shall do; read when a step begins.
+          gyroscope_rad_s: (n, 3) the torso's turning rates about its own axes.
+          foot_force_n: (n, 8) the force sensors, in the order of the biped's.
+          active: (n,) the robots that take part, all by default. Time stands still
+            for the others; their last command is repeated.
+
+        Returns:
+          (n, joints) joint position commands, a new array.
+
+        Raises:
+          BadValueError: an array does not have its shape.
+        """
+        self._check_shapes(request, gyroscope_rad_s, foot_force_n, active)
+        before = self._memory
+        progress, feet, down = self._stepper.advance(
+            before.progress, request, foot_force_n.T.copy()
+        )
+        measured = np.stack((gyroscope_rad_s[:, 1], gyroscope_rad_s[:, 0]))
+        rate = low_pass(before.rate_rad_s, measured, self._new_rate_weight)
+        share = feedback_share(progress.state, progress.support)
+        ankle_rad = (self._gain_s * rate)[:, None] * share
+        target = self._posture.targets(feet, down, ankle_rad)
+        command = self._limits.towards(before.command_rad, target)
+        now = _Memory(progress, rate, command)
+        self._memory = now if active is None else select(active, now, before)
+        return self._memory.command_rad.T.copy()
+
+    def _check_shapes(
+        self,
+        request: Velocity,
+        gyroscope_rad_s: FloatArray,
+        foot_force_n: FloatArray,
+        active: BoolArray | None,
+    ) -> None:
+        """Refuse arrays that do not fit n robots."""
+        n = self.n
+        _require_shape("gyroscope_rad_s", gyroscope_rad_s, (n, 3))
+        _require_shape("foot_force_n", foot_force_n, (n, FOOT_SENSORS))
+        if active is not None:
+            _require_shape("active", active, (n,))
+        for name, value in vars(request).items():
+            if np.ndim(value) > 0:
+                _require_shape(name, value, (n,))
+
+
+def _require_shape(name: str, array: npt.ArrayLike, shape: tuple[int, ...]) -> None:
+    """Refuse an array of another shape."""
+    if np.shape(array) != shape:
+        raise BadValueError(f"{name} has shape {np.shape(array)}; it must be {shape}")

@@ -1,0 +1,64 @@
+"""The constants of the walk engine that no gait changes."""
+
+import math
+from dataclasses import dataclass
+
+from groundwalk.errors import BadValueError
+
+STANDARD_GRAVITY_M_S2 = 9.80665
+
+
+@dataclass(frozen=True)
+class EngineConfig:
+    """Constants of Walk2014 (rUNSWift 2014 release), sized for NAO.
+
+    Attributes:
+      max_left_m_s: largest speed to the side (Walk2014).
+      max_turn_rad_s: largest rate of turn (Walk2014).
+      side_step_extra_s: a step lasts longer by this at the largest side speed, in
+        proportion to the speed (Walk2014).
+      left_calibration: side step made for the one asked (Walk2014).
+      lift_slope_left: lift added for every metre of side step in a cycle (Walk2014).
+      outward_turn_share: part of a turn that the outer foot takes (Walk2014).
+      timeout_periods: a step ends after so many periods anyway (Walk2014).
+      com_offset_speed_m_s: speed at which the whole com_offset_speed_gain acts.
+      posture_s: time to crouch and to rise (Walk2014).
+      stretch: standing leg length for a straight leg's; hips at 0.248 m on NAO
+        as in Walk2014.
+      shoulder_roll_rad: the arms are held away from the body by this (Walk2014).
+      speed_fraction: part of a motor's no-load speed that commands may use (Walk2014).
+      gyro_filter_tick_s: tick for which the weight gyro_filter is meant (Walk2014).
+      sensor_start_n: a force sensor's largest reading so far starts at this; Walk2014
+        has 0.1 of its sensors' unit, the weight of one kilogram.
+      sensor_full_n: it does not grow beyond this; Walk2014 has 5.0 of that unit.
+    """
+
+    max_left_m_s: float = 0.2
+    max_turn_rad_s: float = 0.87
+    side_step_extra_s: float = 0.05
+    left_calibration: float = 0.82
+    lift_slope_left: float = 0.02
+    outward_turn_share: float = 0.67
+    timeout_periods: float = 3.0
+    com_offset_speed_m_s: float = 0.3
+    posture_s: float = 0.5
+    stretch: float = 0.9996
+    shoulder_roll_rad: float = math.radians(7)
+    speed_fraction: float = 0.9
+    gyro_filter_tick_s: float = 0.01
+    sensor_start_n: float = 0.1 * STANDARD_GRAVITY_M_S2
+    sensor_full_n: float = 5.0 * STANDARD_GRAVITY_M_S2
+
+    def __post_init__(self) -> None:
+        """Refuse constants that are not positive, and parts above one."""
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value > 0):
+                raise BadValueError(f"engine {name} is {value}; it must be positive")
+        for name in ("outward_turn_share", "stretch", "speed_fraction"):
+            if getattr(self, name) > 1:
+                raise BadValueError(
+                    f"engine {name} is {getattr(self, name)}; it must not exceed 1"
+                )
+
+
+WALK2014_CONFIG = EngineConfig()

@@ -1,0 +1,93 @@
+"""Joint angles of a leg that put its ankle where it shall be, in closed form.
+
+All of this is the left leg; mirror y of the target and both roll angles (`MIRROR`)
+for the right one.
+
+With the yaw angle given, the others follow one after the other. Undo the yaw of the
+vector from hip to ankle, p = R_yaw^T (ankle - hip): the knee follows from |p| (law of
+cosines), the roll is the angle of p in the y-z plane, the pitch that in the leg's own
+plane. Seen from the shin, the sole's normal is v = R_leg^T normal, and the ankle must
+make it v = (cos r sin a, -sin r, cos r cos a): its roll is r = -asin(v_y), its pitch
+a = atan2(v_x, v_z). Walk2014 finds the same pose with three damped least-squares steps.
+"""
+
+import math
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.leg_geometry import LegGeometry
+
+MIRROR = (1.0, -1.0, 1.0, 1.0, 1.0, -1.0)
+"""Factors that turn the angles of a left leg into those of its mirror image."""
+
+_MARGIN_M = 1e-6
+"""Targets are kept so far inside of what a straight or a folded leg reaches."""
+
+_Vector = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def inverse(
+    leg: LegGeometry, yaw_rad: FloatArray, ankle_m: FloatArray, tilt_rad: FloatArray
+) -> FloatArray:
+    """Angles that put the ankle at a point with the sole level.
+
+    A target out of reach is pulled along its line through the hip to where the leg
+    gets; the result is always finite.
+
+    Args:
+      leg: lengths and axes of the left leg.
+      yaw_rad: angle of the first hip joint, any shape.
+      ankle_m: (3, that shape) the ankle in the torso frame.
+      tilt_rad: that shape; how far the torso leans forward over the level sole.
+
+    Returns:
+      (6, that shape) yaw, roll, pitch, knee, ankle pitch, ankle roll.
+    """
+    turn = np.cos(yaw_rad), np.sin(yaw_rad)
+    x, y, z = (ankle_m[i] - leg.hip_m[i] for i in range(3))
+    x, y, z, length = _within_reach(leg, _yaw_undone(leg, turn, (x, y, z)))
+    thigh, tibia = leg.thigh_m, leg.tibia_m
+    bend = (length * length - thigh**2 - tibia**2) / (2 * thigh * tibia)
+    knee = np.arccos(np.clip(bend, -1.0, 1.0))
+    roll = np.arctan2(y, -z)
+    pitch = np.arctan2(-x, np.sqrt(y * y + z * z)) - np.arctan2(
+        tibia * np.sin(knee), thigh + tibia * np.cos(knee)
+    )
+    upright = (-np.sin(tilt_rad), np.zeros_like(tilt_rad), np.cos(tilt_rad))
+    x, y, z = _yaw_undone(leg, turn, upright)
+    cosine, sine = np.cos(roll), np.sin(roll)
+    y, z = cosine * y + sine * z, cosine * z - sine * y
+    ankle_pitch = np.arctan2(x, z) - (pitch + knee)
+    ankle_roll = -np.arcsin(np.clip(y, -1.0, 1.0))
+    return np.stack((yaw_rad, roll, pitch, knee, ankle_pitch, ankle_roll))
+
+
+def _yaw_undone(
+    leg: LegGeometry, turn: tuple[FloatArray, FloatArray], vector: _Vector
+) -> _Vector:
+    """Turn a vector back about the yaw axis (Rodrigues), given the cosine and sine."""
+    a, b, c = leg.yaw_axis
+    x, y, z = vector
+    cosine, sine = turn
+    along = (1.0 - cosine) * (a * x + b * y + c * z)
+    return (
+        cosine * x - sine * (b * z - c * y) + along * a,
+        cosine * y - sine * (c * x - a * z) + along * b,
+        cosine * z - sine * (a * y - b * x) + along * c,
+    )
+
+
+def _within_reach(
+    leg: LegGeometry, target: _Vector
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Pull a target to the nearest length that the leg can take; also returns it."""
+    x, y, z = target
+    # The hip itself has no direction: take it for a point below.
+    z = np.where(x * x + y * y + z * z < _MARGIN_M**2, -_MARGIN_M, z)
+    length = np.sqrt(x * x + y * y + z * z)
+    shortest = math.fabs(leg.thigh_m - leg.tibia_m) + _MARGIN_M
+    longest = leg.thigh_m + leg.tibia_m - _MARGIN_M
+    reached = np.clip(length, shortest, longest)
+    factor = reached / length
+    return factor * x, factor * y, factor * z, reached

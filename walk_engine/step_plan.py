@@ -1,0 +1,95 @@
+"""What a step shall do; decided in its first tick and kept until it ends."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+from robots.leg_geometry import LegGeometry
+from walk_engine.engine_config import EngineConfig
+from walk_engine.velocity import Velocity
+
+GaitColumns = dict[str, FloatArray]
+"""For each gait parameter its values, one for each robot."""
+
+
+class Speeds(NamedTuple):
+    """What the robots shall carry out, within the limits; arrays (n,)."""
+
+    forward_m_s: FloatArray
+    left_m_s: FloatArray
+    turn_rad_s: FloatArray
+
+    @property
+    def moving(self) -> BoolArray:
+        """Where any speed differs from zero."""
+        moving: BoolArray = (
+            (self.forward_m_s != 0) | (self.left_m_s != 0) | (self.turn_rad_s != 0)
+        )
+        return moving
+
+
+class StepPlan(NamedTuple):
+    """One step of each robot; arrays (n,).
+
+    Lengths and angles are those of a whole cycle of two steps, as in Walk2014.
+
+    Attributes:
+      period_s: duration.
+      lift_m: height of the swing foot at its apex.
+      forward_m: way forward in a cycle.
+      left_m: way to the left in a cycle.
+      turn_rad: both steps' change of the hip yaw joints in a cycle, left positive.
+      com_offset_m: hip ahead of the middle of the ankles at the end of the step.
+    """
+
+    period_s: FloatArray
+    lift_m: FloatArray
+    forward_m: FloatArray
+    left_m: FloatArray
+    turn_rad: FloatArray
+    com_offset_m: FloatArray
+
+
+def within_limits(request: Velocity, gait: GaitColumns, config: EngineConfig) -> Speeds:
+    """Cut each speed to its limit, for each robot on its own."""
+    fastest = gait["max_forward"]
+    left, turn = np.zeros_like(fastest), np.zeros_like(fastest)
+    left += np.clip(request.left_m_s, -config.max_left_m_s, config.max_left_m_s)
+    turn += np.clip(request.turn_rad_s, -config.max_turn_rad_s, config.max_turn_rad_s)
+    return Speeds(np.clip(request.forward_m_s, -fastest, fastest), left, turn)
+
+
+def plan_step(
+    speeds: Speeds,
+    starting: BoolArray,
+    gait: GaitColumns,
+    leg: LegGeometry,
+    config: EngineConfig,
+) -> StepPlan:
+    """Plan a step of each robot at the speeds given.
+
+    The first step (`starting`) only rocks the robot: it lifts a foot, less high than
+    a step at these speeds would, and goes nowhere. In Walk2014 turns are multiplied
+    by 1.43, which makes up for feet that slip. Without slip, a hip yaw joint turns
+    the foot by the z component of its axis, and each degree is used twice in a cycle.
+    """
+    share = np.abs(speeds.left_m_s) / config.max_left_m_s
+    period_s = gait["step_period"] + config.side_step_extra_s * share
+    cycle_s = 2 * period_s
+    forward_m = speeds.forward_m_s * cycle_s
+    left_m = speeds.left_m_s * cycle_s * config.left_calibration
+    turn_rad = speeds.turn_rad_s * cycle_s / (2 * abs(leg.yaw_axis[2]))
+    lift_m = gait["base_leg_lift"] + gait["lift_slope_forward"] * np.abs(forward_m)
+    lift_m = lift_m + config.lift_slope_left * np.abs(left_m)
+    # As in rUNSWift 2022, only walking forward shifts the hip.
+    ahead = np.maximum(speeds.forward_m_s, 0.0) / config.com_offset_speed_m_s
+    ahead = np.where(starting, 0.0, ahead)
+    return StepPlan(
+        period_s=period_s,
+        lift_m=np.where(starting, lift_m / gait["start_lift_divisor"], lift_m),
+        forward_m=np.where(starting, 0.0, forward_m),
+        left_m=np.where(starting, 0.0, left_m),
+        turn_rad=np.where(starting, 0.0, turn_rad),
+        com_offset_m=gait["com_offset"] + gait["com_offset_speed_gain"] * ahead,
+    )

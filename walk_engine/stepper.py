@@ -1,0 +1,167 @@
+"""The sequence of steps: what each robot is doing and where that puts its feet."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+from robots.leg_geometry import Biped
+from walk_engine.batch import select
+from walk_engine.crouch import crouched
+from walk_engine.engine_config import EngineConfig
+from walk_engine.feet import Feet, feet_in_step, resting_feet
+from walk_engine.step_plan import (
+    GaitColumns,
+    Speeds,
+    StepPlan,
+    plan_step,
+    within_limits,
+)
+from walk_engine.support import (
+    Sensing,
+    crossed,
+    next_swing,
+    nothing_sensed,
+    sense,
+    sensor_lateral_m,
+    step_is_over,
+)
+from walk_engine.velocity import Velocity
+from walk_engine.walk_state import (
+    StateArray,
+    WalkState,
+    is_resting,
+    is_stepping,
+    on_request,
+    when_over,
+)
+
+
+class Progress(NamedTuple):
+    """How far each of n robots is.
+
+    Attributes:
+      state: (n,) what it is doing, a `WalkState`.
+      ticks: (n,) ticks since the step or the move began; 0 at rest.
+      left_swings: (n,) whether the left foot swings, at rest: swings next.
+      plan: what the current step shall do.
+      origin: where the feet were when the step began.
+      sensing: what the force sensors told.
+    """
+
+    state: StateArray
+    ticks: FloatArray
+    left_swings: BoolArray
+    plan: StepPlan
+    origin: Feet
+    sensing: Sensing
+
+    @property
+    def support(self) -> StateArray:
+        """(n,) the foot that supports: 1 left, -1 right, 0 both."""
+        foot = np.where(self.left_swings, -1, 1)
+        return np.where(is_stepping(self.state), foot, 0).astype(np.int8)
+
+
+class Stepper:
+    """Advances n robots of one kind from tick to tick."""
+
+    def __init__(
+        self, biped: Biped, gait: GaitColumns, tick_s: float, config: EngineConfig
+    ) -> None:
+        """Prepare for robots with these gaits (16 arrays of n values)."""
+        self._leg = biped.leg
+        self._gait = gait
+        self._tick_s = tick_s
+        self._config = config
+        self._lateral_m = sensor_lateral_m(biped)
+        self._leg_height_m = gait["hip_height"] - biped.leg.ankle_height_m
+        self._resting = resting_feet(gait["com_offset"])
+        self._still = Speeds(*np.zeros((3, len(self._leg_height_m))))
+
+    def start(self, left_first: bool) -> Progress:
+        """Robots that are ready to walk, the left or the right foot first."""
+        n = len(self._leg_height_m)
+        return Progress(
+            state=np.full(n, WalkState.READY, dtype=np.int8),
+            ticks=np.zeros(n),
+            left_swings=np.full(n, left_first),
+            plan=self._plan(self._still, np.zeros(n, dtype=np.bool_)),
+            origin=self._resting,
+            sensing=nothing_sensed(n, self._config),
+        )
+
+    def advance(
+        self, before: Progress, request: Velocity, force_n: FloatArray
+    ) -> tuple[Progress, Feet, FloatArray]:
+        """One tick on.
+
+        Args:
+          before: the progress so far.
+          request: what the robots shall do.
+          force_n: (8, n) readings of the force sensors.
+
+        Returns:
+          The progress, the feet, and how far each robot is crouched (`crouched`).
+        """
+        now = self._begin(before, request)
+        time_s = now.ticks * self._tick_s
+        feet = feet_in_step(
+            time_s,
+            now.plan,
+            now.origin,
+            now.left_swings,
+            self._gait,
+            self._leg_height_m,
+            self._config,
+        )
+        feet = select(is_stepping(now.state), feet, self._resting)
+        down = crouched(now.state, time_s, self._config.posture_s)
+        sensing = sense(now.sensing, force_n, self._lateral_m, self._config)
+        return self._end(now, time_s, feet, sensing), feet, down
+
+    def _begin(self, before: Progress, request: Velocity) -> Progress:
+        """Read the request where a step may begin, and plan the step."""
+        reads = before.ticks == 0
+        speeds = within_limits(request, self._gait, self._config)
+        stand = np.broadcast_to(request.stand, reads.shape)
+        walk = speeds.moving & ~stand
+        state = np.where(reads, on_request(before.state, walk, stand), before.state)
+        speeds = select(walk, speeds, self._still)
+        plan = self._plan(speeds, state == WalkState.STARTING)
+        return before._replace(
+            state=state,
+            ticks=np.where(is_resting(state), 0.0, before.ticks + 1.0),
+            plan=select(reads, plan, before.plan),
+        )
+
+    def _end(
+        self, now: Progress, time_s: FloatArray, feet: Feet, sensing: Sensing
+    ) -> Progress:
+        """Change the support foot and the state where a step or a move is over."""
+        config, period_s = self._config, now.plan.period_s
+        changes = step_is_over(
+            time_s,
+            period_s,
+            crossed(now.sensing, sensing),
+            self._gait["switch_min_phase"],
+            config,
+        )
+        # The last step ends when both feet are down side by side.
+        stops = time_s >= period_s
+        steps = is_stepping(now.state)
+        step_over = steps & np.where(now.state == WalkState.STOPPING, stops, changes)
+        move_over = ~steps & (time_s >= config.posture_s)
+        over = step_over | move_over
+        swing = next_swing(sensing, now.left_swings)
+        return now._replace(
+            state=np.where(over, when_over(now.state), now.state),
+            ticks=np.where(over, 0.0, now.ticks),
+            left_swings=np.where(step_over, swing, now.left_swings),
+            origin=select(step_over, feet, now.origin),
+            sensing=sensing,
+        )
+
+    def _plan(self, speeds: Speeds, starting: BoolArray) -> StepPlan:
+        """Plan a step at speeds within the limits."""
+        return plan_step(speeds, starting, self._gait, self._leg, self._config)

@@ -1,0 +1,39 @@
+"""What a robot is asked to do: walk at a velocity, halt, or stand up."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.errors import BadValueError
+
+
+@dataclass(frozen=True, eq=False)
+class Velocity:
+    """A request for all robots (numbers) or for each (arrays of shape (n,)).
+
+    A request of zero keeps a robot crouched and ready to walk. What exceeds the gait's
+    `max_forward` or the engine's limits is cut: infinity means as fast as allowed.
+
+    Attributes:
+      forward_m_s: speed in the direction that the robot faces.
+      left_m_s: speed to its left.
+      turn_rad_s: rate of turn to the left.
+      stand: True asks to halt and to straighten the legs, whatever the velocity.
+    """
+
+    forward_m_s: float | FloatArray = 0.0
+    left_m_s: float | FloatArray = 0.0
+    turn_rad_s: float | FloatArray = 0.0
+    stand: bool | BoolArray = False
+
+    def __post_init__(self) -> None:
+        """Refuse what is no number."""
+        for name in ("forward_m_s", "left_m_s", "turn_rad_s"):
+            if np.isnan(getattr(self, name)).any():
+                raise BadValueError(f"velocity {name} is NaN; it must be a number")
+
+    @classmethod
+    def forward(cls) -> "Velocity":
+        """Straight ahead as fast as the gait says."""
+        return cls(forward_m_s=np.inf)

@@ -1,0 +1,79 @@
+"""The states of a walking robot and what leads from one to the next.
+
+    STANDING -> CROUCHING -> READY -> STARTING -> WALKING -> STOPPING -> READY
+                             READY -> RISING -> STANDING
+
+STANDING and READY last until the request ends them, CROUCHING and RISING a set time,
+STARTING and STOPPING one step, WALKING any number of steps. Requests are read at rest
+and in the first tick of a step or a move.
+"""
+
+from enum import IntEnum
+
+import numpy as np
+import numpy.typing as npt
+
+from groundwalk.arrays import BoolArray
+
+StateArray = npt.NDArray[np.int8]
+
+
+class WalkState(IntEnum):
+    """What a robot is doing; arrays of states hold these numbers."""
+
+    STANDING = 0
+    CROUCHING = 1
+    READY = 2
+    STARTING = 3
+    WALKING = 4
+    STOPPING = 5
+    RISING = 6
+
+
+_S = WalkState
+
+# Rows: the states in their order. Columns: asked to halt, to walk, to stand upright.
+_ON_REQUEST: StateArray = np.array(
+    [
+        (_S.CROUCHING, _S.CROUCHING, _S.STANDING),
+        (_S.CROUCHING, _S.CROUCHING, _S.CROUCHING),
+        (_S.READY, _S.STARTING, _S.RISING),
+        (_S.STARTING, _S.STARTING, _S.STARTING),
+        (_S.STOPPING, _S.WALKING, _S.STOPPING),
+        (_S.STOPPING, _S.STOPPING, _S.STOPPING),
+        (_S.RISING, _S.RISING, _S.RISING),
+    ],
+    dtype=np.int8,
+)
+_WHEN_OVER: StateArray = np.array(
+    [_S.STANDING, _S.READY, _S.READY, _S.WALKING, _S.WALKING, _S.READY, _S.STANDING],
+    dtype=np.int8,
+)
+_RESTING = np.isin(np.arange(len(_S)), (_S.STANDING, _S.READY))
+_STEPPING = np.isin(np.arange(len(_S)), (_S.STARTING, _S.WALKING, _S.STOPPING))
+
+
+def is_resting(state: StateArray) -> BoolArray:
+    """Where a robot keeps its pose."""
+    return _RESTING[state]
+
+
+def is_stepping(state: StateArray) -> BoolArray:
+    """Where one foot supports the robot while the other swings."""
+    return _STEPPING[state]
+
+
+def on_request(state: StateArray, walk: BoolArray, stand: BoolArray) -> StateArray:
+    """The states after the request was read.
+
+    Args:
+      state: the states so far.
+      walk: which robots are asked to move.
+      stand: which are asked to stand upright, whether or not also to move.
+    """
+    return _ON_REQUEST[state, np.where(stand, 2, walk)]
+
+
+def when_over(state: StateArray) -> StateArray:
+    """The states after the step or the move is over."""
+    return _WHEN_OVER[state]
