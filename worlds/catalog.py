@@ -1,0 +1,66 @@
+"""The two worlds by name, and what each is like unless told otherwise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.errors import UnknownNameError
+from robots.description import Description
+from terrain import Heightfield
+from worlds.real import RealWorld
+from worlds.rollouts import RolloutWorld
+from worlds.sensor_noise import SensorNoise
+from worlds.sim import SimWorld
+from worlds.world import World, WorldOptions
+
+REAL_LATENCY_S = 0.036
+"""From command to measured motion on the NAO: three frames of 12 ms (B-Human)."""
+
+
+@dataclass(frozen=True)
+class WorldKind:
+    """A world's class, and how it is set up by default."""
+
+    world: type[RolloutWorld]
+    options: WorldOptions
+    terrain: str
+
+
+WORLDS = {
+    "sim": WorldKind(SimWorld, WorldOptions(), "flat"),
+    "real": WorldKind(
+        RealWorld, WorldOptions(latency_s=REAL_LATENCY_S, noise=SensorNoise()), "lumps"
+    ),
+}
+
+
+def kind(name: str) -> WorldKind:
+    """The world of that name.
+
+    Raises:
+      UnknownNameError: there is none.
+    """
+    if name not in WORLDS:
+        raise UnknownNameError("world", name, WORLDS)
+    return WORLDS[name]
+
+
+def make(
+    name: str,
+    description: Description,
+    grounds: Sequence[Heightfield],
+    seeds: Sequence[np.random.SeedSequence],
+    options: WorldOptions | None = None,
+) -> World:
+    """A world with one robot on each ground.
+
+    Args:
+      name: "sim" or "real".
+      description: the robot.
+      grounds: one per robot; give one object n times to share it.
+      seeds: one per robot, for its sensor noise.
+      options: the world's own default where None.
+    """
+    chosen = kind(name)
+    return chosen.world(description, grounds, seeds, options or chosen.options)

@@ -1,0 +1,61 @@
+"""Where every link of a robot is, for many ticks at once."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.description import Description
+
+
+class LinkPoses(NamedTuple):
+    """Where a link's joint frame is in the world, tick by tick."""
+
+    position_m: FloatArray
+    """(ticks, 3)."""
+    orientation: FloatArray
+    """(ticks, 4) unit quaternions w, x, y, z from link to world."""
+
+
+def link_poses(
+    description: Description, position_rad: FloatArray, base: LinkPoses
+) -> dict[str, LinkPoses]:
+    """Forward kinematics: T_link = T_parent * translation(origin) * turn(axis, angle).
+
+    A NaN in a joint or in the base reaches all that hangs on it, and nothing else.
+
+    Args:
+      description: the robot.
+      position_rad: (ticks, joints) in the description's order.
+      base: where the root link is; its quaternions need not be exactly of unit length.
+
+    Returns:
+      Poses by link name, the root first.
+    """
+    norm = np.linalg.norm(base.orientation, axis=1, keepdims=True)
+    root = LinkPoses(base.position_m, base.orientation / norm)
+    poses: list[LinkPoses] = []
+    for joint, angle_rad in zip(description.links, position_rad.T, strict=True):
+        parent = root if joint.parent < 0 else poses[joint.parent]
+        offset_m = _rotate(parent.orientation, joint.origin_m)
+        half_rad = angle_rad[:, np.newaxis] / 2
+        turn = np.hstack([np.cos(half_rad), np.sin(half_rad) * joint.axis])
+        poses.append(
+            LinkPoses(parent.position_m + offset_m, _product(parent.orientation, turn))
+        )
+    names = (description.root.name, *(joint.link.name for joint in description.links))
+    return dict(zip(names, (root, *poses), strict=True))
+
+
+def _product(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Quaternion products, (n, 4) each: turn by the second, then by the first."""
+    w1, v1, w2, v2 = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
+    w = w1 * w2 - np.sum(v1 * v2, axis=1, keepdims=True)
+    return np.hstack([w, w1 * v2 + w2 * v1 + np.cross(v1, v2)])
+
+
+def _rotate(orientation: FloatArray, vector: FloatArray) -> FloatArray:
+    """(n, 3) one vector turned by each of (n, 4) unit quaternions."""
+    w, v = orientation[:, :1], orientation[:, 1:]
+    twice = 2.0 * np.cross(v, vector)
+    return np.asarray(vector + w * twice + np.cross(v, twice))

@@ -1,0 +1,76 @@
+"""What a robot measures, and what only its world knows."""
+
+from dataclasses import dataclass, fields
+from typing import Self
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+
+FEET_SENSORS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class _PerRobot:
+    """Arrays whose first axis counts the robots."""
+
+    def where(self, mask: BoolArray, other: Self) -> Self:
+        """These rows where the mask is set, the other's elsewhere."""
+        if mask.all():
+            return self
+        merged = {}
+        for field in fields(self):
+            mine, theirs = getattr(self, field.name), getattr(other, field.name)
+            shape = (-1,) + (1,) * (mine.ndim - 1)
+            merged[field.name] = np.where(mask.reshape(shape), mine, theirs)
+        return type(self)(**merged)
+
+    def finite(self) -> BoolArray:
+        """(n,) whether every number of a robot's rows is finite."""
+        rows = [getattr(self, field.name) for field in fields(self)]
+        finite = [np.isfinite(row).reshape(len(row), -1).all(axis=1) for row in rows]
+        return np.asarray(np.logical_and.reduce(finite))
+
+
+@dataclass(frozen=True, eq=False)
+class Observation(_PerRobot):
+    """What n robots measure at a tick.
+
+    Attributes:
+      time_s: (n,) since the start of the rollout.
+      position_rad, velocity_rad_s: (n, joints) in the description's order.
+      gyroscope_rad_s: (n, 3) torso frame.
+      accelerometer_m_s2: (n, 3) torso frame; +9.81 upward when at rest.
+      foot_force_n: (n, 8) front left, front right, rear left, rear right sensor of
+        the left foot, then of the right.
+    """
+
+    time_s: FloatArray
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+    gyroscope_rad_s: FloatArray
+    accelerometer_m_s2: FloatArray
+    foot_force_n: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Truth(_PerRobot):
+    """What only the world knows of n robots; never fed to a gait.
+
+    Attributes:
+      base_position_m: (n, 3) of the torso frame, in the world.
+      base_orientation: (n, 4) unit quaternion w, x, y, z from torso to world.
+      base_linear_velocity_m_s: (n, 3) world frame.
+      base_angular_velocity_rad_s: (n, 3) torso frame.
+    """
+
+    base_position_m: FloatArray
+    base_orientation: FloatArray
+    base_linear_velocity_m_s: FloatArray
+    base_angular_velocity_rad_s: FloatArray
+
+    @property
+    def up_z(self) -> FloatArray:
+        """(n,) cosine of the angle between the torso's up axis and the vertical."""
+        _, x, y, _ = self.base_orientation.T
+        return np.asarray(1.0 - 2.0 * (x * x + y * y))

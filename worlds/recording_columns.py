@@ -1,0 +1,120 @@
+"""The column names of a recording: which exist, and which belong together."""
+
+import difflib
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+from groundwalk.errors import BadRecordingError
+
+TIME = "time"
+SUPPORT = "support"
+ORIENTATION = "base.orientation"
+POSITION = "position"
+# Without one of these nothing says what the robot was told to do.
+DRIVES = ("command", "command_torque", "torque")
+JOINT_QUANTITIES = (POSITION, "velocity", *DRIVES)
+VECTORS = {
+    "base.position": ("x", "y", "z"),
+    ORIENTATION: ("w", "x", "y", "z"),
+    "base.linear_velocity": ("x", "y", "z"),
+    "base.angular_velocity": ("x", "y", "z"),
+    "gyroscope": ("x", "y", "z"),
+    "accelerometer": ("x", "y", "z"),
+    "foot_force": ("left", "right"),
+    "foot_force.left": ("front_left", "front_right", "rear_left", "rear_right"),
+    "foot_force.right": ("front_left", "front_right", "rear_left", "rear_right"),
+}
+
+
+def vector_columns(vector: str) -> tuple[str, ...]:
+    """Names of the columns that make up one of `VECTORS`, in its order."""
+    return tuple(f"{vector}.{component}" for component in VECTORS[vector])
+
+
+FIXED = (
+    TIME,
+    SUPPORT,
+    *(name for vector in VECTORS for name in vector_columns(vector)),
+)
+
+
+def joints_with(quantity: str, names: Iterable[str]) -> tuple[str, ...]:
+    """Joints that have a column of this quantity, in the order of the columns.
+
+    Args:
+      quantity: one of `JOINT_QUANTITIES`.
+      names: column names.
+    """
+    prefix = f"{quantity}."
+    return tuple(name[len(prefix) :] for name in names if name.startswith(prefix))
+
+
+def check_names(names: Sequence[str]) -> None:
+    """Check that these columns, together, can be a recording.
+
+    Args:
+      names: every column name, in order.
+
+    Raises:
+      BadRecordingError: a column is unknown, there twice or missing.
+    """
+    _check_each(names)
+    _check_required(names)
+    _check_joints(names)
+    _check_vectors(names)
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A hint to append to a message: the known name nearest to a wrong one, if any."""
+    close = difflib.get_close_matches(name, list(known), n=1)
+    return f"; did you mean {close[0]!r}?" if close else ""
+
+
+def _check_each(names: Sequence[str]) -> None:
+    for name, times in Counter(names).items():
+        if times > 1:
+            raise BadRecordingError(f"column {name!r} is there {times} times")
+        quantity, _, joint = name.partition(".")
+        is_of_joint = quantity in JOINT_QUANTITIES and joint and joint.isprintable()
+        if name not in FIXED and not is_of_joint:
+            of_joint = [f"{quantity}.{joint}" for quantity in JOINT_QUANTITIES]
+            hint = nearest(name, (*FIXED, *of_joint)) or (
+                f"; columns are {TIME}, {SUPPORT}, those of the vectors "
+                f"{', '.join(VECTORS)}, and {', '.join(JOINT_QUANTITIES)} of a joint, "
+                f"such as '{POSITION}.knee'"
+            )
+            raise BadRecordingError(f"unknown column {name!r}{hint}")
+
+
+def _check_required(names: Sequence[str]) -> None:
+    if TIME not in names:
+        raise BadRecordingError(f"no column {TIME!r}")
+    if not joints_with(POSITION, names):
+        raise BadRecordingError(f"no column '{POSITION}.<joint>'")
+    if not any(joints_with(quantity, names) for quantity in DRIVES):
+        raise BadRecordingError(
+            "no column says what drove the joints; one of "
+            f"{', '.join(f'{quantity}.<joint>' for quantity in DRIVES)} is needed"
+        )
+
+
+def _check_joints(names: Sequence[str]) -> None:
+    measured = dict.fromkeys(joints_with(POSITION, names))
+    for quantity in JOINT_QUANTITIES:
+        for joint in joints_with(quantity, names):
+            if joint not in measured:
+                raise BadRecordingError(
+                    f"column '{quantity}.{joint}' has no '{POSITION}.{joint}' "
+                    f"beside it{nearest(joint, measured)}"
+                )
+
+
+def _check_vectors(names: Sequence[str]) -> None:
+    for vector in VECTORS:
+        columns = vector_columns(vector)
+        missing = [name for name in columns if name not in names]
+        if missing and len(missing) < len(columns):
+            raise BadRecordingError(
+                f"column {missing[0]!r} is missing; {vector} is only of use whole "
+                f"({', '.join(columns)})"
+            )

@@ -1,0 +1,231 @@
+"""Recordings as Rerun files: robots, ground, traces and a layout that shows them all.
+
+Each scene has a path prefix of its own, so that scenes stand side by side in one file:
+
+| entity | what |
+|---|---|
+| `<scene>/robot/<link>` | shapes; pose of the link in the world |
+| `<scene>/robot/<foot>/{sole,force}` | outline; arrows of 5 mm a newton |
+| `<scene>/ground` | the heightfield's triangles |
+| `<scene>/joints/<joint>/{position,velocity,command,...}` | as recorded |
+| `<scene>/contact/{left,right}` | force on each foot [N] |
+| `<scene>/imu/{gyroscope,accelerometer}` | x, y, z [rad/s, m/s^2] |
+| `<scene>/support` | the leg that the gait stands on: left, right or both |
+| `<scene>/events` | why the rollout ended |
+
+Timelines: `sim_time`, the recording's own time, and `tick`, its row. A row in which a
+value is missing is left out of that entity. What the metadata say is in the file's
+properties, under the scene's name.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.files import write_bytes
+from worlds import scene_colours as colours
+from worlds.recording_columns import SUPPORT
+from worlds.scene import SIDES, Scene, check_beside, content_id
+from worlds.scene_shapes import capsules, ground_mesh, sole_mesh
+from worlds.scene_traces import Plot, plots, support_changes, traces
+from worlds.world import End
+
+if TYPE_CHECKING:
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+ARROW_M_PER_N = 0.005
+"""Length of an arrow per force: a NAO's weight is 26 cm long."""
+_ARROW_RADIUS_M = 0.006
+_FAILURES = tuple(End)
+
+
+def write_rrd(
+    path: Path, scenes: Sequence[Scene], recording_id: str | None = None
+) -> None:
+    """Write recordings side by side into one Rerun file, the file at once.
+
+    Args:
+      path: the `.rrd` file.
+      scenes: what to show, from left to right.
+      recording_id: to the viewer, files of one id are one recording; by default an id
+        that follows from the contents.
+
+    Raises:
+      BadValueError: there is no scene, or the names of two get in each other's way.
+    """
+    import rerun as rr
+
+    check_beside(scenes)
+    identity = recording_id or content_id(scenes)
+    stream = rr.RecordingStream("groundwalk", recording_id=identity)
+    file = stream.memory_recording()
+    stream.send_blueprint(_blueprint(scenes))
+    stream.send_recording_name(path.stem)
+    stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    for index, scene in enumerate(scenes):
+        _SceneLog(stream, scene, colours.accent(index)).write()
+    write_bytes(path, file.drain_as_bytes())
+
+
+class _SceneLog:
+    """Writes one scene into a stream."""
+
+    def __init__(
+        self, stream: "rr.RecordingStream", scene: Scene, accent: colours.Colour
+    ) -> None:
+        self._stream = stream
+        self._scene = scene
+        self._accent = accent
+        # Rounded, because Rerun cuts off what is less than a nanosecond.
+        time_ns = np.rint(scene.recording.time_s * 1e9)
+        self._time = time_ns.astype("timedelta64[ns]")
+
+    def write(self) -> None:
+        import rerun as rr
+
+        properties = rr.AnyValues(**self._scene.properties)
+        self._stream.send_property(self._scene.name, properties)
+        if self._scene.ground is not None:
+            ground = ground_mesh(self._scene.ground)
+            self._log("ground", rr.Mesh3D(**ground._asdict()))
+        self._write_robot()
+        self._write_feet()
+        self._write_states()
+        for trace in traces(self._scene):
+            lines = rr.SeriesLines(names=trace.names, colors=trace.lines)
+            self._log(trace.path, lines)
+            self._send(trace.path, rr.Scalars, scalars=trace.values)
+
+    def _write_robot(self) -> None:
+        import rerun as rr
+
+        robot = self._scene.description
+        for link in (robot.root, *(joint.link for joint in robot.links)):
+            if link.shapes:
+                arrays = capsules(link.shapes, self._accent)._asdict()
+                shapes = rr.Capsules3D(**arrays, fill_mode="solid")
+                self._log(f"robot/{link.name}", shapes)
+        for name, pose in self._scene.link_poses().items():
+            self._send(
+                f"robot/{name}",
+                rr.Transform3D,
+                translation=pose.position_m,
+                quaternion=np.roll(pose.orientation, -1, axis=1),
+            )
+
+    def _write_feet(self) -> None:
+        import rerun as rr
+
+        robot = self._scene.description
+        for side, foot in zip(SIDES, robot.feet, strict=True):
+            link = f"robot/{robot.links[foot.joint].link.name}"
+            sole = sole_mesh(foot, self._accent)
+            self._log(f"{link}/sole", rr.Mesh3D(**sole._asdict()))
+            forces = self._scene.sensor_forces_n(side)
+            if forces is None:
+                continue
+            points_m, forces_n = forces
+            arrows_m = forces_n[:, :, np.newaxis] * (0.0, 0.0, ARROW_M_PER_N)
+            look = rr.Arrows3D.from_fields(
+                origins=points_m, radii=_ARROW_RADIUS_M, colors=colours.FORCE
+            )
+            self._log(f"{link}/force", look)
+            self._send(f"{link}/force", rr.Arrows3D, vectors=arrows_m)
+
+    def _write_states(self) -> None:
+        import rerun as rr
+
+        rows, legs = support_changes(self._scene)
+        if legs:
+            lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE}
+            look = rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
+            self._log(SUPPORT, look)
+            self._send_rows(SUPPORT, rows, rr.StateChange.columns(state=legs))
+        end = self._scene.recording.metadata.end
+        if end:
+            last = np.array([self._time.size - 1])
+            level = "WARN" if end in _FAILURES else "INFO"
+            text = rr.TextLog.columns(text=[end], level=[level])
+            self._send_rows("events", last, text)
+
+    def _log(self, path: str, what: "rr.AsComponents") -> None:
+        self._stream.log(f"{self._scene.name}/{path}", what, static=True, strict=True)
+
+    def _send(self, path: str, kind: Any, **columns: FloatArray) -> None:
+        """Send columns over time, without the rows in which a value is missing."""
+        parts = [values.reshape(self._time.size, -1) for values in columns.values()]
+        rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
+        known = {name: values[rows] for name, values in columns.items()}
+        if rows.size:
+            self._send_rows(path, rows, kind.columns(**known))
+
+    def _send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
+        import rerun as rr
+
+        indexes = (
+            rr.TimeColumn("sim_time", duration=self._time[rows]),
+            rr.TimeColumn("tick", sequence=rows),
+        )
+        entity = f"{self._scene.name}/{path}"
+        self._stream.send_columns(entity, indexes, columns, strict=True)
+
+
+def _blueprint(scenes: Sequence[Scene]) -> "rrb.Blueprint":
+    """Everything at once: scenes from left to right, each above its traces."""
+    import rerun.blueprint as rrb
+
+    return rrb.Blueprint(
+        rrb.Horizontal(*(_scene_views(scene) for scene in scenes)),
+        rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
+        collapse_panels=True,
+    )
+
+
+def _scene_views(scene: Scene) -> "rrb.Vertical":
+    """The robot, followed from its front right, above what it did and felt."""
+    import rerun.blueprint as rrb
+
+    at = f"/{scene.name}"
+    follow = rrb.EyeControls3D(
+        position=(0.7, -0.75, 0.5),
+        look_target=(0.0, 0.0, 0.1),
+        tracking_entity=f"{at}/robot/{scene.description.root.name}",
+    )
+    robot = rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
+    rows = [
+        rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
+    ]
+    views = [robot, *rows]
+    shares = [6, *(2 for _ in rows)]
+    if SUPPORT in scene.recording.columns:
+        lane = f"{at}/{SUPPORT}"
+        views.append(
+            rrb.StateTimelineView(name="support", origin=lane, time_view=_window())
+        )
+        shares.append(1)
+    return rrb.Vertical(*views, row_shares=shares)
+
+
+def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
+    import rerun.blueprint as rrb
+
+    return rrb.TimeSeriesView(
+        name=plot.name,
+        contents=[f"{at}/{path}" for path in plot.paths],
+        axis_x=_window(),
+        plot_legend=rrb.PlotLegend(visible=plot.has_key),
+    )
+
+
+def _window() -> "rrb.TimeAxis":
+    """A few seconds around the time cursor: a whole course would be a blur."""
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+    start = rrb.TimeRangeBoundary.cursor_relative(seconds=-2.0)
+    end = rrb.TimeRangeBoundary.cursor_relative(seconds=1.0)
+    return rrb.TimeAxis(view_range=rr.TimeRange(start, end))

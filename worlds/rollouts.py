@@ -1,0 +1,131 @@
+"""What both worlds share: everything but the physics."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.errors import BadValueError
+from robots.description import Description
+from terrain import Heightfield
+from worlds.falls import EndRule
+from worlds.latency import DelayLine
+from worlds.observation import Observation, Truth
+from worlds.sensor_noise import NoisySensors
+from worlds.world import TICK_S, End, WorldOptions
+
+Schedule = list[tuple[FloatArray, int]]
+
+
+class RolloutWorld(ABC):
+    """n rollouts side by side; see `World` for the interface.
+
+    Keeps who is still walking, holds commands back for the latency and adds the
+    sensors' noise. A subclass computes the physics.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        grounds: Sequence[Heightfield],
+        seeds: Sequence[np.random.SeedSequence],
+        options: WorldOptions,
+    ) -> None:
+        """Remember who stands where.
+
+        Args:
+          description: the robot.
+          grounds: one per robot; give one object n times to share it.
+          seeds: one per robot, for its sensor noise.
+          options: see there.
+        """
+        if not grounds or len(grounds) != len(seeds):
+            raise BadValueError(
+                f"{len(grounds)} grounds and {len(seeds)} seeds; a world needs one of "
+                "each for every robot"
+            )
+        self.description = description
+        self.options = options
+        self._grounds = list(grounds)
+        self._seeds = list(seeds)
+        self._delay = DelayLine(options.latency_steps, options.steps_per_tick)
+        self.active: BoolArray = np.zeros(len(grounds), bool)
+        self.ended: list[End] = [End.NONE] * len(grounds)
+
+    @property
+    def n(self) -> int:
+        """How many robots there are."""
+        return len(self._grounds)
+
+    def reset(self, pose_rad: FloatArray) -> Observation:
+        """Put every robot on its ground; see `World.reset`."""
+        targets = self._targets(pose_rad)
+        self._start(targets)
+        self._delay.reset(targets)
+        self.active = np.ones(self.n, bool)
+        self.ended = [End.NONE] * self.n
+        self._ticks = np.zeros(self.n)
+        noise = self.options.noise
+        self._noise = None if noise is None else NoisySensors(noise, self._seeds)
+        self._truth, self._clean = self._read()
+        self._end_rule = EndRule(self._grounds, self._truth)
+        return self._as_measured()
+
+    def step(self, command_rad: FloatArray) -> Observation:
+        """Advance the active robots by one tick; see `World.step`."""
+        schedule = list(self._delay.tick(self._targets(command_rad)))
+        if self.active.any():
+            self._advance(schedule)
+            self._ticks[self.active] += 1
+            self._take_stock()
+        return self._as_measured()
+
+    def stop(self, robots: BoolArray) -> None:
+        """Take robots out of the batch; see `World.stop`."""
+        self.active = self.active & ~robots
+
+    def truth(self) -> Truth:
+        """Where the robots really are."""
+        return self._truth
+
+    @abstractmethod
+    def close(self) -> None:
+        """Give back processes and memory."""
+
+    @abstractmethod
+    def _start(self, pose_rad: FloatArray) -> None:
+        """Put every robot on its ground, upright and at rest, holding its pose."""
+
+    @abstractmethod
+    def _advance(self, schedule: Schedule) -> None:
+        """One tick of the active robots: targets (n, joints) and steps for each."""
+
+    @abstractmethod
+    def _read(self) -> tuple[Truth, Observation]:
+        """All robots as they are now; rows that blew up hold NaN."""
+
+    def _take_stock(self) -> None:
+        """Read all states, and end the rollouts that are over."""
+        truth, observation = self._read()
+        sound = truth.finite() & observation.finite()
+        keep = self.active & sound
+        for end, robots in self._end_rule(truth, sound).items():
+            for i in np.flatnonzero(robots & self.active):
+                self.ended[i] = end
+            self.active = self.active & ~robots
+        self._truth = truth.where(keep, self._truth)
+        self._clean = observation.where(keep, self._clean)
+
+    def _targets(self, command_rad: FloatArray) -> FloatArray:
+        """Commands as motor targets: a coupled pair's motor takes the mean."""
+        targets = np.array(command_rad, dtype=float)
+        for first, second in self.description.coupled:
+            mean = (targets[:, first] + targets[:, second]) / 2
+            targets[:, first] = targets[:, second] = mean
+        return targets
+
+    def _as_measured(self) -> Observation:
+        if self._noise is None:
+            return self._clean
+        return self._noise(self._clean, TICK_S)

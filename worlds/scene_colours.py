@@ -1,0 +1,27 @@
+"""The colours of what is drawn: red, green, blue from 0 to 255."""
+
+Colour = tuple[int, int, int]
+
+SHELL: Colour = (236, 236, 240)
+GRASS: tuple[Colour, Colour] = ((88, 122, 82), (76, 108, 72))
+FORCE: Colour = (255, 214, 0)
+SIDES: dict[str, Colour] = {"left": (76, 155, 232), "right": (232, 146, 76)}
+NEITHER_SIDE: Colour = (138, 143, 152)
+AXES: tuple[Colour, ...] = ((235, 87, 87), (66, 186, 120), (76, 140, 245))
+_ACCENTS: tuple[Colour, ...] = (
+    (38, 110, 214),
+    (226, 104, 32),
+    (38, 150, 92),
+    (142, 80, 190),
+)
+
+
+def accent(scene: int) -> Colour:
+    """The colour by which a scene's robot is known; scenes are counted from 0."""
+    return _ACCENTS[scene % len(_ACCENTS)]
+
+
+def pale(colour: Colour) -> Colour:
+    """Most of the way to white: a command beside what was measured."""
+    red, green, blue = ((part + 2 * 255) // 3 for part in colour)
+    return red, green, blue

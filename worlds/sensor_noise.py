@@ -1,0 +1,83 @@
+"""What sensors add to the truth."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from worlds.observation import Observation
+
+
+@dataclass(frozen=True)
+class SensorNoise:
+    """Standard deviations and quanta of a NAO's sensors.
+
+    Sources: gyroscope and accelerometer: HULKs' simulator of the NAO (2025); gyroscope
+    bias: rUNSWift's per-robot configurations, up to 0.023 rad/s; joint quantum: 12
+    bit per turn (NAO datasheet); foot force: sensitivity 40 g (NAO datasheet).
+
+    Attributes:
+      gyroscope_rad_s: white noise per axis.
+      gyroscope_bias_rad_s: standard deviation of a constant offset per rollout.
+      accelerometer_m_s2: white noise per axis.
+      joint_quantum_rad: resolution of the joint encoders.
+      foot_force_n: white noise of each foot sensor.
+    """
+
+    gyroscope_rad_s: tuple[float, float, float] = (0.0039, 0.0055, 0.0024)
+    gyroscope_bias_rad_s: float = 0.01
+    accelerometer_m_s2: tuple[float, float, float] = (0.063, 0.030, 0.088)
+    joint_quantum_rad: float = 2 * math.pi / 4096
+    foot_force_n: float = 0.4
+
+    def __post_init__(self) -> None:
+        """Refuse negative spreads."""
+        for name, value in vars(self).items():
+            if not np.all(np.isfinite(value)) or np.any(np.asarray(value) < 0):
+                raise BadValueError(f"{name} is {value}; it must not be negative")
+
+
+class NoisySensors:
+    """Noise of n robots, each with its own random numbers.
+
+    A robot's noise depends on its own seed alone, not on its neighbours.
+    """
+
+    def __init__(self, noise: SensorNoise, seeds: list[np.random.SeedSequence]) -> None:
+        """Draw what stays constant through a rollout."""
+        self._noise = noise
+        self._generators = [np.random.default_rng(seed) for seed in seeds]
+        self._bias = self._draw(3) * noise.gyroscope_bias_rad_s
+        self._last_position: FloatArray | None = None
+
+    def _draw(self, columns: int) -> FloatArray:
+        return np.stack([g.standard_normal(columns) for g in self._generators])
+
+    def __call__(self, clean: Observation, tick_s: float) -> Observation:
+        """The observation as the sensors report it.
+
+        Joint velocities are what a board makes of quantised positions: the
+        difference over one tick.
+        """
+        noise = self._noise
+        draws = self._draw(14)
+        quantum = noise.joint_quantum_rad
+        position = clean.position_rad
+        if quantum > 0:
+            position = np.round(position / quantum) * quantum
+        last = position if self._last_position is None else self._last_position
+        self._last_position = position
+        force = clean.foot_force_n + draws[:, 6:] * noise.foot_force_n
+        return replace(
+            clean,
+            position_rad=position,
+            velocity_rad_s=(position - last) / tick_s,
+            gyroscope_rad_s=clean.gyroscope_rad_s
+            + self._bias
+            + draws[:, :3] * np.array(noise.gyroscope_rad_s),
+            accelerometer_m_s2=clean.accelerometer_m_s2
+            + draws[:, 3:6] * np.array(noise.accelerometer_m_s2),
+            foot_force_n=np.maximum(force, 0.0),
+        )

@@ -1,0 +1,45 @@
+"""Opening Rerun's viewer."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from groundwalk.errors import BadRecordingError, GroundwalkError
+
+_PROGRAM = "rerun"
+
+
+def open_viewer(paths: Sequence[Path]) -> "subprocess.Popen[bytes]":
+    """Open Rerun files in a window of their own, which outlives this program.
+
+    The viewer listens for further data, by itself on all network interfaces; here it
+    listens on the loopback only, on a free port. It sends usage statistics to its
+    makers unless `rerun analytics disable` was run once.
+
+    Args:
+      paths: `.rrd` files.
+
+    Returns:
+      The viewer's process.
+
+    Raises:
+      BadRecordingError: a file is not there.
+      GroundwalkError: Rerun's program is not installed.
+    """
+    for path in paths:
+        if not path.is_file():
+            raise BadRecordingError(f"{path}: no such file")
+    # Beside this Python first: a virtual environment need not be on the PATH.
+    folders = (str(Path(sys.executable).parent), os.environ.get("PATH", ""))
+    program = shutil.which(_PROGRAM, path=os.pathsep.join(folders))
+    if program is None:
+        raise GroundwalkError(
+            f"the viewer cannot be opened: there is no program {_PROGRAM!r} beside "
+            f"{sys.executable} or on the PATH; install rerun-sdk, or open "
+            f"{', '.join(map(str, paths))} in a Rerun viewer elsewhere"
+        )
+    command = [program, "--bind", "127.0.0.1", "--port", "auto", *map(str, paths)]
+    return subprocess.Popen(command, start_new_session=True)

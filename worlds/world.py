@@ -1,0 +1,125 @@
+"""The one interface of both worlds, and what their options are."""
+
+import enum
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.errors import BadValueError
+from robots.description import Description
+from robots.sole import FRICTION
+from worlds.observation import Observation, Truth
+from worlds.sensor_noise import SensorNoise
+
+TICK_S = 0.01
+"""One control tick: a command holds for this long."""
+
+
+class End(enum.StrEnum):
+    """Why a rollout ended; NONE while it goes on."""
+
+    NONE = ""
+    FALL = "fall"
+    DIVERGED = "diverged"
+    LEFT_GROUND = "left the ground"
+
+
+@dataclass(frozen=True)
+class WorldOptions:
+    """How a world computes and what it does to signals.
+
+    Attributes:
+      timestep_s: physics step; a whole number of them makes a tick of 10 ms.
+      latency_s: time until a command takes effect, a whole number of steps.
+      noise: what the sensors add, or None for perfect sensors.
+      friction: coefficient between sole and ground.
+      fixed_base: hold the torso in the air where it started.
+      threads: of the sim, or processes of the real world; 0 for one per core.
+    """
+
+    timestep_s: float = 0.002
+    latency_s: float = 0.0
+    noise: SensorNoise | None = None
+    friction: float = FRICTION
+    fixed_base: bool = False
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse steps that do not fit into ticks, and what cannot be."""
+        for name in ("timestep_s", "latency_s", "friction"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise BadValueError(f"{name} is {value}; it must not be negative")
+        steps = TICK_S / self.timestep_s if self.timestep_s else 0
+        if round(steps) < 1 or abs(steps - round(steps)) > 1e-9:
+            raise BadValueError(
+                f"timestep_s is {self.timestep_s}: a tick of {TICK_S} s must be a "
+                "whole number of steps"
+            )
+        delay = self.latency_s / self.timestep_s
+        if abs(delay - round(delay)) > 1e-6:
+            raise BadValueError(
+                f"latency_s is {self.latency_s}: it must be a whole number of steps "
+                f"of {self.timestep_s} s"
+            )
+        if self.threads < 0:
+            raise BadValueError(f"threads is {self.threads}; it must not be negative")
+
+    @property
+    def steps_per_tick(self) -> int:
+        """Physics steps in one control tick."""
+        return round(TICK_S / self.timestep_s)
+
+    @property
+    def latency_steps(self) -> int:
+        """Physics steps until a command takes effect."""
+        return round(self.latency_s / self.timestep_s)
+
+
+class World(Protocol):
+    """n robots, each on its own ground, stepped together by joint commands."""
+
+    @property
+    def description(self) -> Description:
+        """The robot; all n are alike."""
+
+    @property
+    def n(self) -> int:
+        """How many robots there are."""
+
+    @property
+    def options(self) -> WorldOptions:
+        """How this world computes."""
+
+    @property
+    def ended(self) -> list[End]:
+        """Why each robot's rollout ended."""
+
+    @property
+    def active(self) -> BoolArray:
+        """(n,) robots whose rollout goes on."""
+
+    def reset(self, pose_rad: FloatArray) -> Observation:
+        """Put every robot on its ground, at the origin, upright and at rest.
+
+        Args:
+          pose_rad: (n, joints) joint positions; the lower sole touches the ground.
+        """
+
+    def step(self, command_rad: FloatArray) -> Observation:
+        """Advance the active robots by one tick; the others stay as they are.
+
+        Args:
+          command_rad: (n, joints) joint position targets for this tick. Of a
+            coupled pair, the motor takes the mean.
+        """
+
+    def stop(self, robots: BoolArray) -> None:
+        """Take robots out of the batch, as if their trial were over."""
+
+    def truth(self) -> Truth:
+        """Where the robots really are."""
+
+    def close(self) -> None:
+        """Give back processes and memory; the world cannot be used afterwards."""
