@@ -32,7 +32,7 @@ class Lumps(Ground):
     """
 
     amplitude_m: float = bounded(0.01, 0.0, 0.5)
-    wavelength_m: float = bounded(0.25, 0.01, 100.0)
+    wavelength_m: float = bounded(0.35, 0.01, 100.0)
 
     def __post_init__(self) -> None:
         """Check that the grid can carry the shortest waves."""

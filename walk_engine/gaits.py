@@ -9,7 +9,7 @@ _GAITS = {
     # The constants of the 2014 code release, asked to walk as fast as it allowed.
     "walk2014": _WALK2014,
     # The same at a modest speed: where a search starts.
-    "start": _WALK2014.replace(max_forward=0.20),
+    "start": _WALK2014.replace(max_forward=0.23),
 }
 
 

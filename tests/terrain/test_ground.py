@@ -69,9 +69,9 @@ def test_a_seed_sequence_is_used_and_not_used_up(name):
 
 @pytest.mark.parametrize("name", RANDOM)
 def test_numpys_global_generator_plays_no_part(name):
-    state = np.random.get_state()  # noqa: NPY002
+    state = np.random.get_state()
     terrain.make(name, 11)
-    assert np.array_equal(state[1], np.random.get_state()[1])  # noqa: NPY002
+    assert np.array_equal(state[1], np.random.get_state()[1])
 
 
 @pytest.mark.parametrize("seed", [-1, 1.0, True, None, "7", math.nan])

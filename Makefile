@@ -1,0 +1,57 @@
+# One command each; every target first sets up the environment that it needs.
+
+# The Python that makes the environment: 3.11 where there is one.
+PYTHON ?= $(shell python3.11 -c "" 2>/dev/null && echo python3.11 || echo python3)
+
+VENV := .venv
+READY := $(VENV)/ready
+RUN := runs/walk
+RESULTS := runs/results
+
+.PHONY: help env walk test lint results bench
+
+help:
+	@echo "make walk    tune a gait in simulation and try it in both worlds (into runs/)"
+	@echo "make test    run the tests"
+	@echo "make lint    check style, types and imports"
+	@echo "make results write docs/results anew (a run of some minutes)"
+	@echo "make bench   measure speed"
+	@echo "make env     only set up the environment (in $(VENV))"
+
+env: $(READY)
+
+walk: $(READY)
+	$(VENV)/bin/groundwalk optimize-gait --out \
+		$(if $(wildcard $(RUN)),$(RUN)-$(shell date +%Y-%m-%d-%H%M%S),$(RUN))
+
+test: $(READY)
+	$(VENV)/bin/python -m pytest -n 2
+
+lint: $(READY)
+	$(VENV)/bin/ruff check .
+	$(VENV)/bin/ruff format --check .
+	$(VENV)/bin/mypy
+	$(VENV)/bin/lint-imports --no-logo
+
+# Writes every number and picture of docs/results from a new run.
+results: $(READY)
+	rm -rf $(RESULTS)
+	$(VENV)/bin/groundwalk optimize-gait --seed 1 --out $(RESULTS)
+	mkdir -p docs/results/walk
+	cp $(addprefix $(RESULTS)/,result.md result.json walk.png search.png) docs/results/walk
+
+bench: $(READY)
+	$(VENV)/bin/python -m benchmarks
+
+# A stamp: installs again only when what is to be installed may have changed.
+# Without ensurepip (Debian keeps it in a package of its own) the Python's pip helps out.
+$(READY): pyproject.toml constraints.txt
+	@sh .ci/check-python $(PYTHON)
+	@if $(PYTHON) -c "import ensurepip" 2>/dev/null; then \
+		$(PYTHON) -m venv $(VENV); \
+	else \
+		$(PYTHON) -m venv --without-pip $(VENV) && \
+		$(PYTHON) -m pip --python $(VENV)/bin/python install pip; \
+	fi
+	$(VENV)/bin/python -m pip install -c constraints.txt -e ".[dev]"
+	@touch $@

@@ -1,0 +1,1 @@
+"""The studies and the command line: the only place where rooms are combined."""

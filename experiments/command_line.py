@@ -1,0 +1,120 @@
+"""The command `groundwalk`, and what all its verbs share."""
+
+import contextlib
+import importlib
+import io
+import sys
+from collections.abc import Callable
+from typing import Any, NamedTuple, NoReturn
+
+from groundwalk.errors import GroundwalkError, UnknownNameError
+
+
+class Verb(NamedTuple):
+    """Where a verb's code is, and what it does in a few words."""
+
+    module: str
+    config: str
+    summary: str
+
+
+VERBS = {
+    "optimize-gait": Verb(
+        "optimize_gait", "OptimizeGait", "tune a gait in the sim, try it in both worlds"
+    ),
+    "evaluate": Verb("evaluate", "Evaluate", "let gaits walk a course of 3 m"),
+    "visualize": Verb("visualize", "Visualize", "see rollouts in Rerun"),
+    "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
+    "list": Verb("list", "List", "show the robots, terrains or gaits that there are"),
+    "doctor": Verb("doctor", "DoctorConfig", "say what is installed and what is missing"),
+}
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+def main() -> None:
+    """Run the verb that the command line names; only its own code is imported."""
+    name = sys.argv[1] if len(sys.argv) > 1 else "--help"
+    if name in ("-h", "--help"):
+        print("usage: groundwalk VERB [options]\n")
+        for verb, (_, _, summary) in VERBS.items():
+            print(f"  {verb:15}{summary}")
+        print("\ngroundwalk VERB --help tells a verb's options")
+        return
+    verb = _guarded(lambda: _verb(name))
+    module = importlib.import_module(f"experiments.{verb.module}")
+    config_type = getattr(module, verb.config)
+    run_verb(config_type, module.main, f"groundwalk {name}", sys.argv[2:])
+
+
+def run_verb(
+    config_type: Any,
+    verb: Callable[[Any], object],
+    program: str | None = None,
+    arguments: list[str] | None = None,
+) -> NoReturn:
+    """Parse a verb's options, do its work, and exit.
+
+    Args:
+      config_type: the verb's configuration; it checks itself.
+      verb: does the work; a whole number that it returns is the exit status.
+      program: the command's name in its help; by default the script's.
+      arguments: by default those of the process.
+    """
+    config = _parse(config_type, program, arguments)
+    status = _guarded(lambda: verb(config))
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def one_line(report: str) -> str:
+    """A boxed report of the option parser as one line, without its hints on help."""
+    lines = []
+    for line in report.splitlines():
+        text = line.strip("│╭╮╰╯─ ")
+        if text.startswith("For full helptext"):
+            break
+        if text and not line.startswith(("╭", "╰")):
+            lines.append(text)
+    return " ".join(lines)
+
+
+def _verb(name: str) -> Verb:
+    if name not in VERBS:
+        raise UnknownNameError("verb", name, VERBS)
+    return VERBS[name]
+
+
+def _parse(config_type: Any, program: str | None, arguments: list[str] | None) -> Any:
+    import tyro
+
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(said):
+            return _guarded(
+                lambda: tyro.cli(config_type, prog=program, args=arguments), said.write
+            )
+    except SystemExit as stop:
+        if stop.code:
+            _tell(one_line(said.getvalue()))
+        raise
+
+
+def _tell(message: str) -> None:
+    print(f"groundwalk: {message}", file=sys.stderr)
+
+
+def _guarded(work: Callable[[], Any], tell: Callable[[str], object] = _tell) -> Any:
+    """Turn what a user can mend into one line and exit status 2."""
+    try:
+        return work()
+    except (GroundwalkError, OSError) as error:
+        tell(str(error))
+        sys.exit(BAD_INPUT)
+    except KeyboardInterrupt:
+        tell("interrupted; --resume continues a run")
+        sys.exit(INTERRUPTED)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,88 @@
+"""`groundwalk evaluate`: gaits walk a course of 3 m in one or both worlds."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import tyro
+
+import robots
+import worlds
+from experiments.command_line import run_verb
+from experiments.evaluation import Study, evaluate, keep
+from experiments.gait_files import load_gaits
+from experiments.result_page import write_page
+from experiments.run_folder import RESULT, open_run
+from experiments.run_pictures import picture_run
+from experiments.score_table import print_json, print_scores
+from groundwalk.errors import BadValueError
+
+VERB = "evaluate"
+
+
+@dataclass(frozen=True)
+class Evaluate:
+    """Let gaits walk a course of 3 m: speed with its spread, and falls.
+
+    Attributes:
+      gaits: names, or JSON files with a gait such as a run's result.json.
+      worlds: where; sim, real or both.
+      terrain: such as "lumps:amplitude_m=0.008"; each world's own by default.
+      robot: its name; `groundwalk list robots` shows them.
+      trials: of each gait in each world, each on its own ground.
+      threads: processor threads; 0 for all.
+      seed: every random number follows from it.
+      out: the run's folder; a new one under runs/ by default.
+      resume: continue the run of this folder.
+      json: print the result as JSON.
+    """
+
+    gaits: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
+    worlds: tuple[str, ...] = ("sim", "real")
+    terrain: str | None = None
+    robot: str = "nao"
+    trials: int = 10
+    threads: int = 0
+    seed: int = 1
+    out: Path | None = None
+    resume: Path | None = None
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        robots.get(self.robot)
+        if not self.worlds or not (self.gaits or self.resume):
+            raise BadValueError("no gaits or no worlds are given; at least one of each")
+        load_gaits(self.gaits)
+        for world in self.worlds:
+            self.study(world)
+
+    def study(self, world: str) -> Study:
+        """How one world is used."""
+        terrain = self.terrain or worlds.kind(world).terrain
+        return Study(world, terrain, self.trials, threads=self.threads)
+
+
+def main(config: Evaluate) -> None:
+    """Evaluate world by world; a world that is done is not computed again."""
+    folder, config = open_run(VERB, config)
+    gaits = load_gaits(config.gaits)
+    result = folder.read_json(RESULT) if folder.has(RESULT) else {}
+    for world in config.worlds:
+        if world in result:
+            continue
+        seed = np.random.SeedSequence([config.seed, sorted(worlds.WORLDS).index(world)])
+        outcomes = evaluate(config.study(world), robots.get(config.robot), gaits, seed)
+        result[world] = keep(folder, world, outcomes)
+        folder.write_json(RESULT, result)
+    picture_run(folder)
+    write_page(folder, "Gaits on a course of 3 m", result)
+    if config.json:
+        print_json(result)
+    else:
+        print_scores(result, folder.path)
+
+
+if __name__ == "__main__":
+    run_verb(Evaluate, main)

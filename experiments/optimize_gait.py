@@ -1,0 +1,172 @@
+"""`groundwalk optimize-gait`: CMA-ES tunes the 16 gait parameters in the sim."""
+
+import dataclasses
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import robots
+import worlds
+from experiments.command_line import run_verb
+from experiments.evaluation import Study, evaluate, keep
+from experiments.gait_files import load_gait
+from experiments.progress import progress
+from experiments.result_page import write_page
+from experiments.reward import reward_cm_s
+from experiments.run_folder import (
+    CHECKPOINT,
+    HISTORY,
+    RESULT,
+    RunFolder,
+    open_run,
+)
+from experiments.run_pictures import picture_run
+from experiments.score_table import print_json, print_scores
+from experiments.search import GaitSearch
+from experiments.trials import SEARCH_TRIAL, walk_trials
+from groundwalk.errors import BadValueError
+from terrain import TerrainSpec, parse
+from walk_engine import Gait
+
+VERB = "optimize-gait"
+WORLDS = ("sim", "real")
+TITLE = "A gait tuned in the sim, tried in both worlds"
+
+
+@dataclass(frozen=True)
+class OptimizeGait:
+    """Tune a gait with CMA-ES in the sim, then try it on real uneven ground.
+
+    Attributes:
+      robot: its name; `groundwalk list robots` shows them.
+      start: name or JSON file of the gait that the search starts from.
+      terrain: ground of the search in the sim, for example "lumps:amplitude_m=0.005".
+      real_terrain: ground of the evaluation in the real world.
+      population: gaits tried in each generation.
+      generations: how many generations the search runs.
+      sigma: spread of the first generation, as a part of each parameter's range.
+      trials: of each gait in each world, on a course of 3 m.
+      threads: processor threads; 0 for all.
+      seed: every random number follows from it.
+      out: the run's folder; a new one under runs/ by default.
+      resume: continue the run of this folder.
+      json: print the result as JSON.
+    """
+
+    robot: str = "nao"
+    start: str = "start"
+    terrain: str = "flat"
+    real_terrain: str = "lumps"
+    population: int = 150
+    generations: int = 15
+    sigma: float = 0.15
+    trials: int = 10
+    threads: int = 0
+    seed: int = 1
+    out: Path | None = None
+    resume: Path | None = None
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        robots.get(self.robot)
+        load_gait(self.start)
+        for ground in (self.terrain, self.real_terrain):
+            parse(ground)
+        for name in ("population", "generations", "trials"):
+            if getattr(self, name) < 1:
+                raise BadValueError(
+                    f"{name} is {getattr(self, name)}; it must be positive"
+                )
+        if self.seed < 0:
+            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+
+
+def main(config: OptimizeGait) -> None:
+    """Run the search and the evaluation, and write everything down."""
+    folder, config = open_run(VERB, config)
+    of_search, of_trials = np.random.SeedSequence(config.seed).spawn(2)
+    tuned = search(config, folder, of_search)
+    if not folder.has(RESULT):
+        table = _evaluate(config, folder, tuned, of_trials)
+        folder.write_json(RESULT, {**table, "gait": dict(tuned)})
+    result = folder.read_json(RESULT)
+    picture_run(folder)
+    table = {world: result[world] for world in WORLDS}
+    write_page(folder, TITLE, table)
+    if config.json:
+        print_json(result)
+    else:
+        print_scores(table, folder.path)
+
+
+def search(
+    config: OptimizeGait, folder: RunFolder, seed: np.random.SeedSequence
+) -> Gait:
+    """The search's answer, generation by generation with checkpoints."""
+    of_strategy, of_grounds = seed.spawn(2)
+    if folder.has(CHECKPOINT):
+        state = pickle.loads((folder.path / CHECKPOINT).read_bytes())
+        strategy, history = GaitSearch.from_bytes(state["search"]), state["history"]
+    else:
+        strategy = GaitSearch(
+            load_gait(config.start), config.population, config.sigma, of_strategy
+        )
+        history = []
+    ground_seeds = of_grounds.generate_state(config.generations)
+    with progress("search", config.generations, done=len(history)) as bar:
+        for generation in range(len(history), config.generations):
+            entry = _generation(config, strategy, int(ground_seeds[generation]))
+            history.append({"generation": generation, **entry})
+            state = {"search": strategy.to_bytes(), "history": history}
+            folder.write_bytes(CHECKPOINT, pickle.dumps(state))
+            folder.write_json(HISTORY, {"generations": history})
+            bar.advance(f"mean gait {entry['mean_reward']:.1f} cm/s")
+    return strategy.mean
+
+
+def _generation(
+    config: OptimizeGait, strategy: GaitSearch, ground_seed: int
+) -> dict[str, Any]:
+    """One generation, and the mean gait before it beside the samples."""
+    mean = strategy.mean
+    tried = np.vstack([strategy.ask(), mean.to_vector()])
+    ground = TerrainSpec(*parse(config.terrain), seed=ground_seed).make()
+    options = dataclasses.replace(worlds.kind("sim").options, threads=config.threads)
+    n = len(tried)
+    nobody = [np.random.SeedSequence(0)] * n
+    description = robots.get(config.robot)
+    world = worlds.make("sim", description, [ground] * n, nobody, options)
+    trials = walk_trials(world, tried, SEARCH_TRIAL)
+    rewards = reward_cm_s(trials)
+    strategy.tell(rewards[:-1])
+    return {
+        "rewards": rewards[:-1].tolist(),
+        "falls": int(trials.fell[:-1].sum()),
+        "mean_reward": float(rewards[-1]),
+        "mean_fell": bool(trials.fell[-1]),
+        "mean_gait": dict(mean),
+        "spread": strategy.spread.tolist(),
+        "sigma": strategy.sigma,
+    }
+
+
+def _evaluate(
+    config: OptimizeGait, folder: RunFolder, tuned: Gait, seed: np.random.SeedSequence
+) -> dict[str, Any]:
+    """Scores of the start and the tuned gait in both worlds, on a course of 3 m."""
+    description = robots.get(config.robot)
+    both = {"start": load_gait(config.start), "tuned": tuned}
+    grounds = dict(zip(WORLDS, (config.terrain, config.real_terrain), strict=True))
+    table = {}
+    for (world, ground), own in zip(grounds.items(), seed.spawn(2), strict=True):
+        study = Study(world, ground, config.trials, threads=config.threads)
+        table[world] = keep(folder, world, evaluate(study, description, both, own))
+    return table
+
+
+if __name__ == "__main__":
+    run_verb(OptimizeGait, main)

@@ -1,0 +1,131 @@
+"""`groundwalk visualize`: recordings in Rerun, and a run's search as a picture."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from experiments.command_line import run_verb
+from experiments.new_file import check_new
+from experiments.run_folder import RECORDINGS, RunFolder
+from experiments.run_pictures import WALK_RERUN, picture_search
+from experiments.scenes import make_scenes, read_recordings, scene_names
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from worlds import Recording, read_recording
+from worlds.rerun_log import write_rrd
+from worlds.viewer import open_viewer
+
+_HEAD_BYTES = 4096
+
+
+@dataclass(frozen=True)
+class Visualize:
+    """Show recordings in Rerun: robot and ground, joints, foot forces, support phase.
+
+    All of them go into one .rrd file, side by side. Of a run, this takes all its
+    recordings, and draws its search if that is not done yet.
+
+    Attributes:
+      paths: run folders, or recordings (.parquet or .csv).
+      out: the .rrd file to write; by default walk.rrd in a run folder, the recording's
+        name with .rrd beside it, or comparison.rrd beside the first of several.
+      open: open the file in Rerun's viewer.
+      json: print what was written as JSON.
+    """
+
+    paths: Annotated[tuple[Path, ...], tyro.conf.Positional] = ()
+    out: Path | None = None
+    open: bool = False
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse to show nothing, and to overwrite."""
+        if not self.paths:
+            raise BadValueError("no run folder and no recording is given; name some")
+        for path in self.paths:
+            if not path.exists():
+                raise BadRecordingError(
+                    f"{path}: there is no such run folder or recording"
+                )
+        if self.out is not None:
+            check_new(self.out, ".rrd")
+
+
+def main(config: Visualize) -> None:
+    """Write the pictures that there is something to draw for, and say where."""
+    pictures = [
+        picture
+        for path in config.paths
+        if path.is_dir() and (picture := picture_search(RunFolder.at(path)))
+    ]
+    recordings = gather(config.paths)
+    rerun = None
+    if recordings:
+        rerun = config.out or default_out(config.paths)
+        write_rrd(rerun, make_scenes(recordings))
+    elif config.open or config.out or not pictures:
+        raise RunFolderError(
+            f"{config.paths[0]} holds no recordings: the run did not get there"
+        )
+    if config.json:
+        written = {"rrd": rerun and str(rerun), "pictures": list(map(str, pictures))}
+        print(json.dumps(written, indent=1))
+    else:
+        print(*filter(None, (*pictures, rerun)), sep="\n")
+    if config.open and rerun:
+        open_viewer([rerun])
+
+
+def gather(paths: Sequence[Path]) -> dict[str, Recording]:
+    """Recordings by scene name; of several paths, the names begin with the path's.
+
+    Args:
+      paths: run folders and recordings.
+
+    Raises:
+      BadRecordingError: a file is no recording.
+    """
+    recordings = {}
+    stems = scene_names(path.resolve().with_suffix("").name for path in paths)
+    for stem, path in zip(stems, paths, strict=True):
+        if not path.is_dir():
+            recordings[stem] = read_recording(path)
+            continue
+        prefix = f"{stem}/" if len(paths) > 1 else ""
+        of_run = read_recordings(path / RECORDINGS)
+        recordings.update({prefix + name: one for name, one in of_run.items()})
+    return recordings
+
+
+def default_out(paths: Sequence[Path]) -> Path:
+    """Where the file goes if the user does not say.
+
+    Raises:
+      BadValueError: there is a file that groundwalk has not written.
+    """
+    first = paths[0]
+    if len(paths) > 1:
+        out = first.parent / "comparison.rrd"
+    elif first.is_dir():
+        out = first / WALK_RERUN
+    else:
+        out = first.with_suffix(".rrd")
+    if out.exists() and not _is_ours(out):
+        raise BadValueError(f"{out} is there and not of groundwalk: choose an --out")
+    return out
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file is one of Rerun's, written by this application."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    return head.startswith(b"RRF") and b"groundwalk" in head
+
+
+if __name__ == "__main__":
+    run_verb(Visualize, main)

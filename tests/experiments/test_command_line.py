@@ -1,0 +1,96 @@
+import json
+import subprocess
+import sys
+
+import pytest
+
+from experiments.command_line import VERBS, one_line
+from walk_engine import gaits
+
+
+def groundwalk(*arguments, folder):
+    return subprocess.run(
+        [sys.executable, "-m", "experiments.command_line", *map(str, arguments)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def write_gait(path, **changes):
+    values = dict(gaits.get("start")) | changes
+    path.write_text(json.dumps({k: v for k, v in values.items() if v is not None}))
+    return path
+
+
+@pytest.fixture
+def bad_input(tmp_path):
+    """Command lines that must be refused, and what the one line must say."""
+    gait = tmp_path / "gait.json"
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken" / "mine.txt").write_text("precious")
+    (tmp_path / "empty.parquet").write_bytes(b"")
+    (tmp_path / "wrong.csv").write_text("tine,position.a\n0,1\n")
+    (tmp_path / "wrong.json").write_text(
+        json.dumps({"format": 1, "robot": "nao", "base": "fixed", "source": ""})
+    )
+
+    def with_gait(**changes):
+        write_gait(gait, **changes)
+        return ["evaluate", gait]
+
+    return {
+        "verb": (lambda: ["optimise"], "unknown verb 'optimise'"),
+        "robot": (lambda: ["optimize-gait", "--robot", "nap"], "did you mean 'nao'"),
+        "terrain": (lambda: ["evaluate", "start", "--terrain", "wave"], "'waves'"),
+        "option": (lambda: ["evaluate", "start", "--trails", "3"], "--trials"),
+        "number": (lambda: ["optimize-gait", "--population", "many"], "--population"),
+        "world": (lambda: ["evaluate", "start", "--worlds", "sin"], "'sim'"),
+        "bounds": (lambda: with_gait(hip_height=0.5), "hip_height"),
+        "missing": (lambda: with_gait(hip_height=None), "hip_height"),
+        "extra": (lambda: with_gait(hip_hight=0.2), "hip_hight"),
+        "nan": (lambda: with_gait(hip_height=float("nan")), "hip_height"),
+        "no gait": (lambda: ["evaluate", "none.json"], "none.json"),
+        "no recording": (lambda: ["visualize", "none.parquet"], "none.parquet"),
+        "empty recording": (lambda: ["visualize", "empty.parquet"], "empty.parquet"),
+        "wrong column": (lambda: ["visualize", "wrong.csv"], "tine"),
+        "folder": (lambda: ["optimize-gait", "--out", "taken"], "taken exists"),
+        "resume": (lambda: ["optimize-gait", "--resume", "taken"], "no run folder"),
+        "export": (lambda: ["export", "nap", "--format", "urdf"], "did you mean 'nao'"),
+        "list": (lambda: ["list", "robot"], "robots"),
+    }
+
+
+@pytest.mark.slow
+def test_bad_input_gets_one_line_and_status_2(bad_input, tmp_path):
+    for case, (arguments, expected) in bad_input.items():
+        done = groundwalk(*arguments(), folder=tmp_path)
+        assert done.returncode == 2, (case, done)
+        assert done.stdout == "", case
+        assert done.stderr.count("\n") == 1, (case, done.stderr)
+        assert expected in done.stderr, (case, done.stderr)
+    assert [p.name for p in (tmp_path / "taken").iterdir()] == ["mine.txt"]
+    assert not (tmp_path / "runs").exists()
+
+
+def test_help_names_every_verb(tmp_path):
+    done = groundwalk("--help", folder=tmp_path)
+    assert done.returncode == 0
+    assert all(verb in done.stdout for verb in VERBS)
+
+
+def test_good_input_is_not_refused(tmp_path):
+    done = groundwalk("list", "gaits", folder=tmp_path)
+    assert done.returncode == 0
+    assert "walk2014" in done.stdout
+    assert done.stderr == ""
+
+
+def test_a_boxed_report_becomes_one_line():
+    report = (
+        "╭─ Value error ──╮\n│ Error parsing --x: │\n│ 'q' is bad         │\n"
+        "│ ────────────── │\n│ For full helptext, see --help │\n╰────────────────╯\n"
+    )
+    assert one_line(report) == "Error parsing --x: 'q' is bad"

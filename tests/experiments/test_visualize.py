@@ -1,0 +1,153 @@
+import json
+import subprocess
+import sys
+
+import pytest
+from made_up_runs import history, steady
+from rerun.chunk import RrdReader
+
+from experiments import visualize
+from experiments.run_folder import RunFolder
+from experiments.visualize import Visualize, default_out, gather, main
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from worlds import write_recording
+
+
+@pytest.fixture
+def recording(tmp_path):
+    path = tmp_path / "glide.parquet"
+    write_recording(steady(), path)
+    return path
+
+
+@pytest.fixture
+def run(tmp_path):
+    folder = RunFolder(tmp_path / "run")
+    folder.write_json("config.json", {"verb": "optimize-gait"})
+    folder.write_json("history.json", {"generations": history(2)})
+    for name in ("sim_tuned", "real_tuned"):
+        write_recording(steady(), folder.path / "recordings" / f"{name}.parquet")
+    return folder.path
+
+
+@pytest.fixture
+def unfinished(run):
+    for path in (run / "recordings").iterdir():
+        path.unlink()
+    return run
+
+
+def scenes_in(path):
+    """First parts of the paths of all robots in a Rerun file."""
+    chunks = RrdReader(path).stream().to_chunks()
+    paths = {chunk.entity_path for chunk in chunks}
+    return {path.partition("/robot/")[0] for path in paths if "/robot/" in path}
+
+
+def test_a_recording_is_written_beside_itself(recording, capsys):
+    main(Visualize((recording,)))
+    written = recording.with_suffix(".rrd")
+    assert capsys.readouterr().out.split() == [str(written)]
+    assert scenes_in(written) == {"/glide"}
+
+
+def test_a_run_shows_all_its_recordings_and_its_search(run, capsys):
+    main(Visualize((run,), json=True))
+    told = json.loads(capsys.readouterr().out)
+    assert told == {"rrd": str(run / "walk.rrd"), "pictures": [str(run / "search.png")]}
+    assert (run / "search.png").is_file()
+    assert scenes_in(run / "walk.rrd") == {"/sim/tuned", "/real/tuned"}
+
+
+def test_several_are_shown_side_by_side(run, recording, tmp_path, capsys):
+    out = tmp_path / "all.rrd"
+    main(Visualize((recording, run, recording), out=out))
+    assert str(out) in capsys.readouterr().out
+    runs = {"/run/sim/tuned", "/run/real/tuned"}
+    assert scenes_in(out) == {"/glide", "/glide-2"} | runs
+
+
+def test_a_file_of_ours_is_renewed(recording, capsys):
+    for _ in range(2):
+        main(Visualize((recording,)))
+    assert scenes_in(recording.with_suffix(".rrd")) == {"/glide"}
+
+
+def test_a_file_of_somebody_else_is_not(recording):
+    other = recording.with_suffix(".rrd")
+    other.write_bytes(b"RRF2 of another application")
+    with pytest.raises(BadValueError, match=r"choose an --out"):
+        main(Visualize((recording,)))
+    assert other.read_bytes() == b"RRF2 of another application"
+
+
+def test_default_places(run, recording, tmp_path):
+    assert default_out((run,)) == run / "walk.rrd"
+    assert default_out((recording,)) == tmp_path / "glide.rrd"
+    assert default_out((run, recording)) == tmp_path / "comparison.rrd"
+
+
+def test_an_unfinished_run_shows_its_search(unfinished, capsys):
+    main(Visualize((unfinished,), json=True))
+    told = json.loads(capsys.readouterr().out)
+    assert told == {"rrd": None, "pictures": [str(unfinished / "search.png")]}
+
+
+@pytest.mark.parametrize("wish", ["open", "out"])
+def test_an_unfinished_run_has_nothing_for_the_viewer(unfinished, wish, tmp_path):
+    wishes = {"open": True} if wish == "open" else {"out": tmp_path / "new.rrd"}
+    with pytest.raises(RunFolderError, match="no recordings"):
+        main(Visualize((unfinished,), **wishes))
+    assert not list(tmp_path.rglob("*.rrd"))
+
+
+def test_a_run_that_has_nothing_at_all(unfinished):
+    (unfinished / "history.json").unlink()
+    with pytest.raises(RunFolderError, match="no recordings"):
+        main(Visualize((unfinished,)))
+
+
+def test_a_folder_that_is_no_run(tmp_path):
+    with pytest.raises(RunFolderError, match="is no run folder"):
+        main(Visualize((tmp_path,)))
+
+
+def test_the_viewer_gets_what_was_written(recording, monkeypatch, capsys):
+    opened = []
+    monkeypatch.setattr(visualize, "open_viewer", opened.extend)
+    main(Visualize((recording,)))
+    assert opened == []
+    main(Visualize((recording,), open=True))
+    assert opened == [recording.with_suffix(".rrd")]
+
+
+@pytest.mark.parametrize(
+    ("paths", "out", "error", "words"),
+    [
+        ((), None, BadValueError, "no run folder and no recording"),
+        (("not there",), None, BadRecordingError, "not there: there is no such"),
+        (("glide.parquet",), "glide.parquet", BadValueError, "exists already"),
+        (("glide.parquet",), "glide.png", BadValueError, r"must end with \.rrd"),
+    ],
+)
+def test_bad_input(recording, paths, out, error, words):
+    folder = recording.parent
+    out = out and folder / out
+    with pytest.raises(error, match=words):
+        Visualize(tuple(folder / path for path in paths), out=out)
+
+
+def test_a_file_that_is_no_recording_is_named(tmp_path):
+    path = tmp_path / "notes.txt"
+    path.write_text("hello")
+    with pytest.raises(BadRecordingError, match=r"notes\.txt: a recording is"):
+        gather((path,))
+
+
+def test_the_script_tells_in_one_line_what_is_wrong(tmp_path):
+    command = [sys.executable, "-m", "experiments.visualize", "nothing.parquet"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    (line,) = done.stderr.splitlines()
+    assert "nothing.parquet: there is no such run folder or recording" in line

@@ -1,0 +1,140 @@
+"""Who may import whom, and that it is noticed when somebody does not care."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+HEAVY = {"mujoco", "pybullet", "rerun", "cma", "torch", "matplotlib"}
+
+
+def lint_imports(folder):
+    command = [Path(sys.executable).with_name("lint-imports"), "--no-logo"]
+    environment = os.environ | {"COLUMNS": "200"}
+    return subprocess.run(
+        [*command, "--no-cache"],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+
+
+@pytest.fixture
+def small_house(tmp_path):
+    """Empty rooms under our own contracts, with the imports that are allowed."""
+    files = {
+        "terrain/field.py": "import groundwalk",
+        "robots/model.py": "def model():\n    import mujoco",
+        "worlds/rerun_log.py": "import rerun, terrain",
+        "worlds/real.py": "def real():\n    import pybullet, robots",
+        "walk_engine/engine.py": "from robots import model",
+        "experiments/search.py": "import cma, walk_engine, worlds",
+    }
+    (tmp_path / "pyproject.toml").write_bytes((ROOT / "pyproject.toml").read_bytes())
+    for package in PROJECT["tool"]["importlinter"]["root_packages"]:
+        (tmp_path / package).mkdir()
+        (tmp_path / package / "__init__.py").touch()
+    for name, code in files.items():
+        (tmp_path / name).write_text(f"{code}\n")
+    return tmp_path
+
+
+def test_the_contracts_know_every_room():
+    rooms = {path.parent.name for path in ROOT.glob("*/__init__.py")}
+    rooms -= {"tests", "benchmarks"}
+    tool = PROJECT["tool"]
+    assert set(tool["importlinter"]["root_packages"]) == rooms
+    assert set(tool["hatch"]["build"]["targets"]["wheel"]["packages"]) == rooms
+    assert set(tool["mypy"]["packages"]) >= rooms
+    (layers,) = (
+        contract["layers"]
+        for contract in tool["importlinter"]["contracts"]
+        if contract["type"] == "layers"
+    )
+    assert set(re.findall(r"\w+", " ".join(layers))) >= rooms
+
+
+def test_allowed_imports_pass(small_house):
+    done = lint_imports(small_house)
+    assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.parametrize(
+    ("importer", "imported"),
+    [
+        ("groundwalk", "terrain"),
+        ("robots", "worlds"),
+        ("robots", "terrain"),
+        ("terrain", "robots"),
+        ("walk_engine", "worlds"),
+        ("worlds", "walk_engine"),
+        ("worlds", "experiments"),
+        ("terrain", "mujoco"),
+        ("walk_engine", "mujoco"),
+        ("experiments", "mujoco"),
+        ("robots", "pybullet"),
+        ("experiments", "pybullet"),
+        ("experiments", "cma"),
+        ("worlds", "rerun"),
+        ("experiments", "rerun"),
+        ("worlds", "torch"),
+        ("experiments", "torch"),
+    ],
+)
+def test_forbidden_imports_are_caught(small_house, importer, imported):
+    hidden = f"def inside():\n    import {imported}\n"
+    (small_house / importer / "wrong.py").write_text(hidden)
+    done = lint_imports(small_house)
+    assert done.returncode == 1
+    assert re.search(rf"{importer}\.wrong\W+{imported}", done.stdout), done.stdout
+
+
+def heavy_imports_after(code):
+    code += "\nimport sys\nprint('', *sys.modules, sep='\\n')"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return HEAVY & set(done.stdout.splitlines())
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        "groundwalk",
+        "terrain",
+        "robots",
+        "walk_engine",
+        "worlds",
+        "experiments.command_line",
+    ],
+)
+def test_importing_is_light(module):
+    assert heavy_imports_after(f"import {module}") == set()
+
+
+def test_asking_the_command_for_help_is_light():
+    code = """
+import sys
+from experiments.command_line import main
+sys.argv = ["groundwalk", "--help"]
+try:
+    main()
+except SystemExit as stop:
+    assert not stop.code
+"""
+    assert heavy_imports_after(code) == set()
+
+
+def test_heavy_imports_are_noticed():
+    assert heavy_imports_after("import mujoco") == {"mujoco"}
