@@ -1,7 +1,8 @@
 """How well gaits walk a course in a world: speed, its spread, and falls."""
 
+import contextlib
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,12 +13,14 @@ from experiments.progress import progress
 from experiments.recorder import Recorder, servo_gains
 from experiments.run_folder import RECORDINGS, RunFolder
 from experiments.trials import COURSE_TRIAL, TrialRules, Trials, walk_trials
-from groundwalk.arrays import BoolArray
 from groundwalk.errors import BadValueError
 from robots import Description
-from terrain import TerrainSpec, parse
+from terrain import Heightfield, TerrainSpec, parse
 from walk_engine import Gait
-from worlds import Recording, RecordingMetadata, WorldOptions, write_recording
+from worlds import End, Recording, RecordingMetadata, WorldOptions, write_recording
+
+MOST_AT_ONCE = 60
+"""Robots walking side by side: in the real world each needs 70 MB."""
 
 
 @dataclass(frozen=True)
@@ -99,38 +102,73 @@ def evaluate(
       gaits: by name.
       seed: of the grounds, the noise and the start poses.
     """
-    of_grounds, of_noise, of_start = (
-        child.spawn(study.trials) for child in seed.spawn(3)
-    )
-    specs = [_ground(study, child) for child in of_grounds]
-    grounds = [spec.make() for spec in specs]
-    copies = len(gaits)
-    world = worlds.make(
-        study.world, description, grounds * copies, of_noise * copies, study.options
-    )
-    recorder = Recorder(description, range(0, world.n, study.trials))
-    vectors = np.repeat([gait.to_vector() for gait in gaits.values()], study.trials, 0)
-    try:
-        with progress(f"trials in {study.world}", world.n) as bar:
-            still = [np.ones(world.n, bool)]
-
-            def on_tick(active: BoolArray) -> None:
-                for _ in range(int((still[0] & ~active).sum())):
-                    bar.advance()
-                still[0] = active
-
-            trials = walk_trials(
-                world, vectors, study.rules, of_start * copies, recorder, on_tick
-            )
-    finally:
-        world.close()
+    starts = _starts(study, seed)
+    rows = [(name, start) for name in gaits for start in starts]
+    walked: list[Trials] = []
+    recordings: dict[str, Recording] = {}
+    with progress(f"trials in {study.world}", len(rows)) as bar:
+        for first in range(0, len(rows), MOST_AT_ONCE):
+            wave = rows[first : first + MOST_AT_ONCE]
+            trials, recorded = _walk(study, description, gaits, wave, bar.advance)
+            walked.append(trials)
+            recordings |= recorded
     outcomes = {}
-    for i, (name, gait) in enumerate(gaits.items()):
-        first = i * study.trials
-        own = trials.part(first, first + study.trials)
-        metadata = _metadata(study, description, specs[0], gait, own)
-        outcomes[name] = Outcome(score(own), own, recorder.recording(first, metadata))
+    for i, name in enumerate(gaits):
+        own = Trials.joined(walked).part(i * study.trials, (i + 1) * study.trials)
+        outcomes[name] = Outcome(score(own), own, recordings[name])
     return outcomes
+
+
+@dataclass(frozen=True, eq=False)
+class _Start:
+    """What is given at the start of a trial, whatever the gait."""
+
+    number: int
+    spec: TerrainSpec
+    ground: Heightfield
+    of_noise: np.random.SeedSequence
+    of_pose: np.random.SeedSequence
+
+
+def _starts(study: Study, seed: np.random.SeedSequence) -> list[_Start]:
+    starts = []
+    children = zip(*(child.spawn(study.trials) for child in seed.spawn(3)), strict=True)
+    for number, (of_ground, of_noise, of_pose) in enumerate(children):
+        ground_seed = int(of_ground.generate_state(1)[0])
+        spec = TerrainSpec(*parse(study.terrain), seed=ground_seed)
+        starts.append(_Start(number, spec, spec.make(), of_noise, of_pose))
+    return starts
+
+
+def _walk(
+    study: Study,
+    description: Description,
+    gaits: Mapping[str, Gait],
+    wave: Sequence[tuple[str, _Start]],
+    on_end: Callable[[], object],
+) -> tuple[Trials, dict[str, Recording]]:
+    """Some trials side by side, and the recordings of first trials among them."""
+    starts = [start for _, start in wave]
+    grounds, seeds = [s.ground for s in starts], [s.of_noise for s in starts]
+    world = worlds.make(study.world, description, grounds, seeds, study.options)
+    firsts = [i for i, start in enumerate(starts) if start.number == 0]
+    recorder = Recorder(description, firsts)
+    with contextlib.closing(world):
+        trials = walk_trials(
+            world,
+            [gaits[name] for name, _ in wave],
+            study.rules,
+            [s.of_pose for s in starts],
+            recorder,
+            on_end,
+        )
+    recordings = {}
+    for i in firsts:
+        name, start = wave[i]
+        end = trials.ended[i]
+        metadata = _metadata(study, description, start.spec, gaits[name], end)
+        recordings[name] = recorder.recording(i, metadata)
+    return trials, recordings
 
 
 def score(trials: Trials) -> Score:
@@ -144,17 +182,12 @@ def score(trials: Trials) -> Score:
     )
 
 
-def _ground(study: Study, seed: np.random.SeedSequence) -> TerrainSpec:
-    """One trial's ground."""
-    return TerrainSpec(*parse(study.terrain), seed=int(seed.generate_state(1)[0]))
-
-
 def _metadata(
     study: Study,
     description: Description,
     ground: TerrainSpec,
     gait: Gait,
-    trials: Trials,
+    end: End,
 ) -> RecordingMetadata:
     latency_ms = study.options.latency_s * 1e3
     return RecordingMetadata(
@@ -165,7 +198,7 @@ def _metadata(
         terrain=ground.to_json(),
         gait=dict(gait),
         world=study.world,
-        end=str(trials.ended[0]),
+        end=str(end),
     )
 
 

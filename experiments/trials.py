@@ -65,6 +65,15 @@ class Trials:
         rows = slice(start, stop)
         return Trials(self.distance_m[rows], self.time_s[rows], self.ended[rows])
 
+    @classmethod
+    def joined(cls, parts: Sequence["Trials"]) -> "Trials":
+        """All trials of some parts, in their order."""
+        return cls(
+            np.concatenate([part.distance_m for part in parts]),
+            np.concatenate([part.time_s for part in parts]),
+            tuple(end for part in parts for end in part.ended),
+        )
+
     @property
     def speed_cm_s(self) -> FloatArray:
         """(n,) mean forward speed until the end of the trial."""
@@ -82,7 +91,7 @@ def walk_trials(
     rules: TrialRules,
     seeds: Sequence[np.random.SeedSequence] = (),
     recorder: Recorder | None = None,
-    on_tick: Callable[[BoolArray], None] | None = None,
+    on_end: Callable[[], object] = lambda: None,
 ) -> Trials:
     """Let every robot of a world walk straight ahead, as fast as its gait says.
 
@@ -92,7 +101,7 @@ def walk_trials(
       rules: when a trial is over.
       seeds: n seeds for the poses at the start, if these shall spread.
       recorder: notes every tick.
-      on_tick: told after every tick who is still walking (n,).
+      on_end: called once for each robot whose trial is over.
     """
     engine = WalkEngine(biped(world.description), gaits, TICK_S)
     pose_rad = engine.start_pose()
@@ -118,8 +127,10 @@ def walk_trials(
         distance_m = world.truth().base_position_m[:, 0] - start_m
         if rules.course_m is not None:
             world.stop(distance_m >= rules.course_m)
-        if on_tick is not None:
-            on_tick(world.active)
+        for _ in range(int((walking & ~world.active).sum())):
+            on_end()
         if not world.active.any():
             break
+    for _ in range(int(world.active.sum())):
+        on_end()
     return Trials(distance_m, time_s, tuple(world.ended))

@@ -3,13 +3,13 @@
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.spatial import ConvexHull
 
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError
+from groundwalk.errors import UnknownNameError
 from robots.description import (
     SENSORS_PER_FOOT,
     Capsule,
@@ -23,13 +23,14 @@ from robots.description import (
 from robots.rigid_body import Inertial, combined, inertia_matrix
 
 Table = dict[str, Any]
+T = TypeVar("T")
 
 
 def read_description(path: Path) -> Description:
     """The robot of a TOML file; `nao.toml` beside this file shows the format.
 
     Raises:
-      BadValueError: a joint names a parent, motor or pair that is not there.
+      UnknownNameError: a joint, foot or pair names what is not there.
     """
     table = tomllib.loads(path.read_text())
     joints: dict[str, Table] = table["joint"]
@@ -45,7 +46,7 @@ def read_description(path: Path) -> Description:
         values = joints[name]
         axis = np.array(values["axis"], float)
         parent, offset = _parent(name, joints, root_name)
-        motor = motors[values["motor"]]
+        motor = _named("motor", values["motor"], motors)
         return Joint(
             name=name,
             parent=index[parent],
@@ -60,7 +61,10 @@ def read_description(path: Path) -> Description:
         name=table["name"],
         root=_link(root_name, root_name, joints, carrier, table[root_name]),
         links=tuple(joint(name) for name in moving),
-        coupled=tuple((index[first], index[second]) for first, second in pairs),
+        coupled=tuple(
+            (_named("joint", first, index), _named("joint", second, index))
+            for first, second in pairs
+        ),
         feet=(
             _foot(table["foot"]["left"], index),
             _foot(table["foot"]["right"], index),
@@ -78,9 +82,7 @@ def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatA
     parent = joints[name]["parent"]
     while parent != root:
         if parent not in joints:
-            raise BadValueError(
-                f"joint {name} has the parent {parent}, which is no joint"
-            )
+            raise UnknownNameError(f"parent of {name}", parent, [*joints, root])
         if not joints[parent].get("fixed", False):
             break
         offset += np.array(joints[parent]["origin"], float)
@@ -144,4 +146,12 @@ def _foot(values: Table, index: dict[str, int]) -> Foot:
     outline = np.array(values["outline"], float)
     corners = outline[np.sort(ConvexHull(outline).vertices)]
     sensors = np.array([values["sensors"][name] for name in SENSORS_PER_FOOT], float)
-    return Foot(index[values["joint"]], float(values["sole_height"]), corners, sensors)
+    joint = _named("joint", values["joint"], index)
+    return Foot(joint, float(values["sole_height"]), corners, sensors)
+
+
+def _named(kind: str, name: str, known: dict[str, T]) -> T:
+    """What a name stands for."""
+    if name not in known:
+        raise UnknownNameError(kind, name, known)
+    return known[name]

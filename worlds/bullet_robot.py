@@ -20,6 +20,7 @@ from worlds.world import WorldOptions
 GRAVITY_M_S2 = 9.81
 _COUPLING_TORQUE_NM = 1e3
 _COUPLING_ERP = 0.2
+_OUT_OF_REACH_M = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +129,15 @@ class BulletRobot:
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:
         """Put the robot upright at the origin, its torso at a height, at rest."""
+        # One step out of reach first: contacts of the last rollout would linger.
+        self._place(pose_rad, height_m + _OUT_OF_REACH_M)
+        self._bullet.stepSimulation(**self._client)
+        self._place(pose_rad, height_m)
+        self._servo.reset()
+        self._read()
+        return self._state(self._velocity)
+
+    def _place(self, pose_rad: FloatArray, height_m: float) -> None:
         bullet, client = self._bullet, self._client
         if not self._options.fixed_base:
             bullet.resetBasePositionAndOrientation(
@@ -139,9 +149,6 @@ class BulletRobot:
             bullet.resetBaseVelocity(self._body, [0] * 3, [0] * 3, **client)
         for link, angle in zip(self._links, pose_rad.tolist(), strict=True):
             bullet.resetJointState(self._body, link, angle, 0.0, **client)
-        self._servo.reset()
-        self._read()
-        return self._state(self._velocity)
 
     def step(self, schedule: Sequence[tuple[FloatArray, int]]) -> BulletState | None:
         """Advance by one tick.

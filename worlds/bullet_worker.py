@@ -2,16 +2,12 @@
 
 import importlib
 import os
-from collections.abc import Sequence
 from multiprocessing.connection import Connection
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.description import Description
-from terrain import Heightfield
 from worlds.bullet_robot import BulletRobot, BulletState
-from worlds.world import WorldOptions
 
 STATE_FIELDS = (
     ("base_pose", 7),
@@ -34,19 +30,16 @@ def state_columns(joints: int) -> dict[str, slice]:
     return columns
 
 
-def serve(
-    connection: Connection,
-    description: Description,
-    grounds: Sequence[Heightfield],
-    options: WorldOptions,
-) -> None:
+def serve(connection: Connection) -> None:
     """Compute robots until told to stop.
 
-    Messages in: ("start", poses, heights), ("step", active, schedule), ("stop",). The
-    answer to the first two: one row a robot, in the order of `STATE_FIELDS`; NaN for
-    one that has blown up, the old row for one that is not active.
+    Messages in: first (description, grounds, options), which has no answer, then
+    ("start", poses, heights), ("step", active, schedule), ("stop",). The answer to
+    start and step: one row a robot, in the order of `STATE_FIELDS`; NaN for one that
+    has blown up, the old row for one that is not active.
     """
     _import_bullet_in_silence()
+    description, grounds, options = connection.recv()
     robots = [BulletRobot(description, ground, options) for ground in grounds]
     rows: list[FloatArray] = []
     while True:

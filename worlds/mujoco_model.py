@@ -30,6 +30,10 @@ def mujoco_model(
     """
     import mujoco
 
+    # Worlds tell what blew up; MuJoCo would litter the screen and write a file.
+    log = mujoco.MjLogConfig.get()
+    log.logto_console = log.logto_file = False
+    log.set()
     spec = mujoco_spec(description)
     spec.option.timestep = options.timestep_s
     spec.compiler.discardvisual = True

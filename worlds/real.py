@@ -3,7 +3,7 @@
 import contextlib
 import multiprocessing
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -41,16 +41,20 @@ class RealWorld(RolloutWorld):
         context = multiprocessing.get_context("spawn")
         self._connections = []
         self._processes = []
-        for share in self._shares:
+        for _ in self._shares:
             here, there = context.Pipe()
-            part = [self._grounds[i] for i in share]
-            process = context.Process(
-                target=serve, args=(there, description, part, options), daemon=True
-            )
+            process = context.Process(target=serve, args=(there,), daemon=True)
             process.start()
             there.close()
             self._connections.append(here)
             self._processes.append(process)
+        # Not as arguments: `start` hangs if a process ends before it has read them.
+        self._send(
+            [
+                (description, [self._grounds[i] for i in share], options)
+                for share in self._shares
+            ]
+        )
         self._columns = state_columns(len(description.joints))
         self._standing = Standing(description)
 
@@ -86,10 +90,19 @@ class RealWorld(RolloutWorld):
 
     def _exchange(self, messages: list[tuple[object, ...]]) -> None:
         """Send each process its message, and keep the rows that they answer."""
-        try:
+        self._send(messages)
+        with self._closed_if_one_ended():
+            self._rows = np.concatenate([c.recv() for c in self._connections])
+
+    def _send(self, messages: list[tuple[object, ...]]) -> None:
+        with self._closed_if_one_ended():
             for connection, message in zip(self._connections, messages, strict=True):
                 connection.send(message)
-            self._rows = np.concatenate([c.recv() for c in self._connections])
+
+    @contextlib.contextmanager
+    def _closed_if_one_ended(self) -> Iterator[None]:
+        try:
+            yield
         except (EOFError, OSError) as error:
             self.close()
             raise GroundwalkError(

@@ -17,6 +17,9 @@ from worlds.world import TICK_S, End, WorldOptions
 
 Schedule = list[tuple[FloatArray, int]]
 
+_MOST_RAD = 1e6
+"""Beyond this a number is no joint position: something has gone wrong."""
+
 
 class RolloutWorld(ABC):
     """n rollouts side by side; see `World` for the interface.
@@ -61,6 +64,11 @@ class RolloutWorld(ABC):
     def reset(self, pose_rad: FloatArray) -> Observation:
         """Put every robot on its ground; see `World.reset`."""
         targets = self._targets(pose_rad)
+        if not _are_positions(targets).all():
+            raise BadValueError(
+                "a pose to start from holds what is no joint position; it must be "
+                f"finite and within {_MOST_RAD:g} rad"
+            )
         self._start(targets)
         self._delay.reset(targets)
         self.active = np.ones(self.n, bool)
@@ -74,7 +82,10 @@ class RolloutWorld(ABC):
 
     def step(self, command_rad: FloatArray) -> Observation:
         """Advance the active robots by one tick; see `World.step`."""
-        schedule = list(self._delay.tick(self._targets(command_rad)))
+        targets = self._targets(command_rad)
+        # MuJoCo would take them for zero.
+        self._end(End.DIVERGED, ~_are_positions(targets))
+        schedule = list(self._delay.tick(targets))
         if self.active.any():
             self._advance(schedule)
             self._ticks[self.active] += 1
@@ -111,11 +122,15 @@ class RolloutWorld(ABC):
         sound = truth.finite() & observation.finite()
         keep = self.active & sound
         for end, robots in self._end_rule(truth, sound).items():
-            for i in np.flatnonzero(robots & self.active):
-                self.ended[i] = end
-            self.active = self.active & ~robots
+            self._end(end, robots)
         self._truth = truth.where(keep, self._truth)
         self._clean = observation.where(keep, self._clean)
+
+    def _end(self, end: End, robots: BoolArray) -> None:
+        """Take those of these robots that are active out of the batch, and say why."""
+        for i in np.flatnonzero(robots & self.active):
+            self.ended[i] = end
+        self.active = self.active & ~robots
 
     def _targets(self, command_rad: FloatArray) -> FloatArray:
         """Commands as motor targets: a coupled pair's motor takes the mean."""
@@ -129,3 +144,8 @@ class RolloutWorld(ABC):
         if self._noise is None:
             return self._clean
         return self._noise(self._clean, TICK_S)
+
+
+def _are_positions(joints_rad: FloatArray) -> BoolArray:
+    """(n,) whether all of a robot's numbers can be joint positions; NaN cannot."""
+    return np.asarray(np.all(np.abs(joints_rad) < _MOST_RAD, axis=1))

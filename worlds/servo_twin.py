@@ -45,7 +45,8 @@ class ServoTwin:
         self._twin_velocity: FloatArray | None = None
 
     def reset(self) -> None:
-        """Forget the contact force: the next step is the first."""
+        """Forget the last rollout and its contact force: the next step is the first."""
+        self._mujoco.mj_resetData(self._model, self._data)
         self._twin_velocity = None
 
     def torque(
