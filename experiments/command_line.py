@@ -26,7 +26,9 @@ VERBS = {
     "visualize": Verb("visualize", "Visualize", "see rollouts in Rerun"),
     "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
     "list": Verb("list", "List", "show the robots, terrains or gaits that there are"),
-    "doctor": Verb("doctor", "DoctorConfig", "say what is installed and what is missing"),
+    "doctor": Verb(
+        "doctor", "DoctorConfig", "say what is installed and what is missing"
+    ),
 }
 
 BAD_INPUT = 2
