@@ -62,24 +62,28 @@ def with_motor(description, name, **changes):
     return replace(description, links=tuple(links))
 
 
+@pytest.mark.slow
 def test_worlds_agree_in_the_air(both):
-    """The required bounds are 1 and 4 mrad; these are what stiff coupling allows."""
-    assert rms_mrad(*both[0.0005]).max() < 0.1
-    assert rms_mrad(*both[0.002]).max() < 1.0
+    """Required: 1 mrad at 0.5 ms, 4 mrad at 2 ms; measured: 0.001 and 0.02 mrad."""
+    assert rms_mrad(*both[0.0005]).max() < 0.01
+    assert rms_mrad(*both[0.002]).max() < 0.1
 
 
+@pytest.mark.slow
 def test_worlds_come_closer_with_the_step(both):
     coarse, usual, fine = (rms_mrad(*both[step]).max() for step in both)
     assert coarse > 2 * usual
     assert usual > 2 * fine
 
 
+@pytest.mark.slow
 def test_joints_really_move_and_lag(both, multisine):
     for sim, _ in both.values():
         assert np.ptp(sim, axis=0).min() > 0.2
         assert rms_mrad(sim, multisine).mean() > 10
 
 
+@pytest.mark.slow
 def test_another_gain_shows(both, in_the_air, nao):
     """Two per cent more stiffness in one knee is more than the worlds differ by."""
     knee = nao.joints.index("LKneePitch")
@@ -192,7 +196,7 @@ def test_twin_forgets_a_blow_up(nao, states):
 
 
 def test_standing_robots_sag_alike(make_world, crouch):
-    """Contact forces do not confuse the twin: at rest the joints agree to 0.1 mrad."""
+    """Contact forces do not confuse the twin: at rest the joints agree to 0.5 mrad."""
     rest = []
     for name in ("sim", "real"):
         world = make_world(name)

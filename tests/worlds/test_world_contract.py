@@ -138,6 +138,30 @@ def test_coupled_joints_follow_their_mean(nao, world, poses):
     )
 
 
+def test_soles_slide_on_ground_that_is_too_smooth(nao, make_world, world_name, crouch):
+    """Downhill with g (sin a - mu cos a) along a slope a; they stick if mu > tan a."""
+    slope_rad, smooth, rough = 0.1, 0.05, 0.5
+    x_m = np.arange(-1.5, 1.6, 0.5)
+    ground = Heightfield(np.tile(np.tan(slope_rad) * x_m, (7, 1)), (-1.5, -1.5), 0.5)
+    pose = crouch.copy()
+    for side in "LR":
+        pose[nao.joints.index(side + "AnklePitch")] -= slope_rad
+    moved_m = {}
+    for friction in (smooth, rough):
+        world = make_world(world_name, [ground], friction=friction)
+        world.reset(pose[None])
+        path_m = []
+        for _ in range(60):
+            world.step(pose[None])
+            path_m.append(world.truth().base_position_m[0, 0])
+        moved_m[friction] = path_m
+    assert np.abs(moved_m[rough]).max() < 0.005
+    along = 9.81 * (np.sin(slope_rad) - smooth * np.cos(slope_rad))
+    path_m = moved_m[smooth]
+    acceleration = (path_m[59] - 2 * path_m[39] + path_m[19]) / 0.2**2
+    assert acceleration == pytest.approx(-along * np.cos(slope_rad), rel=0.15)
+
+
 def test_needs_a_ground_and_a_seed_for_each_robot(world_name, nao, flat):
     seeds = [np.random.SeedSequence(0)]
     for grounds in ([], [flat, flat]):
