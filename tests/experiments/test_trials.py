@@ -1,3 +1,5 @@
+import contextlib
+
 import numpy as np
 import pytest
 
@@ -91,3 +93,17 @@ def test_reward_is_speed_less_fifteen_after_a_fall():
 def test_impossible_trials_are_refused(values):
     with pytest.raises(BadValueError, match=next(iter(values))):
         TrialRules(**values)
+
+
+@pytest.mark.slow
+def test_the_2014_constants_walk_on_flat_real_ground():
+    # with the real world's latency and noise, 20 cm/s commanded
+    gait = gaits.get("walk2014").replace(max_forward=0.20)
+    seeds = np.random.SeedSequence(1).spawn(1)
+    ground = terrain.make("flat", 0)
+    with contextlib.closing(
+        worlds.make("real", robots.get("nao"), [ground], seeds)
+    ) as world:
+        trials = walk_trials(world, [gait], TrialRules(limit_s=7.5))
+    assert trials.ended == (End.NONE,)
+    assert trials.speed_cm_s[0] > 12
