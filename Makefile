@@ -7,8 +7,10 @@ VENV := .venv
 READY := $(VENV)/ready
 RUN := runs/walk
 RESULTS := runs/results
+# The studies of `groundwalk transfer` that have a page in docs/results.
+STUDIES := toy cliff
 
-.PHONY: help env walk test lint results bench
+.PHONY: help env walk test lint results results-walk $(STUDIES:%=results-%) bench
 
 help:
 	@echo "make walk    tune a gait in simulation and try it in both worlds (into runs/)"
@@ -33,12 +35,22 @@ lint: $(READY)
 	$(VENV)/bin/mypy
 	$(VENV)/bin/lint-imports --no-logo
 
-# Writes every number and picture of docs/results from a new run.
-results: $(READY)
-	rm -rf $(RESULTS)
-	$(VENV)/bin/groundwalk optimize-gait --seed 1 --out $(RESULTS)
+# Writes every number and picture of docs/results from new runs, or those of one of them.
+results: results-walk $(STUDIES:%=results-%)
+
+results-walk: $(READY)
+	rm -rf $(RESULTS)/walk
+	$(VENV)/bin/groundwalk optimize-gait --seed 1 --out $(RESULTS)/walk
 	mkdir -p docs/results/walk
-	cp $(addprefix $(RESULTS)/,result.md result.json walk.png search.png) docs/results/walk
+	cp $(addprefix $(RESULTS)/walk/,result.md result.json walk.png search.png) docs/results/walk
+
+$(STUDIES:%=results-%): results-%: $(READY)
+	rm -rf $(RESULTS)/$*
+	$(VENV)/bin/groundwalk transfer $* --seed 1 --out $(RESULTS)/$*
+	mkdir -p docs/results
+	cp $(RESULTS)/$*/result.md docs/results/transfer_$(subst -,_,$*).md
+	cp $(RESULTS)/$*/result.json docs/results/transfer_$(subst -,_,$*).json
+	find $(RESULTS)/$* -maxdepth 1 -name 'transfer_*.png' -exec cp {} docs/results ';'
 
 bench: $(READY)
 	$(VENV)/bin/python -m benchmarks

@@ -28,8 +28,8 @@ from worlds.mujoco_model import mujoco_model
 from worlds.sim import SimWorld
 
 ROBOTS = 150
-TICKS = 300
-ROUNDS = 5
+TICKS = 200
+ROUNDS = 9
 SINGLES = 6
 PASS = 0.85
 

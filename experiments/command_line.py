@@ -4,14 +4,20 @@ import contextlib
 import importlib
 import io
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, NoReturn
 
 from groundwalk.errors import GroundwalkError, UnknownNameError
 
 
 class Verb(NamedTuple):
-    """Where a verb's code is, and what it does in a few words."""
+    """Where a verb's code is, and what it does in a few words.
+
+    Attributes:
+      module: its file in experiments.
+      config: the dataclass of its options there, or a table of its own verbs.
+      summary: what it does.
+    """
 
     module: str
     config: str
@@ -23,6 +29,7 @@ VERBS = {
         "optimize_gait", "OptimizeGait", "tune a gait in the sim, try it in both worlds"
     ),
     "evaluate": Verb("evaluate", "Evaluate", "let gaits walk a course of 3 m"),
+    "transfer": Verb("transfer", "STUDIES", "repeat an experiment of the SGAT paper"),
     "visualize": Verb("visualize", "Visualize", "see rollouts in Rerun"),
     "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
     "list": Verb("list", "List", "show the robots, terrains or gaits that there are"),
@@ -36,18 +43,38 @@ INTERRUPTED = 130
 
 
 def main() -> None:
-    """Run the verb that the command line names; only its own code is imported."""
-    name = sys.argv[1] if len(sys.argv) > 1 else "--help"
+    """Run the verb that the command line names."""
+    choose(VERBS, "groundwalk", sys.argv[1:])
+
+
+def choose(
+    verbs: Mapping[str, Verb],
+    program: str,
+    arguments: Sequence[str],
+    kind: str = "verb",
+) -> None:
+    """Run the verb that the first argument names; only its own code is imported.
+
+    Args:
+      verbs: by name; a verb may hold further ones, called studies.
+      program: the command so far.
+      arguments: what follows it.
+      kind: what to call the verbs.
+    """
+    name, *options = arguments or ["--help"]
     if name in ("-h", "--help"):
-        print("usage: groundwalk VERB [options]\n")
-        for verb, (_, _, summary) in VERBS.items():
-            print(f"  {verb:15}{summary}")
-        print("\ngroundwalk VERB --help tells a verb's options")
+        print(f"usage: {program} {kind.upper()} [options]\n")
+        for known, (_, _, summary) in verbs.items():
+            print(f"  {known:18}{summary}")
+        print(f"\n{program} {kind.upper()} --help tells a {kind}'s options")
         return
-    verb = _guarded(lambda: _verb(name))
+    verb = _guarded(lambda: _verb(kind, name, verbs))
     module = importlib.import_module(f"experiments.{verb.module}")
-    config_type = getattr(module, verb.config)
-    run_verb(config_type, module.main, f"groundwalk {name}", sys.argv[2:])
+    config = getattr(module, verb.config)
+    if isinstance(config, dict):
+        choose(config, f"{program} {name}", options, "study")
+    else:
+        run_verb(config, module.main, f"{program} {name}", options)
 
 
 def run_verb(
@@ -81,10 +108,10 @@ def one_line(report: str) -> str:
     return " ".join(lines)
 
 
-def _verb(name: str) -> Verb:
-    if name not in VERBS:
-        raise UnknownNameError("verb", name, VERBS)
-    return VERBS[name]
+def _verb(kind: str, name: str, verbs: Mapping[str, Verb]) -> Verb:
+    if name not in verbs:
+        raise UnknownNameError(kind, name, verbs)
+    return verbs[name]
 
 
 def _parse(config_type: Any, program: str | None, arguments: list[str] | None) -> Any:

@@ -26,6 +26,7 @@ IMPORTS = {
     "example-robot-data": "",  # files only
     "mujoco": "mujoco.batch",
     "rerun-sdk": "rerun",
+    "sb3-contrib": "sb3_contrib",
 }
 """What to import of a package where it is not of the package's name."""
 

@@ -21,13 +21,13 @@ def write_page(folder: RunFolder, title: str, scores: Scores) -> None:
     """
     provenance, config = folder.read_json(PROVENANCE), folder.read_json(CONFIG)
     result = folder.read_json(RESULT)
-    lines = [f"# {title}", "", *_origin(provenance, config), "", *score_lines(scores)]
+    lines = [f"# {title}", "", *origin(provenance, config), "", *score_lines(scores)]
     if "gait" in result:
         lines += ["", "## The tuned gait", "", *gait_lines(result["gait"])]
     folder.write_text(PAGE, "\n".join(lines) + "\n")
 
 
-def _origin(provenance: Mapping[str, Any], config: Mapping[str, Any]) -> list[str]:
+def origin(provenance: Mapping[str, Any], config: Mapping[str, Any]) -> list[str]:
     """Which command made these numbers, from which code."""
     commit = provenance["commit"] or "unknown"
     changed = ", with changes that were not committed" if provenance["changed"] else ""

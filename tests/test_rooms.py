@@ -35,7 +35,8 @@ def small_house(tmp_path):
         "worlds/rerun_log.py": "import rerun, terrain",
         "worlds/real.py": "def real():\n    import pybullet, robots",
         "walk_engine/engine.py": "from robots import model",
-        "experiments/search.py": "import cma, walk_engine, worlds",
+        "sgat/forward_model.py": "import torch, worlds",
+        "experiments/search.py": "import cma, sgat, walk_engine, worlds",
     }
     (tmp_path / "pyproject.toml").write_bytes((ROOT / "pyproject.toml").read_bytes())
     for package in PROJECT["tool"]["importlinter"]["root_packages"]:
@@ -84,6 +85,9 @@ def test_allowed_imports_pass(small_house):
         ("experiments", "cma"),
         ("worlds", "rerun"),
         ("experiments", "rerun"),
+        ("worlds", "sgat"),
+        ("sgat", "experiments"),
+        ("sgat", "mujoco"),
         ("worlds", "torch"),
         ("experiments", "torch"),
     ],
@@ -116,6 +120,7 @@ def heavy_imports_after(code):
         "robots",
         "walk_engine",
         "worlds",
+        "sgat",
         "experiments.command_line",
     ],
 )

@@ -1,0 +1,14 @@
+"""`groundwalk transfer`: the experiments of the SGAT paper, a study each."""
+
+import sys
+
+from experiments.command_line import Verb, choose
+
+STUDIES = {
+    "toy": Verb("transfer_toy", "TransferToy", "the paper's toy MDPs, solved exactly"),
+    "cliff": Verb("transfer_cliff", "TransferCliff", "cliff walking over noise"),
+}
+"""By their names on the command line."""
+
+if __name__ == "__main__":
+    choose(STUDIES, "groundwalk transfer", sys.argv[1:], "study")

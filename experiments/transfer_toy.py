@@ -1,0 +1,166 @@
+"""`groundwalk transfer toy`: the paper's toy worlds, solved exactly."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from experiments.command_line import run_verb
+from experiments.progress import progress
+from experiments.run_folder import RESULT, open_run
+from experiments.score_table import print_json
+from experiments.text_table import print_table
+from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.transfer_toy_mdps import TOYS, Toy
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from sgat.tabular_grounding import grounded_sim
+from sgat.tabular_mdp import FiniteMdp
+from sgat.tabular_models import counted_forward_model
+from sgat.tabular_planning import action_values, policy_iteration
+from sgat.tabular_rollouts import roll_out
+
+VERB = "transfer-toy"
+TITLE = "Toy worlds: the best action in each grounded simulator"
+COLUMNS = (
+    "real world", "planned in", "values of a1, a2, ...", "best", "in the paper",
+    "from counts", "worth on real",
+)  # fmt: skip
+NOTES = (
+    "Each world is one choice; the value of an action is the mean reward of what it "
+    "leads to.",
+    "Values are exact: the forward models are the real world's own probabilities. "
+    "Counted from",
+    "{episodes} random real transitions instead, they lead to the action under "
+    '"from counts".',
+)
+FIRST = 0
+"""The state of the choice."""
+
+
+@dataclass(frozen=True)
+class TransferToy:
+    """Find the best action in the paper's toy worlds, grounded by GAT and by SGAT.
+
+    Attributes:
+      episodes: random real transitions, for the forward models that are counted.
+      seed: every random number follows from it.
+      out: the run's folder; a new one under runs/ by default.
+      resume: continue the run of this folder.
+      json: print the result as JSON.
+    """
+
+    episodes: int = 30_000
+    seed: int = 1
+    out: Path | None = None
+    resume: Path | None = None
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        if self.episodes < 1:
+            raise BadValueError(f"episodes is {self.episodes}; it must be positive")
+        if self.seed < 0:
+            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+
+
+def main(config: TransferToy) -> None:
+    """Solve the toys, and write everything down."""
+    folder, config = open_run(VERB, config)
+    if not folder.has(RESULT):
+        folder.write_json(RESULT, _solve_all(config))
+    result = folder.read_json(RESULT)
+    claims = [Claim(**claim) for claim in result["claims"]]
+    rows = [
+        _texts(name, planned)
+        for name, toy in result["toys"].items()
+        for planned in toy["planned"]
+    ]
+    notes = [line.format(episodes=config.episodes) for line in NOTES]
+    body = [*markdown_table(COLUMNS, rows), "", *notes]
+    write_transfer_page(folder, TITLE, claims, body)
+    if config.json:
+        print_json(result)
+    else:
+        print_table(COLUMNS, rows)
+        print(f"everything else is in {folder.path}")
+
+
+def _solve_all(config: TransferToy) -> dict[str, Any]:
+    solved, claims = {}, []
+    generator = np.random.default_rng(config.seed)
+    with progress("toy worlds", len(TOYS)) as bar:
+        for name, toy in TOYS.items():
+            rows = solve(toy, config.episodes, generator)
+            solved[name] = {"figures": toy.figures, "planned": rows}
+            claims.append(_claim(name, toy, rows).to_json())
+            bar.advance()
+    return {"toys": solved, "claims": claims}
+
+
+def solve(
+    toy: Toy, episodes: int, generator: np.random.Generator
+) -> list[dict[str, Any]]:
+    """What is best in the sim, in both grounded sims and in the real world.
+
+    Args:
+      toy: the worlds.
+      episodes: random real transitions, for the forward models that are counted.
+      generator: where they come from.
+    """
+    anything = np.zeros(toy.sim.states, np.intp)
+    seen = roll_out(toy.real, anything, episodes, generator, exploration=1.0).counts
+    exact = _planned_in(toy, toy.real.transition)
+    counted = _planned_in(toy, counted_forward_model(seen, toy.sim))
+    on_real = _first_values(toy.real)
+    return [
+        {
+            "world": world,
+            "values": _first_values(mdp).tolist(),
+            "best": _best(mdp),
+            "paper": toy.best[world],
+            "from_counts": _best(counted[world]),
+            "worth_on_real": float(on_real[policy_iteration(mdp)[FIRST]]),
+        }
+        for world, mdp in exact.items()
+    ]
+
+
+def _planned_in(toy: Toy, forward: FloatArray) -> dict[str, FiniteMdp]:
+    return {
+        "sim": toy.sim,
+        "GAT": grounded_sim(toy.sim, forward, samples=False),
+        "SGAT": grounded_sim(toy.sim, forward, samples=True),
+        "real": toy.real,
+    }
+
+
+def _first_values(mdp: FiniteMdp) -> FloatArray:
+    """(A,) value of each action; nothing comes after it."""
+    values: FloatArray = action_values(mdp, np.zeros(mdp.states))[FIRST]
+    return values
+
+
+def _best(mdp: FiniteMdp) -> str:
+    return f"a{policy_iteration(mdp)[FIRST] + 1}"
+
+
+def _claim(name: str, toy: Toy, rows: list[dict[str, Any]]) -> Claim:
+    found = {row["world"]: row["best"] for row in rows}
+    return Claim(
+        f"the best actions with a {name} real world are those of the paper "
+        f"({toy.figures})",
+        found == toy.best,
+        ", ".join(f"{action} in {world}" for world, action in found.items()),
+    )
+
+
+def _texts(toy: str, row: dict[str, Any]) -> list[str]:
+    values = ", ".join(f"{value:.4g}" for value in row["values"])
+    actions = [row[key] for key in ("best", "paper", "from_counts")]
+    return [toy, row["world"], values, *actions, f"{row['worth_on_real']:.4g}"]
+
+
+if __name__ == "__main__":
+    run_verb(TransferToy, main)

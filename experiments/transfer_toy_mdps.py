@@ -1,0 +1,57 @@
+"""The toy worlds of the paper: one choice, and what it leads to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from sgat.tabular_mdp import FiniteMdp
+
+
+@dataclass(frozen=True, eq=False)
+class Toy:
+    """A simulator, a real world, and what the paper says of them.
+
+    Attributes:
+      figures: where the paper shows it; figures counted in the order of its source.
+      sim: the simulator.
+      real: the real world.
+      best: the best action in sim, both grounded sims and real, as the paper says.
+    """
+
+    figures: str
+    sim: FiniteMdp
+    real: FiniteMdp
+    best: dict[str, str]
+
+
+def choice(rewards: npt.ArrayLike, chances: npt.ArrayLike) -> FiniteMdp:
+    """A world of a single step, from s0 into one of the states s1, s2, ...
+
+    Args:
+      rewards: what each of those states pays.
+      chances: (actions, states) probability of each.
+    """
+    reward = np.concatenate([[0.0], np.asarray(rewards, np.float64)])
+    outcomes = np.asarray(chances, np.float64)
+    transition = np.zeros((len(reward), len(outcomes), len(reward)))
+    transition[0, :, 1:] = outcomes
+    transition[1:] = np.eye(len(reward))[1:, np.newaxis]
+    return FiniteMdp(transition, reward, np.arange(len(reward)) > 0)
+
+
+TOYS = {
+    "deterministic": Toy(
+        "figure 3",
+        sim=choice([1, -1], [[1, 0], [0, 1]]),
+        real=choice([1, -1], [[0, 1], [1, 0]]),
+        best={"sim": "a1", "GAT": "a2", "SGAT": "a2", "real": "a2"},
+    ),
+    "stochastic": Toy(
+        "figures 4 and 5",
+        sim=choice([1, -1, 10], np.eye(3)),
+        real=choice([1, -1, 10], [[1.0, 0.0, 0.0], [0.0, 0.8, 0.2], [0.0, 1.0, 0.0]]),
+        best={"sim": "a3", "GAT": "a1", "SGAT": "a2", "real": "a2"},
+    ),
+}
+"""By what their real world is like."""
