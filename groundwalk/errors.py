@@ -42,5 +42,9 @@ class BadRecordingError(GroundwalkError):
     """A recording that cannot be read or that contradicts its format."""
 
 
+class BadModelError(GroundwalkError):
+    """A file that holds no model, or not the kind of model that was asked for."""
+
+
 class RunFolderError(GroundwalkError):
     """A run folder that is in the way, missing or not what it should be."""

@@ -1,0 +1,99 @@
+"""Predicted against real falls and speeds: numbers, table and page."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from experiments.run_folder import RunFolder
+from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.walk_groundings import BLOCKS, GROUNDINGS, SGAT
+from groundwalk.arrays import FloatArray
+
+GOAL = 0.7
+HEADINGS = (
+    "grounding",
+    "falls: correlation",
+    "rmse",
+    "mean rate",
+    "speed: correlation",
+    "rmse [cm/s]",
+)
+
+Row = dict[str, Any]
+
+
+def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
+    """How well each grounding predicts, against the stage "real"."""
+    real = {name: np.array(values) for name, values in state["real"].items()}
+    rows: list[Row] = []
+    for name in GROUNDINGS:
+        predicted = {key: np.array(values) for key, values in state[name].items()}
+        row: Row = {"grounding": name}
+        for key in ("fall_rate", "speed_cm_s"):
+            row[key] = {
+                "correlation": correlation(predicted[key], real[key]),
+                "rmse": float(np.sqrt(np.mean((predicted[key] - real[key]) ** 2))),
+                "predicted_mean": float(predicted[key].mean()),
+                "real_mean": float(real[key].mean()),
+            }
+        rows.append(row)
+    return rows
+
+
+def correlation(predicted: FloatArray, real: FloatArray) -> float | None:
+    """Pearson's; None where one of them does not vary."""
+    if predicted.std() == 0 or real.std() == 0:
+        return None
+    return float(np.corrcoef(predicted, real)[0, 1])
+
+
+def table_of(rows: Sequence[Row]) -> list[list[str]]:
+    """The rows as text."""
+    table = []
+    for row in rows:
+        falls, speed = row["fall_rate"], row["speed_cm_s"]
+        table.append(
+            [
+                row["grounding"],
+                _number(falls["correlation"]),
+                f"{falls['rmse']:.2f}",
+                f"{falls['predicted_mean']:.2f} (real {falls['real_mean']:.2f})",
+                _number(speed["correlation"]),
+                f"{speed['rmse']:.1f}",
+            ]
+        )
+    return table
+
+
+def write_falls_page(
+    folder: RunFolder, rows: Sequence[Row], trials: int, gain: float
+) -> None:
+    """Write `result.md`."""
+    by_name = {row["grounding"]: row["fall_rate"]["correlation"] or 0.0 for row in rows}
+    best = max(by_name, key=lambda name: by_name[name])
+    claims = [
+        Claim(
+            f"the best grounding's fall rates correlate with the real ones by {GOAL}",
+            by_name[best] >= GOAL,
+            f"{best}: {by_name[best]:.2f}",
+        ),
+        Claim(
+            "noise as it really was, in blocks, predicts falls better than white noise",
+            by_name[BLOCKS] > by_name[SGAT],
+            f"{by_name[BLOCKS]:.2f} against {by_name[SGAT]:.2f}",
+        ),
+    ]
+    body = [
+        f"Gaits that no grounding has seen, {trials} trials each in the real world.",
+        f"The noise of the last row was enlarged {gain:.2f} times: one over the share",
+        "of what it asks that the grounded sim does.",
+        "",
+        *markdown_table(HEADINGS, table_of(rows)),
+    ]
+    title = "Does the grounded sim know which gaits fall?"
+    write_transfer_page(folder, title, claims, body)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"

@@ -1,0 +1,43 @@
+"""Noise added to actions: a noisy real world, or the noise envelope around the sim."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from sgat.noise import NoiseStream, WhiteNoise
+
+
+class ActionNoise:
+    """a + N(0, deviation^2), then clipped; takes an action transformer's place.
+
+    Around a sim it is the action noise envelope (Jakobi 1995), which needs no data but
+    a guess of the deviation. Around a copy of the sim it makes the paper's NoisySim
+    and NoisyReal, whose ideal transformed action it tells.
+    """
+
+    def __init__(self, deviation: float, low: FloatArray, high: FloatArray) -> None:
+        """Remember how much.
+
+        Args:
+          deviation: standard deviation, in the action's own units.
+          low: (a,) least action.
+          high: (a,) largest action.
+        """
+        if not 0 <= deviation < np.inf:
+            raise BadValueError(f"deviation is {deviation}; it must not be negative")
+        self.deviation = deviation
+        self._low, self._high = np.asarray(low, float), np.asarray(high, float)
+        self._stream: NoiseStream | None = None
+
+    def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
+        """Start an episode of n robots, each with noise from its own seed."""
+        self._stream = NoiseStream(WhiteNoise(len(self._low)), seeds)
+
+    def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
+        """(n, a) noisy actions, of the policy's (n, a); the states do not matter."""
+        if self._stream is None or self._stream.n != len(action):
+            raise BadValueError(f"reset with {len(action)} seeds before they act")
+        noise, _ = self._stream.draw()
+        return np.clip(action + self.deviation * noise, self._low, self._high)

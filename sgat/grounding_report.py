@@ -1,0 +1,125 @@
+"""All measures of one grounding in one place."""
+
+import json
+import math
+from dataclasses import dataclass, replace
+from typing import Any, Self
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from sgat.forward_model import ForwardModel
+from sgat.measures import (
+    Advance,
+    action_bias,
+    autocorrelation,
+    coverage,
+    cross_correlation,
+    excess_kurtosis,
+    multi_step_error,
+    r_squared,
+    root_mean_square,
+    spread_ratio,
+)
+from sgat.transitions import Transitions
+
+LEVELS = (0.5, 0.8, 0.9, 0.95, 0.99)
+LAGS = 10
+HORIZON = 10
+
+
+@dataclass(frozen=True, eq=False)
+class GroundingReport:
+    """How good a grounding is, told before any policy is trained in it.
+
+    Measured on transitions of the real world that the models have not seen; p is the
+    width of a next state, a that of an action.
+
+    Attributes:
+      one_step_error: (p,) root mean square, in the state's units.
+      one_step_r_squared: (p,) share of the state's change that is predicted.
+      multi_step_error: (horizon, p) root mean square without correction.
+      log_likelihood: per transition and dimension.
+      levels: (levels,) of the central intervals.
+      coverage: (levels, p) share of the residuals within them.
+      autocorrelation: (lags, p) of the residuals.
+      cross_correlation: (p, p) of the residuals.
+      excess_kurtosis: (p,) of the residuals.
+      action_bias: (a,) mean of transformed less ideal action, where that is known.
+      action_spread_ratio: (a,) spread put on the action over the ideal one, likewise.
+    """
+
+    one_step_error: FloatArray
+    one_step_r_squared: FloatArray
+    multi_step_error: FloatArray
+    log_likelihood: float
+    levels: FloatArray
+    coverage: FloatArray
+    autocorrelation: FloatArray
+    cross_correlation: FloatArray
+    excess_kurtosis: FloatArray
+    action_bias: FloatArray | None = None
+    action_spread_ratio: FloatArray | None = None
+
+    @classmethod
+    def of(
+        cls,
+        forward: ForwardModel,
+        held_out: Transitions,
+        advance: Advance,
+        horizon: int = HORIZON,
+        lags: int = LAGS,
+    ) -> Self:
+        """Everything that can be said of a forward model.
+
+        Args:
+          forward: of the real world.
+          held_out: of the real world.
+          advance: one tick of the whole state, see `multi_step_error`.
+          horizon: ticks without correction.
+          lags: ticks of autocorrelation.
+        """
+        residuals = forward.residuals(held_out)
+        predicted = forward.predict(held_out.state, held_out.action)
+        change = predicted - held_out.next_state + held_out.change
+        return cls(
+            one_step_error=root_mean_square(predicted - held_out.next_state),
+            one_step_r_squared=r_squared(change, held_out.change),
+            multi_step_error=multi_step_error(advance, held_out, horizon),
+            log_likelihood=forward.score(held_out),
+            levels=np.array(LEVELS),
+            coverage=coverage(residuals, LEVELS),
+            autocorrelation=autocorrelation(residuals, held_out.episode, lags),
+            cross_correlation=cross_correlation(residuals),
+            excess_kurtosis=excess_kurtosis(residuals),
+        )
+
+    def with_actions(
+        self, transformed: FloatArray, ideal: FloatArray, action: FloatArray
+    ) -> Self:
+        """The report together with what is known of the transformed actions.
+
+        Args:
+          transformed: (N, a) actions.
+          ideal: (N, a) samples of what they should be.
+          action: (N, a) of the policy.
+        """
+        return replace(
+            self,
+            action_bias=action_bias(transformed, ideal),
+            action_spread_ratio=spread_ratio(transformed, ideal, action),
+        )
+
+    def to_json(self) -> str:
+        """One JSON object; null is what is not defined, as a constant's kurtosis."""
+        return json.dumps(
+            {name: _plain(value) for name, value in vars(self).items()}, allow_nan=False
+        )
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    return None if value is None or not math.isfinite(value) else value
