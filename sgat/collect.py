@@ -36,7 +36,7 @@ class _Rows:
     def add(
         self, state: FloatArray, action: FloatArray, next_state: FloatArray, end: bool
     ) -> None:
-        """Remember one transition; copies, as environments reuse their arrays."""
+        """Remember one transition; copies, as environments may reuse their arrays."""
         self.state.append(np.array(state, float))
         self.action.append(np.array(action, float))
         self.next_state.append(np.array(next_state, float))
@@ -68,10 +68,11 @@ def collect(
     rows = _Rows()
     observation, _ = env.reset(seed=int(rng.integers(2**31)))
     for _ in range(steps):
+        before = np.array(observation, float)
         action = np.clip(policy(observation), low, high)
         after, _, terminated, truncated, _ = env.step(action)
         end = bool(terminated or truncated)
-        rows.add(observation, action, after, end)
+        rows.add(before, action, after, end)
         observation = env.reset()[0] if end else after
     return rows.to_transitions()
 
@@ -99,16 +100,17 @@ def collect_vector(
     resetting = np.zeros(envs.num_envs, bool)
     observation, _ = envs.reset(seed=int(rng.integers(2**31)))
     while sum(len(rows.state) for rows in every) < steps:
+        before = np.array(observation, float)
         action = np.clip(policy(observation), low, high)
         after, _, terminated, truncated, info = envs.step(action)
         end = terminated | truncated
         for i in np.flatnonzero(~resetting):
             final = end[i] and mode == AutoresetMode.SAME_STEP
             next_state = info["final_obs"][i] if final else after[i]
-            every[i].add(observation[i], action[i], next_state, bool(end[i]))
+            every[i].add(before[i], action[i], next_state, bool(end[i]))
         if mode == AutoresetMode.NEXT_STEP:
             resetting = end
-        observation = np.copy(after)
+        observation = after
     transitions = [rows.to_transitions() for rows in every if rows.state]
     joined = transitions[0]
     for more in transitions[1:]:

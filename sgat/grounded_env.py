@@ -17,7 +17,7 @@ RewardOf = Callable[[float, FloatArray, FloatArray], float]
 """The environment's reward, the policy's action and the transformed one to a reward."""
 
 
-class GroundedEnv(Wrapper):
+class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     """Passes the policy's action through a transformer, then to the environment.
 
     The transformer's state is the observation. `info["transformed_action"]` tells what
@@ -34,11 +34,15 @@ class GroundedEnv(Wrapper):
 
         Args:
           env: with Box actions and observations of one axis.
-          transformer: of one robot's actions; it belongs to this environment alone.
+          transformer: of one robot's actions; it belongs to this environment alone,
+            and one made of its `spec` gets a copy.
           reward_of: None leaves the reward as it is: the environment's for the
             transformed action, so that a cost of control is paid for that one. The
             paper's reward is one of the policy's action; this can put it right.
         """
+        gym.utils.RecordConstructorArgs.__init__(
+            self, transformer=transformer, reward_of=reward_of
+        )
         super().__init__(env)
         for space in (env.observation_space, env.action_space):
             if not isinstance(space, Box) or len(space.shape) != 1:

@@ -17,7 +17,7 @@ HISTORY_TICKS = 5
 
 ACCELEROMETER_WEIGHT = 0.002
 """Share of the accelerometer in the tilt at every tick: a time constant of 5 s. With
-half a second the steps' accelerations leak in, and the error is as large as the tilt."""
+half a second the steps' accelerations leak in: the error is as large as the tilt."""
 
 
 class WalkSenses:
