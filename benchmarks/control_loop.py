@@ -20,6 +20,7 @@ from mujoco.batch import Batch
 import robots
 import terrain
 import worlds
+from benchmarks.stopwatch import seconds
 from experiments.trials import TrialRules, walk_trials
 from groundwalk.arrays import FloatArray
 from walk_engine import Velocity, WalkEngine, gaits
@@ -92,11 +93,11 @@ def measure() -> list[Timing]:
             _Stopwatch(WalkEngine, "step") as engine,
             _Stopwatch(Batch, "step") as physics,
         ):
-            loop = _seconds(partial(walk_trials, world, walks, _rules()))
+            loop = seconds(partial(walk_trials, world, walks, _rules()))
         batch = _started(world, walks, model)
-        bare = _seconds(partial(_replay, batch, commands, world.options))
+        bare = seconds(partial(_replay, batch, commands, world.options))
         states = _started(world, walks, model).bind("qpos")[:SINGLES]
-        single = _seconds(partial(_single, model, states, commands, world.options))
+        single = seconds(partial(_single, model, states, commands, world.options))
         rounds.append(
             Timing(
                 loop, engine.seconds, physics.seconds, bare, single * ROBOTS / SINGLES
@@ -188,9 +189,3 @@ def _single(
             data.ctrl[:] = command[robot]
             for _ in range(options.steps_per_tick):
                 mujoco.mj_step(model, data)
-
-
-def _seconds(work: Callable[[], object]) -> float:
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start

@@ -1,0 +1,89 @@
+"""What grounding costs: the control loop with and without an action transformer.
+
+The same 150 walks in the sim as it is, and in the sim behind SGAT with blocks of
+residuals, in turn. The transformer computes everything, but a smoothing of 0 gives back
+the gait's own commands, so that both loops do the same physics. Its models have the
+size that is used; they are fitted to few walks, which does not change what they cost.
+"""
+
+import dataclasses
+import statistics
+from functools import partial
+
+import numpy as np
+
+import robots
+import terrain
+import worlds
+from benchmarks.stopwatch import seconds
+from experiments.trials import TrialRules, walk_trials
+from experiments.walk_data import GaitCloud, leg_senses, walk
+from sgat.action_transformer import ActionTransformer
+from sgat.block_noise import BlockNoise
+from sgat.forward_config import ForwardConfig
+from sgat.forward_model import ForwardModel
+from sgat.grounded_world import GroundedWorld
+from sgat.inverse_model import InverseModel
+from sgat.network_config import NetworkConfig
+from walk_engine import gaits
+
+ROBOTS = 150
+TICKS = 200
+ROUNDS = 7
+BLOCK_TICKS = 50
+MOST = 1.15
+
+
+def measure() -> list[float]:
+    """Seconds with grounding over seconds without, round by round."""
+    description = robots.get("nao")
+    seeds = np.random.SeedSequence(1).spawn(ROBOTS)
+    grounds = [terrain.make("flat", 0)] * ROBOTS
+    plain = worlds.make("sim", description, grounds, seeds)
+    inside = worlds.make("sim", description, grounds, seeds)
+    grounded = GroundedWorld(inside, leg_senses(description), _transformer(), seeds)
+    walks = [gaits.get("start")] * ROBOTS
+    rules = TrialRules(limit_s=TICKS * worlds.TICK_S)
+    ratios = []
+    for _ in range(ROUNDS + 1):
+        with_grounding = seconds(partial(walk_trials, grounded, walks, rules))
+        ratios.append(
+            with_grounding / seconds(partial(walk_trials, plain, walks, rules))
+        )
+    return ratios[1:]
+
+
+def report(ratios: list[float]) -> tuple[str, bool]:
+    """The median as text, and whether grounding is cheap enough."""
+    median = statistics.median(ratios)
+    rounds = ", ".join(f"{ratio:.3f}" for ratio in ratios)
+    verdict = "pass" if median <= MOST else "FAIL"
+    return (
+        f"grounded control loop of {ROBOTS} robots, {TICKS} ticks, {ROUNDS} rounds\n"
+        f"  time against the ungrounded one : {median:.3f} (rounds {rounds}); "
+        f"at most {MOST} to pass: {verdict}"
+    ), median <= MOST
+
+
+def _transformer() -> ActionTransformer:
+    """SGAT with an enlarged noise of blocks, as for the walking robot."""
+    description = robots.get("nao")
+    senses = leg_senses(description)
+    vectors = GaitCloud().draw(gaits.get("start"), 8, np.random.SeedSequence(2))
+    _, noted = walk("sim", description, vectors, np.random.SeedSequence(3), (0.02,))
+    seen = dataclasses.replace(noted, state=noted.state[:, : senses.sim_columns])
+    seed = np.random.SeedSequence(4)
+    forward = ForwardModel(ForwardConfig(epochs=3)).fit(noted, seed)
+    inverse = InverseModel(NetworkConfig(epochs=3)).fit(seen, seed)
+    bound = np.ones(len(senses.joints))
+    law = BlockNoise(forward.residuals(noted), noted.episode, BLOCK_TICKS)
+    return ActionTransformer(
+        forward,
+        inverse,
+        -bound,
+        bound,
+        law,
+        smoothing=0.0,
+        gain=2.0,
+        inverse_columns=senses.sim_columns,
+    )
