@@ -8,7 +8,7 @@ READY := $(VENV)/ready
 RUN := runs/walk
 RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
-STUDIES := toy cliff
+STUDIES := toy cliff inverted-pendulum
 
 .PHONY: help env walk test lint results results-walk $(STUDIES:%=results-%) bench
 

@@ -1,0 +1,54 @@
+"""Bodies of a compiled MuJoCo model made heavier, as if its file had said so."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from groundwalk.errors import BadValueError, UnknownNameError
+
+
+def scale_mass(model: Any, data: Any, factor: float, bodies: Sequence[str]) -> None:
+    """Multiply the masses and rotational inertias of bodies.
+
+    Masses alone would leave the inertias and MuJoCo's derived constants as they were
+    (MuJoCo's issue 609); `mj_setConst` computes those anew. It also puts `data` into
+    the model's reference pose.
+
+    Args:
+      model: an `MjModel`; changed.
+      data: its `MjData`; changed.
+      factor: above 0.
+      bodies: their names; none stands for all.
+
+    Raises:
+      BadValueError: the factor is not positive.
+      UnknownNameError: there is no such body.
+    """
+    import mujoco
+
+    if not 0 < factor < float("inf"):
+        raise BadValueError(f"the masses' factor is {factor}; it must be positive")
+    names = [model.body(index).name for index in range(1, model.nbody)]
+    for name in bodies or names:
+        if name not in names:
+            raise UnknownNameError("body", name, names)
+        index = model.body(name).id
+        model.body_mass[index] *= factor
+        model.body_inertia[index] *= factor
+    mujoco.mj_setConst(model, data)
+
+
+@contextmanager
+def quiet_compiler() -> Iterator[None]:
+    """Drop MuJoCo's warnings inside.
+
+    Gymnasium's own models use attributes that MuJoCo 4 calls deprecated, and it would
+    write a log file into the working directory each time.
+    """
+    import mujoco
+
+    mujoco.set_mju_user_warning(lambda message: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(None)
