@@ -1,7 +1,7 @@
 """g(s, a): the action that makes the sim do what the real world would."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -21,13 +21,6 @@ class Transformer(Protocol):
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
         """(n, a) actions for the world, of states (n, s) and the policy's (n, a)."""
-
-
-class Wish(NamedTuple):
-    """The next states (n, p) that an SGAT transformer asks of its sim."""
-
-    mean: FloatArray
-    sample: FloatArray
 
 
 class ActionTransformer:
@@ -82,8 +75,8 @@ class ActionTransformer:
         self.smoothing = smoothing
         self.gain = gain
         self._columns = slice(inverse_columns)
-        self.wish: Wish | None = None
-        """What the last call's next states were to be; None without noise."""
+        self.wish: FloatArray | None = None
+        """(n, p) next states that the last call asked for; None without noise."""
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
         self._stream: NoiseStream | None = None
 
@@ -113,12 +106,11 @@ class ActionTransformer:
             return self.inverse.predict(seen, self.forward.predict(state, action))
         stream = self._noise_of(len(state))
         sample = self.forward.sample(state, action, stream)
-        mean = self.forward.predict(state, action)
-        self.wish = Wish(mean, sample)
+        self.wish = sample
         found = self.inverse.predict(seen, sample)
         if self.gain == 1:
             return found
-        expected = self.inverse.predict(seen, mean)
+        expected = self.inverse.predict(seen, self.forward.predict(state, action))
         return expected + self.gain * (found - expected)
 
     def _noise_of(self, n: int) -> NoiseStream:

@@ -46,9 +46,9 @@ class DistributionalInverse:
 
         f(s, a*) = m  and  B cov(a) B^T = C - S.
 
-    f and S are a forward model of the sim. a* is the least change of the agent's action
-    that meets m, by Gauss-Newton steps weighted with (C + S)^-1. Where the sim is
-    noisier than what is wanted, cov(a) loses its negative part: no action can help.
+    f and S are a forward model of the sim. a* is the least change of the policy's
+    action that meets m, by Gauss-Newton steps weighted with (C + S)^-1. Where the sim
+    is noisier than what is wanted, cov(a) loses its negative part: no action can help.
     As nothing is averaged over actions, none is shrunk as by a least-squares inverse.
     """
 
@@ -74,7 +74,7 @@ class DistributionalInverse:
 
         Args:
           state: (n, s).
-          action: (n, a) what the agent would do; the answer is near it.
+          action: (n, a) what the policy would do; the answer is near it.
           mean: (n, p) of the wanted next state.
           covariance: (n, p, p) of the wanted next state.
         """

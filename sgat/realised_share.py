@@ -32,18 +32,21 @@ class RealisedShare:
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode; see `Transformer.reset`."""
         self._transformer.reset(seeds)
-        self._last_state: FloatArray | None = None
+        self._last: tuple[FloatArray, FloatArray, FloatArray] | None = None
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """The transformer's answer, once the last one has been compared."""
-        wish = self._transformer.wish
-        if self._last_state is not None and wish is not None:
-            alive = (state != self._last_state).any(axis=1)
-            answer = state[:, : wish.mean.shape[1]] - wish.mean
-            self._asked.append((wish.sample - wish.mean)[alive])
-            self._answered.append(answer[alive])
-        self._last_state = state
-        return self._transformer(state, action)
+        """The transformer's answer, once the sim's to the last one is compared."""
+        if self._last is not None:
+            last_state, mean, wish = self._last
+            alive = (state != last_state).any(axis=1)
+            self._asked.append((wish - mean)[alive])
+            self._answered.append((state[:, : mean.shape[1]] - mean)[alive])
+        found = self._transformer(state, action)
+        wished = self._transformer.wish
+        if wished is not None:
+            expected = self._transformer.forward.predict(state, action)
+            self._last = state, expected, wished
+        return found
 
     def share(self) -> FloatArray:
         """(p,) slope of the answers on the wishes; 1 if the sim does as it is asked.

@@ -79,18 +79,10 @@ def train(
     with one_thread():
         parameters = _first_parameters(sizes, len(minds), generator)
         for stage in stages:
-            optimiser = torch.optim.AdamW(
-                parameters,
-                lr=stage.rate * config.learning_rate,
-                weight_decay=config.weight_decay,
-            )
+            epochs = _epochs(stage, parameters, examples, minds, config, generator)
             keeper = _BestWeights(parameters)
             keeper.look(_means(stage.score, parameters, held_out))
-            for _ in range(config.epochs):
-                for rows in _batches(len(examples.x), config.batch, generator):
-                    raw = _raw(parameters, examples.x[rows])
-                    losses = stage.loss(raw, examples.y[rows])
-                    _descend(parameters, optimiser, losses * minds[:, rows])
+            for _ in itertools.islice(epochs, config.epochs):
                 keeper.look(_means(stage.score, parameters, held_out))
                 if keeper.epochs_without_better >= config.patience:
                     break
@@ -132,21 +124,30 @@ def _raw(parameters: list[Tensor], x: Tensor) -> Tensor:
     return torch.baddbmm(parameters[-1], values, parameters[-2])
 
 
-def _batches(n: int, size: int, generator: torch.Generator) -> Iterator[Tensor]:
-    """Indices of one pass through n examples, in random order."""
-    order = torch.randperm(n, generator=generator)
-    for first in range(0, n, size):
-        yield order[first : first + size]
-
-
-def _descend(
-    parameters: list[Tensor], optimiser: torch.optim.Optimizer, losses: Tensor
-) -> None:
-    """One step down the mean of the losses (members, n)."""
-    optimiser.zero_grad()
-    losses.mean(dim=1).sum().backward()  # type: ignore[no-untyped-call]
-    _cut_gradients(parameters)
-    optimiser.step()
+def _epochs(
+    stage: Stage,
+    parameters: list[Tensor],
+    examples: Examples,
+    minds: Tensor,
+    config: NetworkConfig,
+    generator: torch.Generator,
+) -> Iterator[None]:
+    """Each step is one pass through the examples, in random order."""
+    rate = stage.rate * config.learning_rate
+    optimiser = torch.optim.AdamW(
+        parameters, lr=rate, weight_decay=config.weight_decay, fused=True
+    )
+    while True:
+        order = torch.randperm(len(examples.x), generator=generator)
+        for first in range(0, len(order), config.batch):
+            rows = order[first : first + config.batch]
+            losses = stage.loss(_raw(parameters, examples.x[rows]), examples.y[rows])
+            optimiser.zero_grad()
+            mean = (losses * minds[:, rows]).mean(dim=1)
+            mean.sum().backward()  # type: ignore[no-untyped-call]
+            _cut_gradients(parameters)
+            optimiser.step()
+        yield
 
 
 def _cut_gradients(parameters: list[Tensor]) -> None:

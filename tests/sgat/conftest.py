@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from known_dynamics import bent, linear, noisy_actions, roll
+from known_dynamics import LIGHT, bent, linear, noisy_actions, roll
 
 from sgat.forward_config import ForwardConfig
 from sgat.forward_model import ForwardModel
@@ -22,7 +22,7 @@ def noisy_real():
 @pytest.fixture(scope="session")
 def forward(noisy_real):
     """The paper's forward model of `noisy_real`."""
-    return ForwardModel(ForwardConfig(epochs=50)).fit(
+    return ForwardModel(ForwardConfig(**LIGHT)).fit(
         noisy_real[0], np.random.SeedSequence(3)
     )
 
@@ -31,11 +31,11 @@ def forward(noisy_real):
 def inverse():
     """Inverse model of the linear world."""
     sim = roll(linear, 60, 50, seed=4)
-    return InverseModel(NetworkConfig(epochs=70)).fit(sim, np.random.SeedSequence(5))
+    return InverseModel(NetworkConfig(**LIGHT)).fit(sim, np.random.SeedSequence(5))
 
 
 @pytest.fixture(scope="session")
 def bent_inverse():
     """Inverse model of the nonlinear world."""
     sim = roll(bent, 100, 50, seed=6)
-    return InverseModel(NetworkConfig(epochs=70)).fit(sim, np.random.SeedSequence(7))
+    return InverseModel(NetworkConfig(**LIGHT)).fit(sim, np.random.SeedSequence(7))

@@ -14,28 +14,26 @@ class FallingEnv(gym.Env):
     observation_space = Box(-1e6, 1e6, (3,), np.float64)
     action_space = Box(-1.0, 1.0, (1,), np.float32)
 
-    def __init__(self, first=0, truncates=False):
+    def __init__(self, first=0, truncates=False, reuses=False):
         self.episode = first - 1
         self.truncates = truncates
-        self._state = np.zeros(3)  # one array, changed in place
+        self.reuses = reuses  # one array for all observations
+        self._state = np.zeros(3)
 
     def reset(self, *, seed=None, options=None):
         super().reset(seed=seed)
         self.episode += 1
         self._state[:] = self.episode, 0, 0
-        return self._state, {}
+        return self._seen(), {}
 
     def step(self, action):
         self._state += 0, 1, action[0]
         end = self._state[1] >= 3 + self.episode % 4
-        reward = float(-(action[0] ** 2))
-        return (
-            self._state,
-            reward,
-            end and not self.truncates,
-            end and self.truncates,
-            {},
-        )
+        ends = (end and not self.truncates, end and self.truncates)
+        return self._seen(), float(-(action[0] ** 2)), *ends, {}
+
+    def _seen(self):
+        return self._state if self.reuses else self._state.copy()
 
 
 def half(observation):

@@ -6,6 +6,8 @@ from sgat.transitions import Transitions
 
 A = np.array([[1.0, 0.1, 0.0], [-0.2, 0.95, 0.1], [0.0, -0.1, 0.9]])
 B = np.array([[0.0, 0.02], [0.3, 0.0], [0.1, 0.4]])
+LIGHT = {"epochs": 40, "learning_rate": 5e-3}
+"""Training that is good enough for these worlds."""
 LOW, HIGH = np.full(2, -1.0), np.full(2, 1.0)
 
 

@@ -104,7 +104,8 @@ def test_a_transformer_that_does_nothing_changes_nothing():
     a, b = plain.reset(seed=2)[0], env.reset(seed=2)[0]
     for _ in range(20):
         np.testing.assert_array_equal(a, b)
-        a, b = plain.step(np.array([0.1]))[0], env.step(np.array([0.1]))[0]
+        action = np.array([0.1], np.float32)
+        a, b = plain.step(action)[0], env.step(action)[0]
 
 
 def test_spaces_that_are_no_vectors_are_refused():
