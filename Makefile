@@ -8,7 +8,7 @@ READY := $(VENV)/ready
 RUN := runs/walk
 RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
-STUDIES := toy cliff inverted-pendulum
+STUDIES := toy cliff inverted-pendulum nao-falls
 
 .PHONY: help env walk test lint results results-walk $(STUDIES:%=results-%) bench
 

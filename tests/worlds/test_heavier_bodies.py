@@ -63,6 +63,19 @@ def test_bad_values_are_refused():
         scale_mass(*arm(), 2, ("lowr",))
 
 
+@pytest.fixture
+def logging_to_file():
+    """MuJoCo's own default, which worlds switch off for the whole process."""
+    log = mujoco.MjLogConfig.get()
+    before = log.logto_file
+    log.logto_file = True
+    log.set()
+    yield
+    log.logto_file = before
+    log.set()
+
+
+@pytest.mark.usefixtures("logging_to_file")
 def test_the_compiler_is_quiet_only_inside(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     old = ARM.replace("<worldbody>", '<compiler settotalmass="3"/><worldbody>')
