@@ -85,7 +85,7 @@ def main(config: TransferNaoFalls) -> None:
     rows = prediction_rows(state)
     folder.write_json(RESULT, {"predictions": rows, "gain": state["gain"]})
     draw_falls(state, folder.path / FIGURE)
-    write_falls_page(folder, rows, config.trials, state["gain"])
+    write_falls_page(folder, rows, state, config.trials)
     if config.json:
         print_json(folder.read_json(RESULT))
     else:

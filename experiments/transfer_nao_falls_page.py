@@ -5,7 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from experiments.intervals import NORMAL_95
 from experiments.run_folder import RunFolder
+from experiments.transfer_nao_falls_figure import FIGURE
 from experiments.transfer_page import Claim, markdown_table, write_transfer_page
 from experiments.walk_groundings import BLOCKS, GROUNDINGS, SGAT
 from groundwalk.arrays import FloatArray
@@ -66,17 +68,38 @@ def table_of(rows: Sequence[Row]) -> list[list[str]]:
     return table
 
 
+def correlation_interval(r: float, pairs: int) -> tuple[float, float]:
+    """95 % interval of a correlation seen on so many pairs (Fisher 1921).
+
+    atanh(r) is nearly normal with the standard deviation 1 / sqrt(pairs - 3).
+    """
+    if pairs <= 3:
+        return -1.0, 1.0
+    half = NORMAL_95 / np.sqrt(pairs - 3)
+    middle = np.arctanh(np.clip(r, -1 + 1e-12, 1 - 1e-12))
+    return float(np.tanh(middle - half)), float(np.tanh(middle + half))
+
+
 def write_falls_page(
-    folder: RunFolder, rows: Sequence[Row], trials: int, gain: float
+    folder: RunFolder, rows: Sequence[Row], state: Mapping[str, Any], trials: int
 ) -> None:
-    """Write `result.md`."""
+    """Write `result.md`.
+
+    Args:
+      folder: the run.
+      rows: of `prediction_rows`.
+      state: what they were made of, and the gain of the noise.
+      trials: of each gait in the real world.
+    """
+    count = len(state["real"]["fall_rate"])
     by_name = {row["grounding"]: row["fall_rate"]["correlation"] or 0.0 for row in rows}
     best = max(by_name, key=lambda name: by_name[name])
+    low, high = correlation_interval(by_name[best], count)
     claims = [
         Claim(
             f"the best grounding's fall rates correlate with the real ones by {GOAL}",
             by_name[best] >= GOAL,
-            f"{best}: {by_name[best]:.2f}",
+            f"{best}: {by_name[best]:.2f}, 95 % interval {low:.2f} to {high:.2f}",
         ),
         Claim(
             "noise as it really was, in blocks, predicts falls better than white noise",
@@ -85,9 +108,11 @@ def write_falls_page(
         ),
     ]
     body = [
-        f"Gaits that no grounding has seen, {trials} trials each in the real world.",
-        f"The noise of the last row was enlarged {gain:.2f} times: one over the share",
-        "of what it asks that the grounded sim does.",
+        f"{count} gaits that no grounding has seen, {trials} trials each on real ground.",
+        f"The noise of the last row was enlarged {state['gain']:.2f} times: one over",
+        "the share of what it asks that the grounded sim does.",
+        "",
+        f"![Predicted against real]({FIGURE})",
         "",
         *markdown_table(HEADINGS, table_of(rows)),
     ]

@@ -5,7 +5,11 @@ import pytest
 
 from experiments.run_folder import HISTORY, RunFolder
 from experiments.transfer_nao_falls import TransferNaoFalls, main
-from experiments.transfer_nao_falls_page import correlation, prediction_rows
+from experiments.transfer_nao_falls_page import (
+    correlation,
+    correlation_interval,
+    prediction_rows,
+)
 from experiments.walk_data import GaitCloud
 from experiments.walk_groundings import BLOCKS, GAT, GROUNDINGS, NONE, SGAT
 from groundwalk.errors import BadValueError
@@ -57,6 +61,14 @@ def test_predictions_are_held_against_real():
 def test_a_constant_prediction_has_no_correlation():
     assert correlation(np.zeros(3), np.arange(3.0)) is None
     assert correlation(-np.arange(3.0), np.arange(3.0)) == pytest.approx(-1.0)
+
+
+def test_the_interval_of_a_correlation():
+    # textbook: r = 0.5 of 28 pairs; atanh(0.5) = 0.5493, 1.96 / 5 = 0.392
+    low, high = correlation_interval(0.5, 28)
+    assert low == pytest.approx(np.tanh(0.5493 - 0.392), abs=1e-3)
+    assert high == pytest.approx(np.tanh(0.5493 + 0.392), abs=1e-3)
+    assert correlation_interval(0.5, 3) == (-1.0, 1.0)
 
 
 def test_a_cloud_of_gaits_lies_around_its_middle():
