@@ -108,7 +108,7 @@ def write_falls_page(
         ),
     ]
     body = [
-        f"{count} gaits that no grounding has seen, {trials} trials each on real ground.",
+        f"{count} gaits that no grounding has seen, each on {trials} real grounds.",
         f"The noise of the last row was enlarged {state['gain']:.2f} times: one over",
         "the share of what it asks that the grounded sim does.",
         "",
