@@ -57,6 +57,8 @@ class Evaluate:
         load_gaits(self.gaits)
         for world in self.worlds:
             self.study(world)
+        if self.seed < 0:
+            raise BadValueError(f"seed is {self.seed}; it must not be negative")
 
     def study(self, world: str) -> Study:
         """How one world is used."""

@@ -64,6 +64,8 @@ class Study:
         parse(self.terrain)
         if self.trials < 1:
             raise BadValueError(f"trials is {self.trials}; it must be at least 1")
+        if self.threads < 0:
+            raise BadValueError(f"threads is {self.threads}; it must not be negative")
 
     @property
     def options(self) -> WorldOptions:

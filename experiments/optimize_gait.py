@@ -25,9 +25,9 @@ from experiments.run_folder import (
 )
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json, print_scores
-from experiments.search import GaitSearch
+from experiments.search import GaitSearch, check_search
 from experiments.trials import SEARCH_TRIAL, walk_trials
-from groundwalk.errors import BadValueError
+from groundwalk.errors import BadValueError, RunFolderError
 from terrain import TerrainSpec, parse
 from walk_engine import Gait
 
@@ -74,15 +74,20 @@ class OptimizeGait:
         """Refuse what no run can do, before anything is written."""
         robots.get(self.robot)
         load_gait(self.start)
-        for ground in (self.terrain, self.real_terrain):
-            parse(ground)
-        for name in ("population", "generations", "trials"):
-            if getattr(self, name) < 1:
-                raise BadValueError(
-                    f"{name} is {getattr(self, name)}; it must be positive"
-                )
+        check_search(self.population, self.sigma)
+        for world in WORLDS:
+            self.study(world)
+        if self.generations < 1:
+            raise BadValueError(
+                f"generations is {self.generations}; it must be positive"
+            )
         if self.seed < 0:
             raise BadValueError(f"seed is {self.seed}; it must not be negative")
+
+    def study(self, world: str) -> Study:
+        """How start and tuned gait are evaluated in a world."""
+        ground = dict(zip(WORLDS, (self.terrain, self.real_terrain), strict=True))
+        return Study(world, ground[world], self.trials, threads=self.threads)
 
 
 def main(config: OptimizeGait) -> None:
@@ -109,7 +114,7 @@ def search(
     """The search's answer, generation by generation with checkpoints."""
     of_strategy, of_grounds = seed.spawn(2)
     if folder.has(CHECKPOINT):
-        state = pickle.loads((folder.path / CHECKPOINT).read_bytes())
+        state = _checkpoint(folder)
         strategy, history = GaitSearch.from_bytes(state["search"]), state["history"]
     else:
         strategy = GaitSearch(
@@ -126,6 +131,16 @@ def search(
             folder.write_json(HISTORY, {"generations": history})
             bar.advance(f"mean gait {entry['mean_reward']:.1f} cm/s")
     return strategy.mean
+
+
+def _checkpoint(folder: RunFolder) -> dict[str, Any]:
+    """Where the search was when the last generation ended."""
+    path = folder.path / CHECKPOINT
+    try:
+        state: dict[str, Any] = pickle.loads(path.read_bytes())
+    except (pickle.UnpicklingError, EOFError, ValueError) as error:
+        raise RunFolderError(f"{path} is damaged: {error}") from None
+    return state
 
 
 def _generation(
@@ -160,11 +175,10 @@ def _evaluate(
     """Scores of the start and the tuned gait in both worlds, on a course of 3 m."""
     description = robots.get(config.robot)
     both = {"start": load_gait(config.start), "tuned": tuned}
-    grounds = dict(zip(WORLDS, (config.terrain, config.real_terrain), strict=True))
     table = {}
-    for (world, ground), own in zip(grounds.items(), seed.spawn(2), strict=True):
-        study = Study(world, ground, config.trials, threads=config.threads)
-        table[world] = keep(folder, world, evaluate(study, description, both, own))
+    for world, own in zip(WORLDS, seed.spawn(2), strict=True):
+        outcomes = evaluate(config.study(world), description, both, own)
+        table[world] = keep(folder, world, outcomes)
     return table
 
 

@@ -12,6 +12,20 @@ from walk_engine.gait import PARAMETERS, Gait, from_unit, to_unit
 SMALLEST_POPULATION = 4
 
 
+def check_search(population: int, sigma: float) -> None:
+    """Refuse a search that cannot move.
+
+    Raises:
+      BadValueError: the population is too small, or the spread is none or too large.
+    """
+    if population < SMALLEST_POPULATION:
+        raise BadValueError(
+            f"population is {population}; it must be at least {SMALLEST_POPULATION}"
+        )
+    if not 0 < sigma <= 1:
+        raise BadValueError(f"sigma is {sigma}; it must be above 0 and at most 1")
+
+
 class _NormalSource:
     """Standard normal numbers of one generator: pycma would use NumPy's global one."""
 
@@ -47,12 +61,7 @@ class GaitSearch:
         """
         import cma
 
-        if population < SMALLEST_POPULATION:
-            raise BadValueError(
-                f"population is {population}; it must be at least {SMALLEST_POPULATION}"
-            )
-        if not 0 < sigma <= 1:
-            raise BadValueError(f"sigma is {sigma}; it must be above 0 and at most 1")
+        check_search(population, sigma)
         options = {
             "popsize": population,
             "bounds": [[0.0] * len(PARAMETERS), [1.0] * len(PARAMETERS)],

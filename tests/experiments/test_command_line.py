@@ -47,6 +47,7 @@ def bad_input(tmp_path):
         "terrain": (lambda: ["evaluate", "start", "--terrain", "wave"], "'waves'"),
         "option": (lambda: ["evaluate", "start", "--trails", "3"], "--trials"),
         "number": (lambda: ["optimize-gait", "--population", "many"], "--population"),
+        "seed": (lambda: ["evaluate", "start", "--seed", "-1"], "seed is -1"),
         "world": (lambda: ["evaluate", "start", "--worlds", "sin"], "'sim'"),
         "bounds": (lambda: with_gait(hip_height=0.5), "hip_height"),
         "missing": (lambda: with_gait(hip_height=None), "hip_height"),

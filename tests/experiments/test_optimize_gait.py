@@ -10,7 +10,7 @@ import pytest
 
 from experiments.optimize_gait import OptimizeGait, search
 from experiments.run_folder import RunFolder
-from groundwalk.errors import GroundwalkError
+from groundwalk.errors import GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
 SMALL = ["--population", "6", "--generations", "4", "--trials", "1"]
@@ -103,6 +103,14 @@ def test_the_history_says_what_the_search_did(tmp_path):
     assert set(entry["mean_gait"]) == {parameter.name for parameter in PARAMETERS}
 
 
+def test_a_damaged_checkpoint_is_named(tmp_path):
+    folder = RunFolder(tmp_path)
+    folder.write_bytes("checkpoint.pkl", b"\x80\x04 cut off")
+    seed = np.random.SeedSequence(1)
+    with pytest.raises(RunFolderError, match=r"checkpoint\.pkl is damaged"):
+        search(OptimizeGait(population=6, generations=2), folder, seed)
+
+
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
@@ -112,6 +120,10 @@ def test_the_history_says_what_the_search_did(tmp_path):
         ({"population": 0}, "population is 0"),
         ({"generations": -1}, "generations is -1"),
         ({"seed": -1}, "seed is -1"),
+        ({"population": 3}, "population is 3; it must be at least 4"),
+        ({"sigma": 0.0}, "sigma is 0.0"),
+        ({"trials": 0}, "trials is 0"),
+        ({"threads": -1}, "threads is -1"),
     ],
 )
 def test_what_no_run_can_do_is_refused_at_once(settings, message):
