@@ -1,7 +1,6 @@
 """`groundwalk optimize-gait`: CMA-ES tunes the 16 gait parameters in the sim."""
 
 import dataclasses
-import pickle
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,6 @@ import worlds
 from experiments.command_line import run_verb
 from experiments.evaluation import Study, evaluate, keep
 from experiments.gait_files import load_gait
-from experiments.progress import progress
 from experiments.result_page import write_page
 from experiments.reward import reward_cm_s
 from experiments.run_folder import (
@@ -26,8 +24,9 @@ from experiments.run_folder import (
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json, print_scores
 from experiments.search import GaitSearch, check_search
+from experiments.search_run import run_search
 from experiments.trials import SEARCH_TRIAL, walk_trials
-from groundwalk.errors import BadValueError, RunFolderError
+from groundwalk.errors import BadValueError
 from terrain import TerrainSpec, parse
 from walk_engine import Gait
 
@@ -113,34 +112,19 @@ def search(
 ) -> Gait:
     """The search's answer, generation by generation with checkpoints."""
     of_strategy, of_grounds = seed.spawn(2)
-    if folder.has(CHECKPOINT):
-        state = _checkpoint(folder)
-        strategy, history = GaitSearch.from_bytes(state["search"]), state["history"]
-    else:
-        strategy = GaitSearch(
-            load_gait(config.start), config.population, config.sigma, of_strategy
-        )
-        history = []
     ground_seeds = of_grounds.generate_state(config.generations)
-    with progress("search", config.generations, done=len(history)) as bar:
-        for generation in range(len(history), config.generations):
-            entry = _generation(config, strategy, int(ground_seeds[generation]))
-            history.append({"generation": generation, **entry})
-            state = {"search": strategy.to_bytes(), "history": history}
-            folder.write_bytes(CHECKPOINT, pickle.dumps(state))
-            folder.write_json(HISTORY, {"generations": history})
-            bar.advance(f"mean gait {entry['mean_reward']:.1f} cm/s")
-    return strategy.mean
 
+    def begin() -> GaitSearch:
+        start = load_gait(config.start)
+        return GaitSearch(start, config.population, config.sigma, of_strategy)
 
-def _checkpoint(folder: RunFolder) -> dict[str, Any]:
-    """Where the search was when the last generation ended."""
-    path = folder.path / CHECKPOINT
-    try:
-        state: dict[str, Any] = pickle.loads(path.read_bytes())
-    except (pickle.UnpicklingError, EOFError, ValueError) as error:
-        raise RunFolderError(f"{path} is damaged: {error}") from None
-    return state
+    return run_search(
+        folder.path / CHECKPOINT,
+        begin,
+        lambda number, search: _generation(config, search, int(ground_seeds[number])),
+        config.generations,
+        lambda entries: folder.write_json(HISTORY, {"generations": entries}),
+    ).mean
 
 
 def _generation(
@@ -156,7 +140,7 @@ def _generation(
     description = robots.get(config.robot)
     world = worlds.make("sim", description, [ground] * n, nobody, options)
     trials = walk_trials(world, tried, SEARCH_TRIAL)
-    rewards = reward_cm_s(trials)
+    rewards = reward_cm_s(trials, SEARCH_TRIAL.limit_s)
     strategy.tell(rewards[:-1])
     return {
         "rewards": rewards[:-1].tolist(),

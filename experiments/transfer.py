@@ -15,6 +15,7 @@ STUDIES = {
     "half-cheetah": Verb(
         "transfer_half_cheetah", "TransferHalfCheetah", "noisy and heavier cheetahs"
     ),
+    "nao": Verb("transfer_nao", "TransferNao", "gaits for uneven ground"),
     "nao-falls": Verb(
         "transfer_nao_falls",
         "TransferNaoFalls",

@@ -25,8 +25,7 @@ from experiments.walk_data import GaitCloud, walk
 from experiments.walk_groundings import (
     GROUNDINGS,
     ROBOT,
-    calibrated_gain,
-    fit_models,
+    WalkModels,
     walk_in_sim,
 )
 from groundwalk.errors import BadValueError
@@ -34,8 +33,7 @@ from walk_engine import gaits
 
 VERB = "transfer-nao-falls"
 EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
-SHARE_GAITS = 60
-STAGES = 2 + len(GROUNDINGS)
+STAGES = 1 + len(GROUNDINGS)
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def main(config: TransferNaoFalls) -> None:
             folder.write_json(HISTORY, state)
             bar.advance(f"{stage} done")
     rows = prediction_rows(state)
-    folder.write_json(RESULT, {"predictions": rows, "gain": state["gain"]})
+    folder.write_json(RESULT, {"predictions": rows})
     draw_falls(state, folder.path / FIGURE)
     write_falls_page(folder, rows, state, config.trials)
     if config.json:
@@ -103,21 +101,17 @@ def _stages(
         vectors = np.repeat(held_out, config.trials, axis=0)
         trials, _ = walk("real", description, vectors, _seed(config, 1))
         yield "real", _per_gait(trials, config.gaits)
-    if "gain" in done and all(name in done for name in GROUNDINGS):
+    if all(name in done for name in GROUNDINGS):
         return
     learned = GaitCloud().draw(start, config.real_walks, _seed(config, 2))
     explored = GaitCloud().draw(start, config.sim_walks, _seed(config, 3))
     _, real = walk("real", description, learned, _seed(config, 4))
     _, sim = walk("sim", description, explored, _seed(config, 5), EXPLORATION_RAD)
-    models = fit_models(real, sim, _seed(config, 6))
-    gain = done.get("gain")
-    if gain is None:
-        gain = calibrated_gain(models, learned[:SHARE_GAITS], _seed(config, 7))
-        yield "gain", gain
+    models = WalkModels(real, sim, _seed(config, 6))
     for name in GROUNDINGS:
         if name not in done:
-            transformer = models.transformer(name, gain)
-            seed = _seed(config, 8)
+            transformer = models.transformer(name)
+            seed = _seed(config, 7)
             trials = walk_in_sim(transformer, held_out, config.rollouts, seed)
             yield name, _per_gait(trials, config.gaits)
 

@@ -1,6 +1,7 @@
 """The groundings of the walking robot that are compared."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -9,7 +10,8 @@ import terrain
 import worlds
 from experiments.trials import TrialRules, Trials, walk_trials
 from experiments.walk_data import WALK, leg_senses
-from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.arrays import FloatArray
+from sgat.action_noise import ActionNoise
 from sgat.action_transformer import ActionTransformer, Transformer
 from sgat.block_noise import BlockNoise
 from sgat.forward_config import ForwardConfig
@@ -18,74 +20,89 @@ from sgat.grounded_world import GroundedWorld
 from sgat.inverse_model import InverseModel
 from sgat.network_config import NetworkConfig
 from sgat.noise import NoiseLaw, WhiteNoise
-from sgat.realised_share import RealisedShare
 from sgat.transitions import Transitions
 from worlds import World
 
 ROBOT = "nao"
-NONE, GAT, SGAT, BLOCKS = "no grounding", "GAT", "SGAT", "SGAT, blocks"
-GROUNDINGS = (NONE, GAT, SGAT, BLOCKS)
+NONE, GAT, SGAT = "no grounding", "GAT", "SGAT"
+ENSEMBLE = "SGAT, ensemble"
+GROUNDINGS = (NONE, GAT, SGAT, ENSEMBLE)
 
 BLOCK_TICKS = 50
 """Two to three steps: a bump pushes all joints one way for several ticks."""
 
-SHARE_RULES = TrialRules(limit_s=3.0, start_spread_rad=0.01)
+MEMBERS = 4
+"""Networks of the ensemble: a search cannot live on the errors of a single one."""
+
 LARGEST_ACTION_RAD = 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class WalkModels:
-    """Models of both worlds, and what the forward model does not explain.
+    """Models of both worlds, each fitted when it is first needed.
 
     Attributes:
-      forward: of the real world.
-      inverse: of the sim; it sees the first columns of a state, without commands.
-      residuals: (N, p) standardised, of the real walks.
-      episode: (N,) which walk each belongs to.
+      real: walks in the real world.
+      sim: walks in the sim.
+      seed: of the trainings.
     """
 
-    forward: ForwardModel
-    inverse: InverseModel
-    residuals: FloatArray
-    episode: IntArray
+    real: Transitions
+    sim: Transitions
+    seed: np.random.SeedSequence
 
-    def transformer(self, name: str, gain: float = 1.0) -> ActionTransformer | None:
+    @cached_property
+    def inverse(self) -> InverseModel:
+        """Of the sim; it sees the first columns of a state, without commands."""
+        columns, sim = leg_senses(robots.get(ROBOT)).sim_columns, self.sim
+        seen = Transitions(
+            sim.state[:, :columns], sim.action, sim.next_state, sim.episode
+        )
+        return InverseModel(NetworkConfig()).fit(seen, self._seed(0))
+
+    @cached_property
+    def forward(self) -> ForwardModel:
+        """Of the real world."""
+        return ForwardModel(ForwardConfig(beta=0.5)).fit(self.real, self._seed(1))
+
+    @cached_property
+    def ensemble(self) -> ForwardModel:
+        """Of the real world; a robot keeps one member for a walk."""
+        config = ForwardConfig(beta=0.5, members=MEMBERS)
+        return ForwardModel(config).fit(self.real, self._seed(2))
+
+    def transformer(self, name: str) -> ActionTransformer | None:
         """The transformer of one of `GROUNDINGS`; None for no grounding.
 
-        Args:
-          name: which.
-          gain: of the noise, for the one with blocks.
+        The ensemble's noise are blocks of the real walks' residuals: with their memory,
+        their tails, and what they have in common across joints and torso.
         """
-        laws: dict[str, NoiseLaw | None] = {
-            GAT: None,
-            SGAT: WhiteNoise(self.forward.outcomes),
-            BLOCKS: BlockNoise(self.residuals, self.episode, BLOCK_TICKS),
-        }
         if name == NONE:
             return None
+        noise: NoiseLaw | None = None
+        forward = self.ensemble if name == ENSEMBLE else self.forward
+        if name == ENSEMBLE:
+            residuals = forward.residuals(self.real)
+            noise = BlockNoise(residuals, self.real.episode, BLOCK_TICKS)
+        elif name == SGAT:
+            noise = WhiteNoise(forward.outcomes)
         senses = leg_senses(robots.get(ROBOT))
         bound = np.full(len(senses.joints), LARGEST_ACTION_RAD)
+        columns = senses.sim_columns
         return ActionTransformer(
-            self.forward,
-            self.inverse,
-            -bound,
-            bound,
-            laws[name],
-            gain=gain if name == BLOCKS else 1.0,
-            inverse_columns=senses.sim_columns,
+            forward, self.inverse, -bound, bound, noise, inverse_columns=columns
         )
 
+    def _seed(self, use: int) -> np.random.SeedSequence:
+        key = (*self.seed.spawn_key, use)
+        return np.random.SeedSequence(self.seed.entropy, spawn_key=key)
 
-def fit_models(
-    real: Transitions, sim: Transitions, seed: np.random.SeedSequence
-) -> WalkModels:
-    """Fit the forward model to the real world and the inverse one to the sim."""
-    of_forward, of_inverse = seed.spawn(2)
-    columns = leg_senses(robots.get(ROBOT)).sim_columns
-    seen = Transitions(sim.state[:, :columns], sim.action, sim.next_state, sim.episode)
-    forward = ForwardModel(ForwardConfig(beta=0.5)).fit(real, of_forward)
-    inverse = InverseModel(NetworkConfig()).fit(seen, of_inverse)
-    return WalkModels(forward, inverse, forward.residuals(real), real.episode)
+
+def action_envelope(deviation_rad: float) -> ActionNoise:
+    """White noise on the legs' commands: ANE's stand-in for a grounding."""
+    joints = len(leg_senses(robots.get(ROBOT)).joints)
+    bound = np.full(joints, LARGEST_ACTION_RAD)
+    return ActionNoise(deviation_rad, -bound, bound)
 
 
 def walk_in_sim(
@@ -113,19 +130,3 @@ def walk_in_sim(
         senses = leg_senses(world.description)
         world = GroundedWorld(world, senses, transformer, seeds)
     return walk_trials(world, np.repeat(vectors, repeats, axis=0), rules, seeds)
-
-
-def calibrated_gain(
-    models: WalkModels, vectors: FloatArray, seed: np.random.SeedSequence
-) -> float:
-    """One over the share of the joints' noise that the grounded sim realises.
-
-    Measured in the sim alone, on gaits of the grounding's own data; no fall is
-    looked at.
-    """
-    transformer = models.transformer(BLOCKS)
-    assert transformer is not None
-    probe = RealisedShare(transformer)
-    walk_in_sim(probe, vectors, 1, seed, SHARE_RULES)
-    joints = len(leg_senses(robots.get(ROBOT)).joints)
-    return 1 / float(np.median(probe.share()[:joints]))

@@ -77,13 +77,13 @@ def test_start_poses_spread_only_when_asked():
     assert spread.distance_m[0] != spread.distance_m[1]
 
 
-def test_reward_is_speed_less_fifteen_after_a_fall():
+def test_reward_is_speed_over_the_whole_trial_less_fifteen_after_a_fall():
     trials = Trials(
         distance_m=np.array([1.5, 1.5, 0.3]),
         time_s=np.array([7.5, 7.5, 1.5]),
         ended=(End.NONE, End.FALL, End.DIVERGED),
     )
-    np.testing.assert_allclose(reward_cm_s(trials), [20.0, 5.0, 5.0])
+    np.testing.assert_allclose(reward_cm_s(trials, 7.5), [20.0, 5.0, -11.0])
 
 
 @pytest.mark.parametrize(

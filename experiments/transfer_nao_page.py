@@ -1,0 +1,112 @@
+"""The NAO study's table, its claims and its page."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from experiments.intervals import wilson
+from experiments.run_folder import RunFolder
+from experiments.transfer_nao_figure import FIGURE
+from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.walk_groundings import ENSEMBLE, GAT, SGAT
+from experiments.walk_raters import FALL_PENALTY_WALK_CM_S
+
+CELLS = "cells"
+HEADINGS = ("method", "step", "speed [cm/s]", "falls", "95 % interval", "real walks")
+GOAL_SPEED_CM_S, GOAL_FALLS, SIGNIFICANT = 18.0, 0.1, 0.05
+
+Cell = Mapping[str, Any]
+
+
+def table_of(cells: Sequence[Cell]) -> list[list[str]]:
+    """The cells as text."""
+    rows = []
+    for cell in sorted(cells, key=lambda cell: cell["step"]):
+        low, high = wilson(cell["falls"], cell["trials"])
+        rows.append(
+            [
+                cell["method"],
+                str(cell["step"]),
+                f"{cell['speed_mean']:.1f} ± {cell['speed_std']:.1f}",
+                f"{cell['falls']}/{cell['trials']}",
+                f"{low:.0%} to {high:.0%}",
+                str(cell["real_walks"]),
+            ]
+        )
+    return rows
+
+
+def more_falls_p(often: Cell, seldom: Cell) -> float:
+    """Fisher's exact test: how likely the difference is if both fall as often.
+
+    One-sided: the first falls more often (Fisher 1922; the paper counts ten trials).
+    """
+    from scipy.stats import fisher_exact
+
+    table = [
+        [cell["falls"], cell["trials"] - cell["falls"]] for cell in (often, seldom)
+    ]
+    return float(fisher_exact(table, alternative="greater").pvalue)
+
+
+def claims_of(cells: Sequence[Cell]) -> list[Claim]:
+    """What the paper's table says, and whether it came out so.
+
+    There are none if a method that is spoken of was not tried.
+    """
+    at = {(cell["method"], cell["step"]): cell for cell in cells}
+    if not all((name, 2) in at for name in (GAT, SGAT, ENSEMBLE)):
+        return []
+    gat, sgat, best = (at[name, 2] for name in (GAT, SGAT, ENSEMBLE))
+    share = sgat["falls"] / sgat["trials"]
+    p = more_falls_p(gat, sgat)
+    return [
+        Claim(
+            f"after two steps SGAT walks at least {GOAL_SPEED_CM_S:.0f} cm/s and falls "
+            f"in at most {GOAL_FALLS:.0%} of its trials",
+            sgat["speed_mean"] >= GOAL_SPEED_CM_S and share <= GOAL_FALLS,
+            f"{_walked(sgat)}",
+        ),
+        Claim(
+            "GAT falls significantly more often",
+            p < SIGNIFICANT,
+            f"{_walked(gat)}; Fisher's exact test, one-sided: p = {p:.2g}",
+        ),
+        Claim(
+            "the ensemble with real noise tunes a better gait than plain SGAT",
+            _earned(best) > _earned(sgat),
+            f"{_walked(best)} against {_walked(sgat)}",
+        ),
+    ]
+
+
+def write_nao_page(folder: RunFolder, cells: Sequence[Cell]) -> None:
+    """Write `result.md`."""
+    trials = cells[0]["trials"]
+    body = [
+        "Every gait walked the same grounds: lumps of 10 mm, a course of 3 m,",
+        f"{trials} trials. Speed is forward, until the fall where the robot fell; its",
+        "spread is the standard deviation over trials. Intervals are Wilson's.",
+        "",
+        f"![Speed and falls of every gait]({FIGURE})",
+        "",
+        *markdown_table(HEADINGS, table_of(cells)),
+        "",
+        f"{SGAT}'s noise is white, as in the paper. {ENSEMBLE}: four networks, one for",
+        "a walk, and as noise blocks of half a second of the real walks' residuals.",
+        f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of 7.5 s.",
+        "*real walks*: what the method has seen of the real world before its trials.",
+    ]
+    title = "Gaits from grounded sims on uneven real ground"
+    write_transfer_page(folder, title, claims_of(cells), body)
+
+
+def _walked(cell: Cell) -> str:
+    return (
+        f"{cell['speed_mean']:.1f} ± {cell['speed_std']:.1f} cm/s, "
+        f"{cell['falls']} falls of {cell['trials']}"
+    )
+
+
+def _earned(cell: Cell) -> float:
+    """Speed less 15 cm/s a fall: the paper's reward."""
+    return float(cell["speed_mean"] - 15 * cell["falls"] / cell["trials"])

@@ -1,0 +1,120 @@
+"""A search for a gait, and the grounding steps that it may walk in."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+import robots
+from experiments.search import GaitSearch
+from experiments.search_run import Entry, run_search
+from experiments.walk_data import GaitCloud, walk
+from experiments.walk_groundings import (
+    GROUNDINGS,
+    ROBOT,
+    WalkModels,
+)
+from experiments.walk_raters import GroundedRater, Rater
+from sgat.transitions import Transitions
+from walk_engine import Gait
+
+EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
+"""Noise on the commands of the sim's walks: it shows what an action does."""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """How much is searched.
+
+    Attributes:
+      population: gaits in a generation.
+      generations: of a search.
+      sigma: spread of the first generation, as a part of each parameter's range.
+    """
+
+    population: int
+    generations: int
+    sigma: float
+
+
+def tune(
+    checkpoint: Path,
+    start: Gait,
+    budget: Budget,
+    rater: Rater,
+    seed: np.random.SeedSequence,
+) -> Gait:
+    """The mean gait of a search that begins at another gait."""
+    of_search, *of_walks = seed.spawn(1 + budget.generations)
+
+    def generation(number: int, search: GaitSearch) -> Entry:
+        tried = np.vstack([search.ask(), search.mean.to_vector()])
+        rewards = rater(tried, of_walks[number])
+        search.tell(rewards[:-1])
+        return {"mean_reward": float(rewards[-1])}
+
+    return run_search(
+        checkpoint,
+        lambda: GaitSearch(start, budget.population, budget.sigma, of_search),
+        generation,
+        budget.generations,
+    ).mean
+
+
+class Grounding:
+    """The data of one grounding step and the models learned from them, when asked."""
+
+    def __init__(
+        self,
+        around: Gait,
+        cloud: GaitCloud,
+        walks: tuple[int, int],
+        seed: np.random.SeedSequence,
+        before: "Grounding | None" = None,
+    ) -> None:
+        """Say what shall be walked.
+
+        Args:
+          around: the gait that the data are about.
+          cloud: of the gaits that walk.
+          walks: in the real world and in the sim.
+          seed: of gaits, walks and trainings.
+          before: the step before, whose data count as well.
+        """
+        self._around, self._cloud, self._walks = around, cloud, walks
+        self._seeds = [
+            np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))
+            for use in range(5)
+        ]
+        self._before = before
+
+    @cached_property
+    def data(self) -> tuple[Transitions, Transitions]:
+        """Transitions of the real world and of the sim so far."""
+        description = robots.get(ROBOT)
+        of_real, of_sim = (
+            self._cloud.draw(self._around, count, seed)
+            for count, seed in zip(self._walks, self._seeds, strict=False)
+        )
+        _, real = walk("real", description, of_real, self._seeds[2])
+        _, sim = walk("sim", description, of_sim, self._seeds[3], EXPLORATION_RAD)
+        if self._before is None:
+            return real, sim
+        return self._before.data[0].joined(real), self._before.data[1].joined(sim)
+
+    @cached_property
+    def models(self) -> WalkModels:
+        """Fitted to all data so far."""
+        return WalkModels(*self.data, self._seeds[4])
+
+    def rater(self, grounding: str, repeats: int) -> GroundedRater:
+        """The sim behind one of `GROUNDINGS`."""
+        assert grounding in GROUNDINGS
+        return GroundedRater(self.models.transformer(grounding), repeats)
+
+
+def cloud_around(gait: Gait) -> GaitCloud:
+    """Gaits near a tuned one, from half to a little above its speed."""
+    fastest_m_s = gait["max_forward"]
+    return GaitCloud(0.06, 0.5 * fastest_m_s, min(1.1 * fastest_m_s, 0.45))

@@ -1,0 +1,43 @@
+import numpy as np
+import pytest
+
+from experiments.walk_raters import (
+    GroundedRater,
+    RandomisedRater,
+)
+from walk_engine import gaits
+
+SEED = np.random.SeedSequence(4)
+
+
+def vectors(*speeds_m_s):
+    start = gaits.get("start")
+    return np.stack([start.replace(max_forward=v).to_vector() for v in speeds_m_s])
+
+
+@pytest.mark.slow
+def test_in_the_plain_sim_a_faster_gait_earns_more():
+    slow, fast = GroundedRater(None, 1)(vectors(0.1, 0.2), SEED)
+    # cm/s of a walk that starts from rest, without a fall
+    assert slow == pytest.approx(10, abs=1.5)
+    assert fast == pytest.approx(18.5, abs=2.5)
+
+
+@pytest.mark.slow
+def test_equal_gaits_get_equal_random_numbers():
+    first, second = RandomisedRater(2)(vectors(0.15, 0.15), np.random.SeedSequence(4))
+    assert first == second
+    again = RandomisedRater(2)(vectors(0.15), np.random.SeedSequence(5))
+    assert again[0] != first
+
+
+def test_dynamics_are_drawn_within_their_ranges():
+    rater, rng = RandomisedRater(1), np.random.default_rng(1)
+    options = [rater.options(rng) for _ in range(200)]
+    latencies = np.array([o.latency_s for o in options])
+    frictions = np.array([o.friction for o in options])
+    assert latencies.min() >= 0
+    assert latencies.max() <= 0.06
+    assert latencies.std() == pytest.approx(0.06 / np.sqrt(12), rel=0.2)
+    assert frictions.min() >= 0.4
+    assert frictions.max() <= 1.0
