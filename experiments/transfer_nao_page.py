@@ -93,7 +93,7 @@ def write_nao_page(folder: RunFolder, cells: Sequence[Cell]) -> None:
         "",
         f"{SGAT}'s noise is white, as in the paper. {ENSEMBLE}: four networks, one for",
         "a walk, and as noise blocks of half a second of the real walks' residuals.",
-        f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of 7.5 s.",
+        f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in 7.5 s.",
         "*real walks*: what the method has seen of the real world before its trials.",
     ]
     title = "Gaits from grounded sims on uneven real ground"

@@ -13,12 +13,14 @@ Each scene has a path prefix of its own, so that scenes stand side by side in on
 | `<scene>/support` | the leg that the gait stands on: left, right or both |
 | `<scene>/events` | why the rollout ended |
 
+Beside scenes, or without any, there may be pages of curves, each at a path of its own.
+
 Timelines: `sim_time`, the recording's own time, and `tick`, its row. A row in which a
 value is missing is left out of that entity. What the metadata say is in the file's
 properties, under the scene's name.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +32,7 @@ from worlds import scene_colours as colours
 from worlds.recording_columns import SUPPORT
 from worlds.scene import SIDES, Scene, check_beside, content_id
 from worlds.scene_shapes import capsules, ground_mesh, sole_mesh
-from worlds.scene_traces import Plot, plots, support_changes, traces
+from worlds.scene_traces import Plot, Trace, plots, support_changes, traces
 from worlds.world import End
 
 if TYPE_CHECKING:
@@ -41,10 +43,15 @@ ARROW_M_PER_N = 0.005
 """Length of an arrow per force: a NAO's weight is 26 cm long."""
 _ARROW_RADIUS_M = 0.006
 _FAILURES = tuple(End)
+Curve = tuple[FloatArray, Trace]
+"""Times (ticks,) [s], and lines over them at a path of the file."""
 
 
 def write_rrd(
-    path: Path, scenes: Sequence[Scene], recording_id: str | None = None
+    path: Path,
+    scenes: Sequence[Scene],
+    recording_id: str | None = None,
+    pages: Mapping[str, Sequence[Curve]] | None = None,
 ) -> None:
     """Write recordings side by side into one Rerun file, the file at once.
 
@@ -52,37 +59,76 @@ def write_rrd(
       path: the `.rrd` file.
       scenes: what to show, from left to right.
       recording_id: to the viewer, files of one id are one recording; by default an id
-        that follows from the contents.
+        that follows from the scenes.
+      pages: curves by the name of their page, two beside each other; only the robots
+        of scenes are then shown, above. There may be no scenes.
 
     Raises:
-      BadValueError: there is no scene, or the names of two get in each other's way.
+      BadValueError: there is nothing, or the names of scenes get in each other's way.
     """
     import rerun as rr
 
-    check_beside(scenes)
+    pages = pages or {}
+    if scenes or not pages:
+        check_beside(scenes)
     identity = recording_id or content_id(scenes)
     stream = rr.RecordingStream("groundwalk", recording_id=identity)
     file = stream.memory_recording()
-    stream.send_blueprint(_blueprint(scenes))
+    stream.send_blueprint(_blueprint(scenes, pages))
     stream.send_recording_name(path.stem)
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     for index, scene in enumerate(scenes):
         _SceneLog(stream, scene, colours.accent(index)).write()
+    for time_s, trace in (curve for page in pages.values() for curve in page):
+        _Log(stream, "", time_s).trace(trace)
     write_bytes(path, file.drain_as_bytes())
 
 
-class _SceneLog:
+class _Log:
+    """Writes what belongs to the same times, below one path."""
+
+    def __init__(self, stream: "rr.RecordingStream", at: str, time_s: FloatArray):
+        self._stream, self._at = stream, at
+        # Rounded, because Rerun cuts off what is less than a nanosecond.
+        self._time = np.rint(time_s * 1e9).astype("timedelta64[ns]")
+
+    def log(self, path: str, what: "rr.AsComponents") -> None:
+        """Log what does not change."""
+        self._stream.log(f"{self._at}{path}", what, static=True, strict=True)
+
+    def trace(self, trace: Trace) -> None:
+        import rerun as rr
+
+        self.log(trace.path, rr.SeriesLines(names=trace.names, colors=trace.lines))
+        self.send(trace.path, rr.Scalars, scalars=trace.values)
+
+    def send(self, path: str, kind: Any, **columns: FloatArray) -> None:
+        """Send columns over time, without the rows in which a value is missing."""
+        parts = [values.reshape(self._time.size, -1) for values in columns.values()]
+        rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
+        known = {name: values[rows] for name, values in columns.items()}
+        if rows.size:
+            self.send_rows(path, rows, kind.columns(**known))
+
+    def send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
+        import rerun as rr
+
+        indexes = (
+            rr.TimeColumn("sim_time", duration=self._time[rows]),
+            rr.TimeColumn("tick", sequence=rows),
+        )
+        self._stream.send_columns(f"{self._at}{path}", indexes, columns, strict=True)
+
+
+class _SceneLog(_Log):
     """Writes one scene into a stream."""
 
     def __init__(
         self, stream: "rr.RecordingStream", scene: Scene, accent: colours.Colour
     ) -> None:
-        self._stream = stream
+        super().__init__(stream, f"{scene.name}/", scene.recording.time_s)
         self._scene = scene
         self._accent = accent
-        # Rounded, because Rerun cuts off what is less than a nanosecond.
-        time_ns = np.rint(scene.recording.time_s * 1e9)
-        self._time = time_ns.astype("timedelta64[ns]")
 
     def write(self) -> None:
         import rerun as rr
@@ -91,14 +137,12 @@ class _SceneLog:
         self._stream.send_property(self._scene.name, properties)
         if self._scene.ground is not None:
             ground = ground_mesh(self._scene.ground)
-            self._log("ground", rr.Mesh3D(**ground._asdict()))
+            self.log("ground", rr.Mesh3D(**ground._asdict()))
         self._write_robot()
         self._write_feet()
         self._write_states()
         for trace in traces(self._scene):
-            lines = rr.SeriesLines(names=trace.names, colors=trace.lines)
-            self._log(trace.path, lines)
-            self._send(trace.path, rr.Scalars, scalars=trace.values)
+            self.trace(trace)
 
     def _write_robot(self) -> None:
         import rerun as rr
@@ -108,9 +152,9 @@ class _SceneLog:
             if link.shapes:
                 arrays = capsules(link.shapes, self._accent)._asdict()
                 shapes = rr.Capsules3D(**arrays, fill_mode="solid")
-                self._log(f"robot/{link.name}", shapes)
+                self.log(f"robot/{link.name}", shapes)
         for name, pose in self._scene.link_poses().items():
-            self._send(
+            self.send(
                 f"robot/{name}",
                 rr.Transform3D,
                 translation=pose.position_m,
@@ -124,7 +168,7 @@ class _SceneLog:
         for side, foot in zip(SIDES, robot.feet, strict=True):
             link = f"robot/{robot.links[foot.joint].link.name}"
             sole = sole_mesh(foot, self._accent)
-            self._log(f"{link}/sole", rr.Mesh3D(**sole._asdict()))
+            self.log(f"{link}/sole", rr.Mesh3D(**sole._asdict()))
             forces = self._scene.sensor_forces_n(side)
             if forces is None:
                 continue
@@ -133,8 +177,8 @@ class _SceneLog:
             look = rr.Arrows3D.from_fields(
                 origins=points_m, radii=_ARROW_RADIUS_M, colors=colours.FORCE
             )
-            self._log(f"{link}/force", look)
-            self._send(f"{link}/force", rr.Arrows3D, vectors=arrows_m)
+            self.log(f"{link}/force", look)
+            self.send(f"{link}/force", rr.Arrows3D, vectors=arrows_m)
 
     def _write_states(self) -> None:
         import rerun as rr
@@ -143,50 +187,43 @@ class _SceneLog:
         if legs:
             lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE}
             look = rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
-            self._log(SUPPORT, look)
-            self._send_rows(SUPPORT, rows, rr.StateChange.columns(state=legs))
+            self.log(SUPPORT, look)
+            self.send_rows(SUPPORT, rows, rr.StateChange.columns(state=legs))
         end = self._scene.recording.metadata.end
         if end:
             last = np.array([self._time.size - 1])
             level = "WARN" if end in _FAILURES else "INFO"
             text = rr.TextLog.columns(text=[end], level=[level])
-            self._send_rows("events", last, text)
-
-    def _log(self, path: str, what: "rr.AsComponents") -> None:
-        self._stream.log(f"{self._scene.name}/{path}", what, static=True, strict=True)
-
-    def _send(self, path: str, kind: Any, **columns: FloatArray) -> None:
-        """Send columns over time, without the rows in which a value is missing."""
-        parts = [values.reshape(self._time.size, -1) for values in columns.values()]
-        rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
-        known = {name: values[rows] for name, values in columns.items()}
-        if rows.size:
-            self._send_rows(path, rows, kind.columns(**known))
-
-    def _send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
-        import rerun as rr
-
-        indexes = (
-            rr.TimeColumn("sim_time", duration=self._time[rows]),
-            rr.TimeColumn("tick", sequence=rows),
-        )
-        entity = f"{self._scene.name}/{path}"
-        self._stream.send_columns(entity, indexes, columns, strict=True)
+            self.send_rows("events", last, text)
 
 
-def _blueprint(scenes: Sequence[Scene]) -> "rrb.Blueprint":
+def _blueprint(
+    scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
+) -> "rrb.Blueprint":
     """Everything at once: scenes from left to right, each above its traces."""
     import rerun.blueprint as rrb
 
+    view = _robot_view if pages else _scene_views
+    rows = [rrb.Horizontal(*map(view, scenes))] if scenes else []
+    if pages:
+        rows.append(rrb.Tabs(*(_page(*page) for page in pages.items())))
     return rrb.Blueprint(
-        rrb.Horizontal(*(_scene_views(scene) for scene in scenes)),
+        rrb.Vertical(*rows) if len(rows) > 1 else rows[0],
         rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
         collapse_panels=True,
     )
 
 
-def _scene_views(scene: Scene) -> "rrb.Vertical":
-    """The robot, followed from its front right, above what it did and felt."""
+def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
+    import rerun.blueprint as rrb
+
+    paths = [f"/{trace.path}" for _, trace in curves]
+    views = [rrb.TimeSeriesView(name=path[1:], origin=path) for path in paths]
+    return rrb.Grid(*views, grid_columns=2, name=name)
+
+
+def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
+    """The robot, followed from its front right."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"
@@ -195,11 +232,18 @@ def _scene_views(scene: Scene) -> "rrb.Vertical":
         look_target=(0.0, 0.0, 0.1),
         tracking_entity=f"{at}/robot/{scene.description.root.name}",
     )
-    robot = rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
+    return rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
+
+
+def _scene_views(scene: Scene) -> "rrb.Vertical":
+    """The robot above what it did and felt."""
+    import rerun.blueprint as rrb
+
+    at = f"/{scene.name}"
     rows = [
         rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
     ]
-    views = [robot, *rows]
+    views = [_robot_view(scene), *rows]
     shares = [6, *(2 for _ in rows)]
     if SUPPORT in scene.recording.columns:
         lane = f"{at}/{SUPPORT}"
