@@ -30,6 +30,15 @@ VERBS = {
     ),
     "evaluate": Verb("evaluate", "Evaluate", "let gaits walk a course of 3 m"),
     "transfer": Verb("transfer", "STUDIES", "repeat an experiment of the SGAT paper"),
+    "diagnose": Verb(
+        "diagnose", "Diagnose", "say what physics the sim lacks that recordings show"
+    ),
+    "record": Verb(
+        "record", "Record", "make a recording, with hidden physics if you like"
+    ),
+    "concealed": Verb(
+        "concealed", "STUDIES", "recordings whose hidden physics must be found"
+    ),
     "visualize": Verb("visualize", "Visualize", "see rollouts in Rerun"),
     "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
     "list": Verb("list", "List", "show the robots, terrains or gaits that there are"),

@@ -61,11 +61,7 @@ class RunFolder:
         if path is None:
             now = datetime.datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
             path = Path("runs", verb, f"{now}_s{config.seed}")
-        if path.exists():
-            raise RunFolderError(
-                f"{path} exists already: choose another --out, or continue it with "
-                f"--resume {path}"
-            )
+        check_free(path)
         folder = cls(path)
         folder.write_json(CONFIG, {"verb": verb, **to_plain(config)})
         folder.write_json(PROVENANCE, provenance())
@@ -122,6 +118,19 @@ class RunFolder:
         return (self.path / name).exists()
 
 
+def check_free(path: Path | None) -> None:
+    """Refuse a folder that is there already: no run is overwritten.
+
+    Raises:
+      RunFolderError: it is.
+    """
+    if path is not None and path.exists():
+        raise RunFolderError(
+            f"{path} exists already: choose another --out, or continue it with "
+            f"--resume {path}"
+        )
+
+
 def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
     """The folder of a run that begins or goes on, and its configuration.
 
@@ -155,10 +164,13 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
 
 def to_plain(config: Any) -> dict[str, Any]:
     """A configuration as values that JSON knows; paths become text."""
-    return {
-        key: str(value) if isinstance(value, Path) else value
-        for key, value in dataclasses.asdict(config).items()
-    }
+    return {key: _plain(value) for key, value in dataclasses.asdict(config).items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return str(value) if isinstance(value, Path) else value
 
 
 def _revived(value: Any) -> Any:

@@ -14,8 +14,14 @@ from experiments.run_folder import HISTORY, RESULT, open_run
 from experiments.score_table import print_json
 from experiments.text_table import print_table
 from experiments.transfer_nao_falls_figure import FIGURE, draw_falls
+from experiments.transfer_nao_falls_measures import (
+    MEASURES_FIGURE,
+    draw_measures,
+    measures_of,
+)
 from experiments.transfer_nao_falls_page import (
     HEADINGS,
+    MEASURES,
     prediction_rows,
     table_of,
     write_falls_page,
@@ -33,7 +39,7 @@ from walk_engine import gaits
 
 VERB = "transfer-nao-falls"
 EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
-STAGES = 1 + len(GROUNDINGS)
+STAGES = 2 + len(GROUNDINGS)
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,8 @@ def main(config: TransferNaoFalls) -> None:
             folder.write_json(HISTORY, state)
             bar.advance(f"{stage} done")
     rows = prediction_rows(state)
-    folder.write_json(RESULT, {"predictions": rows})
+    folder.write_json(RESULT, {"predictions": rows, MEASURES: state[MEASURES]})
+    draw_measures(state[MEASURES], folder.path / MEASURES_FIGURE)
     draw_falls(state, folder.path / FIGURE)
     write_falls_page(folder, rows, state, config.trials)
     if config.json:
@@ -101,13 +108,16 @@ def _stages(
         vectors = np.repeat(held_out, config.trials, axis=0)
         trials, _ = walk("real", description, vectors, _seed(config, 1))
         yield "real", _per_gait(trials, config.gaits)
-    if all(name in done for name in GROUNDINGS):
+    if MEASURES in done and all(name in done for name in GROUNDINGS):
         return
     learned = GaitCloud().draw(start, config.real_walks, _seed(config, 2))
     explored = GaitCloud().draw(start, config.sim_walks, _seed(config, 3))
     _, real = walk("real", description, learned, _seed(config, 4))
     _, sim = walk("sim", description, explored, _seed(config, 5), EXPLORATION_RAD)
     models = WalkModels(real, sim, _seed(config, 6))
+    if MEASURES not in done:
+        _, unseen = walk("real", description, held_out, _seed(config, 8))
+        yield MEASURES, measures_of(models, unseen, _seed(config, 9))
     for name in GROUNDINGS:
         if name not in done:
             transformer = models.transformer(name)

@@ -63,6 +63,19 @@ class WalkSenses:
         """(n, p) the part of the state that is predicted."""
         return np.hstack([self._last_rad, self._rate_rad_s, self._up[:, :2]])
 
+    def advanced(
+        self, state: FloatArray, action: FloatArray, outcome: FloatArray
+    ) -> FloatArray:
+        """(n, s) the state one tick later, of states, actions and what came of them.
+
+        For predictions of several ticks: what is not predicted follows from the rest.
+        """
+        j = len(self.joints)
+        moved = outcome[:, :j] - state[:, :j]
+        past = [state[:, i : i + j] for i in range(self.sim_columns, state.shape[1], j)]
+        later = [command - moved for command in (*past[1:], action)]
+        return np.hstack([outcome, moved, *later])
+
     def action(self, command_rad: FloatArray) -> FloatArray:
         """(n, j) what a command (n, joints) asks of the grounded joints."""
         return np.asarray(command_rad[:, self.joints] - self._last_rad)

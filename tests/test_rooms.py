@@ -33,6 +33,7 @@ def small_house(tmp_path):
         "terrain/field.py": "import groundwalk",
         "robots/model.py": "def model():\n    import mujoco",
         "worlds/rerun_log.py": "import rerun, terrain",
+        "worlds/rerun_layout.py": "def layout():\n    import rerun",
         "worlds/real.py": "def real():\n    import pybullet, robots",
         "walk_engine/engine.py": "from robots import model",
         "sgat/forward_model.py": "import torch, worlds",

@@ -1,4 +1,4 @@
-"""Recordings as Rerun files: robots, ground, traces and a layout that shows them all.
+"""Recordings as Rerun files: robots, ground and traces; the layout is another file's.
 
 Each scene has a path prefix of its own, so that scenes stand side by side in one file:
 
@@ -30,21 +30,19 @@ from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.files import write_bytes
 from worlds import scene_colours as colours
 from worlds.recording_columns import SUPPORT
+from worlds.rerun_layout import blueprint
 from worlds.scene import SIDES, Scene, check_beside, content_id
 from worlds.scene_shapes import capsules, ground_mesh, sole_mesh
-from worlds.scene_traces import Plot, Trace, plots, support_changes, traces
+from worlds.scene_traces import Curve, Trace, support_changes, traces
 from worlds.world import End
 
 if TYPE_CHECKING:
     import rerun as rr
-    import rerun.blueprint as rrb
 
 ARROW_M_PER_N = 0.005
 """Length of an arrow per force: a NAO's weight is 26 cm long."""
 _ARROW_RADIUS_M = 0.006
 _FAILURES = tuple(End)
-Curve = tuple[FloatArray, Trace]
-"""Times (ticks,) [s], and lines over them at a path of the file."""
 
 
 def write_rrd(
@@ -74,7 +72,7 @@ def write_rrd(
     identity = recording_id or content_id(scenes)
     stream = rr.RecordingStream("groundwalk", recording_id=identity)
     file = stream.memory_recording()
-    stream.send_blueprint(_blueprint(scenes, pages))
+    stream.send_blueprint(blueprint(scenes, pages))
     stream.send_recording_name(path.stem)
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     for index, scene in enumerate(scenes):
@@ -87,7 +85,9 @@ def write_rrd(
 class _Log:
     """Writes what belongs to the same times, below one path."""
 
-    def __init__(self, stream: "rr.RecordingStream", at: str, time_s: FloatArray):
+    def __init__(
+        self, stream: "rr.RecordingStream", at: str, time_s: FloatArray
+    ) -> None:
         self._stream, self._at = stream, at
         # Rounded, because Rerun cuts off what is less than a nanosecond.
         self._time = np.rint(time_s * 1e9).astype("timedelta64[ns]")
@@ -195,81 +195,3 @@ class _SceneLog(_Log):
             level = "WARN" if end in _FAILURES else "INFO"
             text = rr.TextLog.columns(text=[end], level=[level])
             self.send_rows("events", last, text)
-
-
-def _blueprint(
-    scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
-) -> "rrb.Blueprint":
-    """Everything at once: scenes from left to right, each above its traces."""
-    import rerun.blueprint as rrb
-
-    view = _robot_view if pages else _scene_views
-    rows = [rrb.Horizontal(*map(view, scenes))] if scenes else []
-    if pages:
-        rows.append(rrb.Tabs(*(_page(*page) for page in pages.items())))
-    return rrb.Blueprint(
-        rrb.Vertical(*rows) if len(rows) > 1 else rows[0],
-        rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
-        collapse_panels=True,
-    )
-
-
-def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
-    import rerun.blueprint as rrb
-
-    paths = [f"/{trace.path}" for _, trace in curves]
-    views = [rrb.TimeSeriesView(name=path[1:], origin=path) for path in paths]
-    return rrb.Grid(*views, grid_columns=2, name=name)
-
-
-def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
-    """The robot, followed from its front right."""
-    import rerun.blueprint as rrb
-
-    at = f"/{scene.name}"
-    follow = rrb.EyeControls3D(
-        position=(0.7, -0.75, 0.5),
-        look_target=(0.0, 0.0, 0.1),
-        tracking_entity=f"{at}/robot/{scene.description.root.name}",
-    )
-    return rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
-
-
-def _scene_views(scene: Scene) -> "rrb.Vertical":
-    """The robot above what it did and felt."""
-    import rerun.blueprint as rrb
-
-    at = f"/{scene.name}"
-    rows = [
-        rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
-    ]
-    views = [_robot_view(scene), *rows]
-    shares = [6, *(2 for _ in rows)]
-    if SUPPORT in scene.recording.columns:
-        lane = f"{at}/{SUPPORT}"
-        views.append(
-            rrb.StateTimelineView(name="support", origin=lane, time_view=_window())
-        )
-        shares.append(1)
-    return rrb.Vertical(*views, row_shares=shares)
-
-
-def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
-    import rerun.blueprint as rrb
-
-    return rrb.TimeSeriesView(
-        name=plot.name,
-        contents=[f"{at}/{path}" for path in plot.paths],
-        axis_x=_window(),
-        plot_legend=rrb.PlotLegend(visible=plot.has_key),
-    )
-
-
-def _window() -> "rrb.TimeAxis":
-    """A few seconds around the time cursor: a whole course would be a blur."""
-    import rerun as rr
-    import rerun.blueprint as rrb
-
-    start = rrb.TimeRangeBoundary.cursor_relative(seconds=-2.0)
-    end = rrb.TimeRangeBoundary.cursor_relative(seconds=1.0)
-    return rrb.TimeAxis(view_range=rr.TimeRange(start, end))

@@ -27,6 +27,10 @@ class Trace(NamedTuple):
     """One for each line; None for any colour."""
 
 
+Curve = tuple[FloatArray, Trace]
+"""Times (ticks,) [s], and lines over them at a path of the file."""
+
+
 class Plot(NamedTuple):
     """Traces that are shown together."""
 

@@ -5,6 +5,8 @@ import pytest
 
 from experiments.run_folder import HISTORY, RunFolder
 from experiments.transfer_nao_falls import TransferNaoFalls, main
+from experiments.transfer_nao_falls_figure import FIGURE
+from experiments.transfer_nao_falls_measures import MEASURES_FIGURE
 from experiments.transfer_nao_falls_page import (
     correlation,
     correlation_interval,
@@ -35,7 +37,7 @@ def test_a_small_study_runs_and_resumes_to_the_same_numbers(tmp_path):
     result = whole.read_json("result.json")
     assert [row["grounding"] for row in result["predictions"]] == list(GROUNDINGS)
     kept = {path.name for path in whole.path.iterdir()}
-    assert {"result.md", "transfer_nao_falls.png", HISTORY} <= kept
+    assert {"result.md", FIGURE, MEASURES_FIGURE, HISTORY} <= kept
     # as if killed after the first prediction
     history = whole.read_json(HISTORY)
     cut = {name: history[name] for name in ("real", NONE)}

@@ -144,6 +144,21 @@ def test_what_the_columns_of_a_state_are():
     assert (past[:, 0] != commands[-1][:, JOINTS] - here).all()
 
 
+def test_a_state_follows_from_the_one_before_and_what_came_of_it():
+    rng = np.random.default_rng(6)
+    senses = WalkSenses(JOINTS)
+    senses.reset(observation(rng))
+    for _ in range(HISTORY_TICKS + 1):
+        state, command = senses.state(), rng.normal(size=(2, 20))
+        action = senses.action(command)
+        senses.remember(command)
+        senses.observe(observation(rng))
+        later = senses.advanced(state, action, senses.outcome())
+        np.testing.assert_allclose(later, senses.state(), atol=1e-12)
+    other = senses.advanced(state, action + 0.1, senses.outcome())
+    assert (np.abs(other - senses.state()).max(axis=1) > 0.09).all()
+
+
 def test_the_tilt_is_in_the_state():
     senses = WalkSenses(JOINTS)
     now = observation(np.random.default_rng(2))

@@ -1,0 +1,78 @@
+"""Every single effect fitted alone; the Bayesian information criterion decides."""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.baselines.naming import NORMAL_80, found_effect
+from diagnosis.fitting import Fit, fit_all
+from diagnosis.plant import Plant
+from diagnosis.predictor import Predictor
+from diagnosis.screening import Screen, signatures
+from diagnosis.trace import Trace
+from diagnosis.usage import Usage
+from diagnosis.verdict import Recordings, Verdict
+from groundwalk.arrays import FloatArray
+
+CANDIDATES = 8
+"""So many of all effects and places are fitted: those whose first guesses are best."""
+
+CONFUSABLE = 10.0
+"""Differences below this are not yet very strong (Kass and Raftery 1995)."""
+
+
+def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
+    """Name the effect with the least BIC = 2 energy + p ln n, or none.
+
+    Source: Schwarz 1978, "Estimating the dimension of a model". n counts samples, as
+    is usual; nothing is held out.
+
+    Args:
+      plant: nominal.
+      traces: to be fitted, all of them.
+    """
+    begun_s = time.monotonic()
+    predictor = Predictor(plant, traces)
+    predictor.calibrate()
+    residual = predictor.residuals([()])[0]
+    found = signatures(predictor, (), Usage.of(plant, traces))
+    guesses = Screen(predictor, found).singles(residual)[:CANDIDATES]
+    fits = fit_all(predictor, [guess.model for guess in guesses])
+    samples = int(predictor.scored.sum())
+    criteria = np.array(
+        [float(residual @ residual), *(criterion(fit, samples) for fit in fits)]
+    )
+    weights = np.exp(-0.5 * (criteria - criteria.min()))
+    weights /= weights.sum()
+    recordings = Recordings(fit=tuple(trace.name for trace in traces))
+    best = int(np.argmin(criteria)) - 1
+    if best < 0:
+        return Verdict(
+            "none", recordings=recordings, seconds=time.monotonic() - begun_s
+        )
+    close = [
+        fit.model[0]
+        for fit, value in zip(fits, criteria[1:], strict=True)
+        if fit is not fits[best] and value < criteria[best + 1] + CONFUSABLE
+    ]
+    placed, spans = fits[best].model[0], intervals(fits[best])
+    named = found_effect(plant, placed, spans, weights[best + 1], close)
+    spent_s = time.monotonic() - begun_s
+    return Verdict("effects", (named,), recordings=recordings, seconds=spent_s)
+
+
+def criterion(fit: Fit, samples: int) -> float:
+    """BIC of a fit, up to what all fits share."""
+    return 2 * fit.energy + float(fit.jacobian.shape[1] * np.log(samples))
+
+
+def intervals(fit: Fit) -> list[tuple[float, float]]:
+    """(low, high) of each value of a model: 80 %, as if the residual were white."""
+    information = fit.jacobian.T @ fit.jacobian
+    variance = np.diag(np.linalg.pinv(information))
+    x = fit.coordinates.of(fit.model)
+    half: FloatArray = NORMAL_80 * np.sqrt(np.maximum(variance, 0.0))
+    ends = [fit.coordinates.model_at(x + sign * half) for sign in (-1.0, 1.0)]
+    low, high = ([v for placed in model for v in placed.values] for model in ends)
+    return list(zip(low, high, strict=True))

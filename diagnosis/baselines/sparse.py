@@ -1,0 +1,133 @@
+"""Sparse regression of the torque that the nominal model cannot account for."""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.baselines.naming import NORMAL_80, found_effect
+from diagnosis.baselines.sparse_columns import Column, torque_columns
+from diagnosis.baselines.sparse_torques import Torques
+from diagnosis.effect import Placed
+from diagnosis.library import effect
+from diagnosis.plant import Plant
+from diagnosis.trace import Trace
+from diagnosis.verdict import Recordings, Verdict
+from groundwalk.arrays import FloatArray, IntArray
+
+THRESHOLD = 0.1
+"""A column stays if its part is this large, measured against all that is to explain."""
+
+MOST_EFFECTS = 3
+_ROUNDS = 20
+_RIDGE = 0.05
+"""PySINDy's own default, on columns of length one. It makes sizes a little too small,
+but without it they run away: the equation of motion itself is a sum of columns."""
+
+
+def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
+    """Name the effects whose columns sequential thresholding leaves, or none.
+
+    Source: Brunton, Proctor and Kutz 2016, "Discovering governing equations from data
+    by sparse identification of nonlinear dynamical systems".
+
+    Args:
+      plant: nominal; its base must be fixed, since forces of contact are not known.
+      traces: to be fitted.
+    """
+    begun_s = time.monotonic()
+    recordings = Recordings(fit=tuple(trace.name for trace in traces))
+    if plant.base == "floating" or any(t.command_rad is None for t in traces):
+        return Verdict(
+            "not_identifiable",
+            limits=("inverse dynamics need a fixed base and position commands",),
+            recordings=recordings,
+            seconds=time.monotonic() - begun_s,
+        )
+    torques = Torques.of(plant, traces)
+    columns = torque_columns(plant, traces, torques)
+    kept, size, error = sequential_threshold(
+        np.stack([column.values for column in columns], axis=1), torques.missing
+    )
+    ranked = _placed(plant, columns, kept, size, error)
+    total = sum(part for _, _, part in ranked)
+    effects = tuple(
+        found_effect(plant, placed, spans, part / total)
+        for placed, spans, part in ranked[:MOST_EFFECTS]
+    )
+    return Verdict(
+        "effects" if effects else "none",
+        effects,
+        recordings=recordings,
+        seconds=time.monotonic() - begun_s,
+    )
+
+
+def sequential_threshold(
+    columns: FloatArray, target: FloatArray, threshold: float = THRESHOLD
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Least squares, again and again without the columns that do little.
+
+    Args:
+      columns: (N, k).
+      target: (N,).
+      threshold: least length of a column times its size, over that of the target.
+
+    Returns:
+      Which columns are left, their sizes, and the sizes' standard errors as if what is
+      left were white.
+    """
+    length = np.linalg.norm(columns, axis=0)
+    whole = float(np.linalg.norm(target))
+    kept = np.flatnonzero(length > 1e-9 * max(float(length.max(initial=0.0)), 1e-300))
+    unit = columns[:, kept] / length[kept]
+    gram, toward = unit.T @ unit, unit.T @ target
+    active, size = np.arange(len(kept)), np.zeros(0)
+    for _ in range(_ROUNDS):
+        size = np.linalg.solve(_square(gram, active), toward[active])
+        large = np.abs(size) >= threshold * whole
+        active, size = active[large], size[large]
+    fitted = gram[np.ix_(active, active)] @ size
+    left = max(whole**2 - float(size @ (2 * toward[active] - fitted)), 0.0)
+    variance = left / max(len(target) - len(active), 1)
+    spread = np.sqrt(variance * np.diag(np.linalg.inv(_square(gram, active))))
+    scale = length[kept[active]]
+    return kept[active], size / scale, spread / scale
+
+
+def _square(gram: FloatArray, active: IntArray) -> FloatArray:
+    return gram[np.ix_(active, active)] + _RIDGE * np.eye(len(active))
+
+
+def _placed(
+    plant: Plant,
+    columns: Sequence[Column],
+    kept: IntArray,
+    size: FloatArray,
+    error: FloatArray,
+) -> list[tuple[Placed, list[tuple[float, float]], float]]:
+    """Effects with values, spans and how much they explain, the largest first.
+
+    An effect's columns each are one of its parameters. Sizes with the wrong sign
+    belong to no effect, save a negative viscous friction: that is a weaker damping.
+    """
+    groups: dict[tuple[str, str], dict[int, tuple[float, float, float]]] = {}
+    for index, value, spread in zip(kept, size, error, strict=True):
+        column = columns[index]
+        name, amount, width = column.named(float(value), float(spread))
+        part = abs(float(value)) * float(np.linalg.norm(column.values))
+        key = (name, column.place)
+        groups.setdefault(key, {})[column.parameter] = (amount, width, part)
+    ranked = []
+    for (name, place), found in groups.items():
+        parameters = effect(name).parameters(plant, place) if name else ()
+        values, spans = [], []
+        for number, parameter in enumerate(parameters):
+            start = parameter.neutral if np.isfinite(parameter.neutral) else 0.0
+            amount, width, _ = found.get(number, (start, 0.0, 0.0))
+            values.append(amount)
+            spans.append((amount - NORMAL_80 * width, amount + NORMAL_80 * width))
+        if name and parameters[0].low <= values[0] <= parameters[0].high:
+            part = float(np.hypot.reduce([one[2] for one in found.values()]))
+            ranked.append((Placed(name, place, tuple(values)), spans, part))
+    return sorted(ranked, key=lambda one: -one[2])

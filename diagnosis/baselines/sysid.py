@@ -1,0 +1,178 @@
+"""All parameters at once with mujoco.sysid; the largest change is the answer.
+
+Free are what its users free: rotor inertia, viscous and dry friction, stiffness and
+damping of the servo at every joint, and the mass of every body. Parameters are counted
+in sizes worth trying first, so that changes can be compared.
+"""
+
+import io
+import time
+from collections.abc import Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnosis.baselines.naming import NORMAL_80, found_effect
+from diagnosis.baselines.sysid_models import (
+    SysidModels,
+    Unknown,
+    sequence_of,
+    unknowns,
+)
+from diagnosis.channels import channels_of
+from diagnosis.effect import Placed
+from diagnosis.plant import Plant
+from diagnosis.predictor import WARM_UP_S
+from diagnosis.trace import Trace
+from diagnosis.verdict import Recordings, Verdict
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import GroundwalkError
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+SECONDS, FLOATING_SECONDS = 8.0, 2.0
+"""Of motion in all: recordings' beginnings of a second at least. 120 parameters take
+their time, and contacts more of it."""
+
+SHORT, LONG = 6, 20
+"""Iterations: with more than `MANY` parameters the short number."""
+
+MANY = 60
+NUDGE = 0.01
+START = 0.002
+"""Part of its range by which what starts at a bound, as no friction, is moved off."""
+
+PRIOR = 3.0
+"""Standard deviation of a weak prior, in sizes worth trying first: some parameters, as
+viscous friction and a servo's damping, are the same to these data."""
+
+LEAST_CHANGE = 0.1
+"""Of a size worth trying first; below it nothing counts as missing."""
+
+_NORMAL_95 = 1.959963984540054
+_WORST = 1e3
+
+
+def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
+    """Name the parameter that moved most, of those that sysid says have moved.
+
+    Args:
+      plant: nominal.
+      traces: to be fitted.
+
+    Raises:
+      GroundwalkError: mujoco.sysid is not installed.
+    """
+    begun_s = time.monotonic()
+    recordings = Recordings(fit=tuple(trace.name for trace in traces))
+    free = unknowns(plant, traces)
+    change, half = fitted(plant, _beginnings(plant, traces), free)
+    moved = (np.abs(change) >= LEAST_CHANGE) & (np.abs(change) > half)
+    size = np.where(moved, np.abs(change), 0.0)
+    if not moved.any():
+        return Verdict(
+            "none", recordings=recordings, seconds=time.monotonic() - begun_s
+        )
+    best = int(np.argmax(size))
+    one = free[best]
+    placed = Placed(one.effect, one.place, (one.value(change[best]),))
+    spread = half[best] * NORMAL_80 / _NORMAL_95
+    span = (one.value(change[best] - spread), one.value(change[best] + spread))
+    found = found_effect(plant, placed, [span], size[best] / size.sum())
+    return Verdict(
+        "effects", (found,), recordings=recordings, seconds=time.monotonic() - begun_s
+    )
+
+
+def fitted(
+    plant: Plant, traces: Sequence[Trace], free: Sequence[Unknown]
+) -> tuple[FloatArray, FloatArray]:
+    """(p,) changes of all parameters, and half of their 95 % intervals.
+
+    Args:
+      plant: nominal.
+      traces: to be fitted whole.
+      free: p parameters.
+    """
+    sysid = _package()
+    models = SysidModels(plant, traces, free)
+    parameters = sysid.ParameterDict()
+    for one in free:
+        parameters.add(sysid.Parameter(one.key, 0.0, one.low, one.high))
+    parameters.move_off_bounds(START)
+    residual = sysid.build_residual_fn(
+        models_sequences=[
+            sequence_of(sysid, plant, trace, number)
+            for number, trace in enumerate(traces)
+        ],
+        build_model=models.build,
+        modify_residual=_Residual(plant, traces),
+        n_threads=1,
+        resample_true=False,
+    )
+    best, result = sysid.optimize(
+        parameters,
+        residual,
+        verbose=False,
+        max_iters=SHORT if len(free) > MANY else LONG,
+        x_scale="jac",
+        eps=NUDGE,
+        output=io.StringIO(),  # what it prints otherwise
+    )
+    left, _, _ = residual(best.as_vector(), best)
+    with np.errstate(all="ignore"):  # directions that nothing depends on
+        _, half = sysid.calculate_intervals(left, np.asarray(result.jac))
+    return best.as_vector(), np.nan_to_num(half, nan=np.inf)
+
+
+class _Residual:
+    """Measured less predicted positions, in units of noise, and the prior's part."""
+
+    def __init__(self, plant: Plant, traces: Sequence[Trace]) -> None:
+        self._traces = len(traces)
+        self._columns = [1 + column for column in plant.qpos]  # time comes first
+        self._noise = channels_of(plant, traces).noise[: len(plant.joints)]
+
+    def __call__(
+        self,
+        parameters: Any,
+        predicted: Any,
+        measured: Any,
+        model: Any,
+        return_all: bool,
+        *,
+        state: FloatArray,
+        **_: Any,
+    ) -> tuple[FloatArray, Any, Any]:
+        """As mujoco.sysid asks for it."""
+        rows = measured.times >= WARM_UP_S
+        times, path = measured.times[rows], state[:, self._columns]
+        at = np.stack([np.interp(times, state[:, 0], one) for one in path.T], axis=1)
+        at = np.nan_to_num(at, nan=_WORST, posinf=_WORST, neginf=-_WORST)
+        wrong = (measured.data[rows] - at) / self._noise
+        wrong = np.nan_to_num(np.clip(wrong, -_WORST, _WORST))  # 0 if not measured
+        prior = parameters.as_vector() / PRIOR / np.sqrt(self._traces)
+        return np.concatenate([wrong.reshape(-1), prior]), measured, measured
+
+
+def _beginnings(plant: Plant, traces: Sequence[Trace]) -> list[Trace]:
+    """Of each trace as long a part as there is time for."""
+    seconds = SECONDS if plant.base == "fixed" else FLOATING_SECONDS
+    some = traces[: int(seconds)]
+    each_s = seconds / len(some)
+    parts = []
+    for trace in some:
+        rows = int(np.searchsorted(trace.time_s - trace.time_s[0], each_s))
+        parts.append(trace.part(0, max(rows, 2)) if rows < trace.ticks else trace)
+    return parts
+
+
+def _package() -> "ModuleType":
+    sysid = import_module("mujoco.sysid")
+    if not hasattr(sysid, "optimize"):
+        raise GroundwalkError(
+            "mujoco.sysid lacks what it needs: pip install 'mujoco[sysid]'"
+        )
+    return sysid

@@ -1,0 +1,206 @@
+"""Models and measurements in the form that mujoco.sysid works with."""
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnosis.batch_friction import SOLIMP_FRICTION
+from diagnosis.drive import Held
+from diagnosis.library import effect
+from diagnosis.plant import Plant
+from diagnosis.run import Run
+from diagnosis.servo import Servo
+from diagnosis.trace import Trace
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    import mujoco
+
+STEP_S = 0.002
+FREE = (
+    "armature",
+    "viscous_friction",
+    "coulomb_friction",
+    "servo_gain",
+    "servo_damping",
+    "payload_mass",
+)
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One parameter of an effect at a place, counted in typical sizes from neutral.
+
+    Attributes:
+      effect: its name.
+      place: joint or body.
+      neutral: value that changes nothing.
+      size: worth trying first.
+      low: least count.
+      high: largest count.
+    """
+
+    effect: str
+    place: str
+    neutral: float
+    size: float
+    low: float
+    high: float
+
+    @property
+    def key(self) -> str:
+        """Effect and place."""
+        return f"{self.effect}@{self.place}"
+
+    def value(self, count: float) -> float:
+        """In the parameter's unit."""
+        return self.neutral + self.size * float(count)
+
+
+def unknowns(plant: Plant, traces: Sequence[Trace]) -> list[Unknown]:
+    """All that is free: every effect of `FREE` wherever it may be.
+
+    Sizes are those of a plant with the servos of the first trace.
+    """
+    plant = replace(plant, servo=traces[0].servo)
+    free = []
+    for name in FREE:
+        for place in effect(name).places(plant, traces):
+            (parameter,) = effect(name).parameters(plant, place)
+            size = abs(parameter.typical - parameter.neutral)
+            low, high = (
+                (bound - parameter.neutral) / size
+                for bound in (parameter.low, parameter.high)
+            )
+            free.append(Unknown(name, place, parameter.neutral, size, low, high))
+    return free
+
+
+class SysidModels:
+    """Compiled models with parameters put in: compiling anew each time is too slow."""
+
+    def __init__(
+        self, plant: Plant, traces: Sequence[Trace], free: Sequence[Unknown]
+    ) -> None:
+        """One model for each trace: each has its own servos."""
+        self._plant, self._free = plant, free
+        self._nominal = {
+            _label(number): (self._with_servo(trace.servo), trace.servo)
+            for number, trace in enumerate(traces)
+        }
+
+    def build(self, parameters: Any, spec: "mujoco.MjSpec") -> "mujoco.MjModel":
+        """The model of a specification's trace, with the parameters' values."""
+        import mujoco
+
+        nominal, servo = self._nominal[spec.modelname]
+        model = copy.copy(nominal)
+        for one, count in zip(self._free, parameters.as_vector(), strict=True):
+            self._put(model, servo, one, one.value(count))
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+        return model
+
+    def _with_servo(self, servo: Servo) -> "mujoco.MjModel":
+        plant = self._plant
+        model = copy.copy(plant.model)
+        model.opt.timestep = STEP_S
+        model.dof_solimp[:], model.dof_solref[:] = SOLIMP_FRICTION, (2 * STEP_S, 1.0)
+        rows, limit = plant.actuators, servo.max_torque_nm
+        model.actuator_gainprm[rows, 0] = servo.kp_nm_rad
+        model.actuator_biasprm[rows, 1] = -servo.kp_nm_rad
+        model.actuator_biasprm[rows, 2] = -servo.kd_nm_s_rad
+        model.actuator_forcelimited[rows] = np.isfinite(limit)
+        finite = np.where(np.isfinite(limit), limit, 0.0)
+        model.actuator_forcerange[rows] = np.stack([-finite, finite], axis=1)
+        emf = servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
+        model.dof_damping[plant.dofs] += emf
+        return model
+
+    def _put(
+        self, model: "mujoco.MjModel", servo: Servo, one: Unknown, value: float
+    ) -> None:
+        plant = self._plant
+        if one.effect == "payload_mass":
+            model.body_mass[model.body(one.place).id] += value
+            return
+        column = plant.joints.index(one.place)
+        dof, actuator = plant.dofs[column], plant.actuators[column]
+        match one.effect:
+            case "armature":
+                model.dof_armature[dof] += value
+            case "viscous_friction":
+                model.dof_damping[dof] += value
+            case "coulomb_friction":
+                model.dof_frictionloss[dof] += value
+            case "servo_gain":
+                model.actuator_gainprm[actuator, 0] *= value
+                model.actuator_biasprm[actuator, 1] *= value
+            case "servo_damping":
+                model.actuator_biasprm[actuator, 2] *= value
+                emf = float(servo.back_emf_nm_s_rad[column])
+                model.dof_damping[dof] += (value - 1) * emf
+
+
+def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> Any:
+    """A trace as mujoco.sysid's `ModelSequences`.
+
+    The specification's name tells which trace it is of. Positions are compared as part
+    of the state: position sensors of a rollout are one step late.
+    """
+    import mujoco
+
+    spec = plant.spec.copy()
+    spec.modelname = _label(number)
+    spec.option.timestep = STEP_S
+    for sensor in list(spec.sensors):
+        spec.delete(sensor)
+    for joint in plant.joints:
+        spec.add_sensor(
+            name=f"{joint}_position",
+            type=mujoco.mjtSensor.mjSENS_JOINTPOS,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            objname=joint,
+        )
+    model = spec.compile()
+    names = [(joint, sysid.SignalType.MjStateQPos) for joint in plant.joints]
+    since_s = trace.time_s - trace.time_s[0]
+    measured = sysid.TimeSeries.from_names(since_s, trace.position_rad, model, names)
+    steps = int(np.ceil(since_s[-1] / STEP_S)) + 1
+    times = np.asarray(STEP_S * np.arange(steps), float)
+    control = sysid.TimeSeries.from_control_names(
+        times, _control(plant, trace, model.nu, times), model
+    )
+    start = _start(sysid, plant, trace, model)
+    return sysid.ModelSequences(
+        spec.modelname, spec, trace.name, start, control, measured
+    )
+
+
+def _control(plant: Plant, trace: Trace, size: int, since_s: FloatArray) -> FloatArray:
+    """(steps, size) commands, held from row to row; the position where none are."""
+    asked = trace.position_rad if trace.command_rad is None else trace.command_rad
+    held = Held.of(trace.time_s, asked)
+    control = np.zeros((len(since_s), size))
+    control[:, plant.actuators] = held.mean(trace.time_s[0] + since_s, STEP_S)
+    return control
+
+
+def _start(
+    sysid: ModuleType, plant: Plant, trace: Trace, model: "mujoco.MjModel"
+) -> FloatArray:
+    run = Run.of(trace)
+    qpos, qvel = model.qpos0.copy(), np.zeros(model.nv)
+    qpos[plant.qpos], qvel[plant.dofs] = run.position_rad, run.velocity_rad_s
+    if plant.base == "floating" and trace.base_position_m is not None:
+        qpos[:3] = trace.base_position_m[0]
+        if trace.base_orientation is not None:
+            qpos[3:7] = trace.base_orientation[0]
+    return np.asarray(sysid.create_initial_state(model, qpos, qvel), float)
+
+
+def _label(number: int) -> str:
+    return f"trace_{number}"

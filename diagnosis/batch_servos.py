@@ -1,0 +1,113 @@
+"""The servos of the joints in a batch of simulations."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from diagnosis.elastic import ElasticJoints
+from diagnosis.plant import Plant
+from diagnosis.run import Run
+from diagnosis.servo import Servo
+from diagnosis.trace import Trace
+from groundwalk.arrays import FloatArray
+
+SERVO = ("kp_nm_rad", "kd_nm_s_rad", "max_torque_nm", "back_emf_nm_s_rad")
+UNLIMITED_NM = 1e9
+
+
+class BatchServos:
+    """MuJoCo's affine actuators, each with the law of its own run and variant.
+
+    Attributes:
+      law: (rows, j) `kp`, `kd`, `limit` and `emf` as they are now.
+    """
+
+    def __init__(
+        self,
+        batch: Any,
+        plant: Plant,
+        runs: Sequence[Run],
+        joints: Mapping[str, FloatArray],
+    ) -> None:
+        """Set each trace's own servos, times what the variants change of them.
+
+        Args:
+          batch: a `mujoco.batch.Batch`.
+          plant: that it simulates.
+          runs: R, one after another for each variant.
+          joints: `Joints`, rows as the batch has them.
+        """
+        self._joints, self._actuators = joints, plant.actuators
+        self.fades = bool(joints["fade_1_s"].any())
+        """Whether any servo grows weaker with time."""
+        self.law = _laws(runs, joints)
+        self._full_kp = kp = self.law["kp"]
+        self._gain, self._bias, self._range, self._damping, limited = (
+            np.asarray(batch.expand(name))
+            for name in (
+                "actuator_gainprm",
+                "actuator_biasprm",
+                "actuator_forcerange",
+                "dof_damping",
+                "actuator_forcelimited",
+            )
+        )
+        self._gain[:, self._actuators, 0] = kp
+        self._bias[:, self._actuators, 1] = -kp
+        self._bias[:, self._actuators, 2] = -self.law["kd"]
+        limited[:, self._actuators] = 1
+        largest = np.minimum(self.law["limit"], UNLIMITED_NM)
+        self._range[:, self._actuators, 0] = -largest
+        self._range[:, self._actuators, 1] = largest
+        self._dofs = plant.dofs
+        self._damping[:, self._dofs] += self.law["emf"] - plant.servo.back_emf_nm_s_rad
+
+    def fade(self, time_s: FloatArray) -> None:
+        """Set the stiffness of (R,) times."""
+        time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
+        left = np.clip(1 - self._joints["fade_1_s"] * time_s, 0, None)
+        self.law["kp"] = kp = self._full_kp * left  # motors of elastic joints, too
+        stiff = np.isinf(self._joints["spring_nm_rad"])
+        for field, column, value in ((self._gain, 0, kp), (self._bias, 1, -kp)):
+            old = field[:, self._actuators, column]
+            field[:, self._actuators, column] = np.where(stiff, value, old)
+
+    def soften(self, elastic: ElasticJoints, step_s: float) -> None:
+        """Elastic joints: the actuator is the spring, the motor turns beside it."""
+        stiffness, damping = elastic.stiffness, elastic.damping
+        for field, column, value in (
+            (self._gain, 0, stiffness),
+            (self._bias, 1, -stiffness),
+            (self._bias, 2, -damping - step_s * stiffness),
+            (self._range, 0, -UNLIMITED_NM),
+            (self._range, 1, UNLIMITED_NM),
+        ):
+            old = field[:, self._actuators, column]
+            field[:, self._actuators, column] = np.where(elastic.soft, value, old)
+        self._damping[:, self._dofs] -= np.where(elastic.soft, self.law["emf"], 0.0)
+
+
+def _laws(
+    runs: Sequence[Run], joints: Mapping[str, FloatArray]
+) -> dict[str, FloatArray]:
+    n = len(joints["kp_factor"]) // len(runs)
+    kp, kd, limit, emf = (
+        np.tile([getattr(_law(run.trace), name) for run in runs], (n, 1))
+        for name in SERVO
+    )
+    return {
+        "kp": kp * joints["kp_factor"],
+        "kd": kd * joints["damping_factor"],
+        "limit": np.minimum(limit, joints["max_torque_nm"]),
+        "emf": emf * joints["damping_factor"],
+    }
+
+
+def _law(trace: Trace) -> Servo:
+    """A trace's servo; where torques drive it only the motor's back-EMF is left."""
+    if trace.command_rad is not None:
+        return trace.servo
+    none = np.zeros_like(trace.servo.kp_nm_rad)
+    return replace(trace.servo, kp_nm_rad=none, kd_nm_s_rad=none)

@@ -1,0 +1,56 @@
+"""How sure a search's answer is, and what else it may be."""
+
+import numpy as np
+
+from diagnosis.effect import Placed
+from diagnosis.search_result import Found
+from diagnosis.verdict import EffectAt
+
+TIED_NATS = 10.0
+"""What is less plausible by no more than that may be the truth as well: residuals are
+alike from row to row, so that they tell less than their number."""
+
+OFFSET, SLOPE = -0.4, 1.6
+"""Of the log odds that an effect is right, over the logarithm of the gap to the next
+other effect; found on concealed cases (docs/concealed.md)."""
+
+
+def confusable(found: Found, placed: Placed) -> tuple[EffectAt, ...]:
+    """Effects that would do as well in the stead of one of the winner's."""
+    winner = found.winner
+    assert winner is not None
+    rest = winner.keys - {placed.key}
+    others: dict[str, EffectAt] = {}
+    for judged in found.best[found.chosen]:
+        own = [other for other in judged.model if other.key not in rest]
+        other = len(own) == 1 and own[0].key != placed.key
+        if other and found.worse(judged) <= TIED_NATS:
+            others[own[0].key] = EffectAt(own[0].effect, own[0].place)
+    return tuple(others.values())
+
+
+def alternatives(found: Found) -> tuple[tuple[EffectAt, ...], ...]:
+    """Whole other answers of the same size that do as well."""
+    winner = found.winner
+    if winner is None:
+        return ()
+    answers: dict[frozenset[str], tuple[EffectAt, ...]] = {}
+    for judged in found.best[found.chosen]:
+        if judged.keys != winner.keys and found.worse(judged) <= TIED_NATS:
+            answers[judged.keys] = tuple(
+                EffectAt(placed.effect, placed.place) for placed in judged.model
+            )
+    return tuple(answers.values())
+
+
+def probability(found: Found, placed: Placed) -> float:
+    """That an effect of the winner is right, from the gap to models without it."""
+    without = [
+        found.worse(other)
+        for size, models in found.best.items()
+        for other in models
+        if size <= found.chosen and placed.key not in other.keys
+    ]
+    gap = max(min(without, default=np.inf), 0.0)
+    odds = OFFSET + SLOPE * np.log1p(gap / TIED_NATS)
+    return float(1 / (1 + np.exp(-odds)))

@@ -1,0 +1,36 @@
+"""Play of a gear."""
+
+from typing import TYPE_CHECKING
+
+from diagnosis.effect import Parameter
+from diagnosis.effects._places import ServoEffect
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.variants import Variants
+
+
+class Backlash(ServoEffect):
+    """No torque reaches the joint while motor and joint are within the gap.
+
+    The transmitted torque is a dead zone of the difference x: 0 for |x| < gap / 2, else
+    stiffness times (x - sign(x) gap / 2). Gap is the total play; the encoder sits at
+    the output.
+
+    Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
+    survey", the dead-zone model.
+    """
+
+    name = "backlash"
+    native = False
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The gap: cheap gears have some hundredths of a radian."""
+        return (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """The play of one stage adds to the next one's."""
+        variants.joints.gap_rad[row, variants.column(place)] += values[0]

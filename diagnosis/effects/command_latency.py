@@ -1,0 +1,42 @@
+"""Commands that take effect late."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+from diagnosis.effect import Effect, Parameter, PlaceKind
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
+    from diagnosis.variants import Variants
+
+
+class CommandLatency(Effect):
+    """The servo acts on command(t - delay): a dead time of bus and firmware.
+
+    Source: transfer function exp(-s delay), Astrom and Murray 2008, "Feedback
+    systems", section 8.2. In MuJoCo the actuator's `delay`.
+    """
+
+    name = "command_latency"
+    place_kind: ClassVar[PlaceKind] = "commands"
+    native = True
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """All joints at once, if a trace has commands of any kind."""
+        has_commands = any(
+            trace.command_rad is not None or trace.command_torque_nm is not None
+            for trace in traces
+        )
+        return ("commands",) if has_commands else ()
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The delay; 0.5 s were seen on a slow bus, 2 to 60 ms are usual."""
+        return (Parameter("delay", "s", 0.0, 0.6, 0.0, 0.015),)
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Delays add."""
+        variants.signals.command_delay_s[row] += values[0]

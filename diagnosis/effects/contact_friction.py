@@ -1,0 +1,59 @@
+"""Soles that slip sooner or later than the model's."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from diagnosis.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects._ground import (
+    ground_geoms,
+    has_ground_contact,
+    sole_friction,
+    sole_geoms,
+)
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
+    from diagnosis.variants import Variants
+
+
+class ContactFriction(Effect):
+    """Tangential force <= mu times normal force, between feet and ground.
+
+    Source: Coulomb friction as in Stewart and Trinkle 1996, "An implicit time-stepping
+    scheme for rigid body dynamics with inelastic collisions and Coulomb friction". In
+    MuJoCo `geom_friction`; explicit contact pairs have their own and are not changed.
+    """
+
+    name = "contact_friction"
+    place_kind: ClassVar[PlaceKind] = "feet"
+    native = True
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """The feet, if they can touch a ground and have friction there."""
+        walks = has_ground_contact(plant) and sole_friction(plant) > 0
+        return ("feet",) if walks else ()
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The coefficient mu; a typical one is two thirds of the plant's."""
+        nominal = sole_friction(plant)
+        high = max(2.0, 2 * nominal)
+        return (
+            Parameter("coefficient", "1", 0.02, high, nominal, nominal * 2 / 3, True),
+        )
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Scale the feet's and the ground's coefficients, so that factors multiply.
+
+        Of two geoms MuJoCo takes the larger one, or the one with priority: either way
+        it is the plant's, scaled.
+        """
+        plant = variants.plant
+        geoms = np.concatenate([ground_geoms(plant), sole_geoms(plant)])
+        factor = values[0] / sole_friction(plant)
+        variants.field("geom_friction")[row, geoms, 0] *= factor

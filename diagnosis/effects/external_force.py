@@ -1,0 +1,46 @@
+"""Somebody or something that pushes a body."""
+
+from typing import TYPE_CHECKING
+
+from diagnosis.effect import Parameter
+from diagnosis.effects._places import BodyEffect
+from diagnosis.effects._sizes import weight_n
+from diagnosis.variants import Push
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.variants import Variants
+
+_LONGEST_S = 600.0
+
+
+class ExternalForce(BodyEffect):
+    """A constant force (x, y, z) at a body's centre of mass for some time.
+
+    Its joint torques are J^T f, J the Jacobian of the centre of mass (Haddadin, De
+    Luca and Albu-Schaffer 2017, "Robot collisions: a survey on detection, isolation,
+    and identification"). World frame; `start` is in the trace's time.
+    """
+
+    name = "external_force"
+    native = False
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """Force, up to the robot's weight an axis, and when: 0.2 s are a shove."""
+        weight = weight_n(plant)
+        force = (Parameter(a, "N", -weight, weight, 0.0, 0.05 * weight) for a in "xyz")
+        return (
+            *force,
+            Parameter("start", "s", 0.0, _LONGEST_S, 0.0, 0.2),
+            Parameter("duration", "s", 0.0, _LONGEST_S, 0.0, 0.2),
+        )
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """One more push; where they overlap, forces add."""
+        x, y, z, start_s, duration_s = (float(value) for value in values)
+        if duration_s > 0 and any((x, y, z)):
+            push = Push(place, (x, y, z), start_s, duration_s)
+            variants.outside.pushes[row].append(push)

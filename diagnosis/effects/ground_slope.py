@@ -1,0 +1,87 @@
+"""A ground that is not level, or a base that was mounted tilted."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from diagnosis.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects._ground import ground_geoms
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
+    from diagnosis.variants import Variants
+
+
+class GroundSlope(Effect):
+    """The ground, or a fixed base, is turned by R = R_y(pitch) R_x(roll).
+
+    A positive pitch lets the ground fall towards +x, a positive roll lets it rise
+    towards +y. For a floating base the ground's geoms turn about the world's origin.
+    A fixed base stays where it is and gravity turns: R^T g, as the base sees it.
+
+    Source: elementary rotations, Craig 2005, "Introduction to robotics", chapter 2. In
+    MuJoCo `geom_quat` and `geom_pos`, or `opt.gravity`; constants that follow from
+    them are `mj_setConst`'s.
+    """
+
+    name = "ground_slope"
+    place_kind: ClassVar[PlaceKind] = "world"
+    native = True
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """The world, if there is a ground to turn or a base to tilt."""
+        has_any = plant.base == "fixed" or len(ground_geoms(plant)) > 0
+        return ("world",) if has_any else ()
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """Both angles."""
+        return tuple(
+            Parameter(name, "rad", -0.3, 0.3, 0.0, 0.03) for name in ("pitch", "roll")
+        )
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Turn what is there once more."""
+        if not np.any(values):
+            return
+        tilt = _tilt(*values)
+        if variants.plant.base == "fixed":
+            gravity = variants.field("opt.gravity")
+            gravity[row] = _turned(_inverse(tilt), gravity[row])
+            return
+        places, turns = variants.field("geom_pos"), variants.field("geom_quat")
+        for geom in ground_geoms(variants.plant):
+            places[row, geom] = _turned(tilt, places[row, geom])
+            turns[row, geom] = _product(tilt, turns[row, geom])
+
+
+def _tilt(pitch_rad: float, roll_rad: float) -> FloatArray:
+    """Quaternion of R_y(pitch) R_x(roll)."""
+    pitch = np.array([np.cos(pitch_rad / 2), 0, np.sin(pitch_rad / 2), 0])
+    roll = np.array([np.cos(roll_rad / 2), np.sin(roll_rad / 2), 0, 0])
+    return _product(pitch, roll)
+
+
+def _turned(turn: FloatArray, vector: FloatArray) -> FloatArray:
+    return _call("mju_rotVecQuat", 3, vector, turn)
+
+
+def _product(first: FloatArray, second: FloatArray) -> FloatArray:
+    return _call("mju_mulQuat", 4, first, second)
+
+
+def _inverse(turn: FloatArray) -> FloatArray:
+    return _call("mju_negQuat", 4, turn)
+
+
+def _call(function: str, size: int, *arguments: Any) -> FloatArray:
+    """What one of MuJoCo's functions writes into its first argument."""
+    import mujoco
+
+    result = np.zeros(size)
+    getattr(mujoco, function)(result, *arguments)
+    return result

@@ -1,0 +1,39 @@
+"""A gyroscope that turns while the robot stands still."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+from diagnosis.effect import Effect, Parameter, PlaceKind
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
+    from diagnosis.variants import Variants
+
+
+class GyroBias(Effect):
+    """Measured = true + bias, constant, in the sensor's frame.
+
+    Source: the usual inertial sensor model without drift, for example Titterton and
+    Weston 2004, "Strapdown inertial navigation technology".
+    """
+
+    name = "gyro_bias"
+    place_kind: ClassVar[PlaceKind] = "gyroscope"
+    native = False
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """The gyroscope, if a trace has one."""
+        has_one = any(trace.gyroscope_rad_s is not None for trace in traces)
+        return ("gyroscope",) if has_one else ()
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """One number an axis."""
+        return tuple(Parameter(axis, "rad/s", -0.5, 0.5, 0.0, 0.02) for axis in "xyz")
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Biases add."""
+        variants.signals.gyro_bias_rad_s[row] += values

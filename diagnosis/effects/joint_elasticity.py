@@ -1,0 +1,62 @@
+"""A spring between motor and link."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.effect import Parameter
+from diagnosis.effects._places import JointEffect
+from diagnosis.effects._sizes import inertia_kg_m2, torque_nm
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.variants import Variants
+
+
+class JointElasticity(JointEffect):
+    """Motor theta and link q joined by torque k (theta - q) + d (theta' - q').
+
+    The joint's rotor inertia is on the motor's side, and so is the encoder.
+
+    Source: Spong 1987, "Modeling and control of elastic joint robots", equations of
+    motion with diagonal rotor inertia; damping beside the spring as in De Luca and
+    Book 2016, "Robots with flexible elements".
+    """
+
+    name = "joint_elasticity"
+    native = False
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """Stiffness k and damping d.
+
+        A typical spring gives 0.05 rad at the joint's torque range, and is damped at
+        3 % of critical; at the bounds it gives 1 rad and 0.5 mrad.
+        """
+        scale = torque_nm(plant, place)
+        typical = scale / 0.05
+        critical = 2 * float(np.sqrt(typical * inertia_kg_m2(plant, place)))
+        return (
+            Parameter(
+                "stiffness", "N m/rad", scale, scale / 0.0005, np.inf, typical, True
+            ),
+            Parameter("damping", "N m s/rad", 0.0, critical, 0.0, 0.03 * critical),
+        )
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Springs in a row: compliances add.
+
+        Of (k + d s) in a row, 1 / sum 1/(k_i + d_i s), the part linear in s is
+        d = k^2 sum d_i / k_i^2.
+        """
+        stiffness, damping = values
+        if np.isinf(stiffness):
+            return
+        joints, at = variants.joints, (row, variants.column(place))
+        before = joints.spring_nm_rad[at]
+        total = 1 / (1 / before + 1 / stiffness)
+        joints.spring_damping_nm_s_rad[at] *= (total / before) ** 2
+        joints.spring_damping_nm_s_rad[at] += damping * (total / stiffness) ** 2
+        joints.spring_nm_rad[at] = total

@@ -1,0 +1,38 @@
+"""Encoders that report the past."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+from diagnosis.effect import Effect, Parameter, PlaceKind
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
+    from diagnosis.variants import Variants
+
+
+class SensorDelay(Effect):
+    """Measured(t) = true(t - delay), for positions and velocities of all joints.
+
+    Source: transfer function exp(-s delay), Astrom and Murray 2008, "Feedback
+    systems", section 8.2.
+    """
+
+    name = "sensor_delay"
+    place_kind: ClassVar[PlaceKind] = "encoders"
+    native = False
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """All joints at once."""
+        return ("encoders",)
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The delay; 2 to 40 ms are usual."""
+        return (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.01),)
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Delays add."""
+        variants.signals.sensor_delay_s[row] += values[0]

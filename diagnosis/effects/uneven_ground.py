@@ -1,0 +1,40 @@
+"""A ground with bumps that the model's plane does not have."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar
+
+from diagnosis.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects._ground import has_ground_contact
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
+    from diagnosis.variants import Variants
+
+
+class UnevenGround(Effect):
+    """Heights spread about the plane; 99 % of them within +-height.
+
+    Where each bump is cannot be known; a replay draws them.
+
+    Source: ground profiles as random processes, ISO 8608:2016.
+    """
+
+    name = "uneven_ground"
+    place_kind: ClassVar[PlaceKind] = "world"
+    native = False
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """The world, if the plant walks on it."""
+        return ("world",) if has_ground_contact(plant) else ()
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The height."""
+        return (Parameter("height", "m", 0.0, 0.03, 0.0, 0.005),)
+
+    def apply(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Heights add."""
+        variants.outside.bump_height_m[row] += values[0]

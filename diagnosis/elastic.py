@@ -1,0 +1,98 @@
+"""Joints with a spring between motor and link."""
+
+from collections.abc import Mapping
+from typing import Self
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+
+
+class ElasticJoints:
+    """The motors of joints whose links hang on springs, (n, j) each.
+
+    J w' = servo(command, angle) - (kd + emf) w - K (angle - q) - D (w - q'): Spong
+    1987. The motor is stepped implicitly, as it may be light and its spring stiff; the
+    link is MuJoCo's, its actuator is the spring.
+    """
+
+    def __init__(
+        self,
+        soft: BoolArray,
+        stiffness: FloatArray,
+        damping: FloatArray,
+        servo: Mapping[str, FloatArray],
+        inertia: FloatArray,
+    ) -> None:
+        """Motors at rest where their links are."""
+        self.soft, self.stiffness, self.damping = soft, stiffness, damping
+        self._servo, self._inertia = servo, inertia
+        self._angle: FloatArray | None = None
+        self._speed = np.zeros_like(stiffness)
+
+    @classmethod
+    def of(
+        cls,
+        joints: Mapping[str, FloatArray],
+        servo: Mapping[str, FloatArray],
+        inertia: FloatArray,
+    ) -> Self | None:
+        """Of `Joints` and servos, rows as the batch has them; None if none is soft."""
+        soft = np.isfinite(joints["spring_nm_rad"])
+        if not soft.any():
+            return None
+        stiffness = np.where(soft, joints["spring_nm_rad"], 1.0)
+        return cls(soft, stiffness, joints["spring_damping_nm_s_rad"], servo, inertia)
+
+    def drive(
+        self,
+        asked_rad: FloatArray,
+        position_rad: FloatArray,
+        velocity_rad_s: FloatArray,
+        step_s: float,
+        torque_nm: FloatArray | float = 0.0,
+    ) -> FloatArray:
+        """Controls for the springs, after one step of the motors.
+
+        So that a stiff spring makes the error of a rigid joint at the same step, the
+        servo acts on the motor's angle before the step, as MuJoCo's does, and the
+        spring on both ends' speeds after it. Speeds that are not known yet are
+        extrapolated from the last two.
+        """
+        if self._angle is None:
+            self._angle, self._speed = position_rad.copy(), velocity_rad_s.copy()
+            self._speed_before, self._link_before = self._speed, velocity_rad_s.copy()
+        h = step_s
+        link = 2 * velocity_rad_s - self._link_before
+        wanted_rad = asked_rad + h * (2 * self._speed - self._speed_before)
+        self._link_before, self._speed_before = velocity_rad_s.copy(), self._speed
+        push = torque_nm + self.damping * link
+        push -= self.stiffness * (self._angle - position_rad - h * link)
+        momentum = self._inertia * self._speed + h * push
+        speed = self._stepped(wanted_rad, momentum, h)
+        self._speed = np.where(self.soft, speed, velocity_rad_s)
+        self._angle = np.where(self.soft, self._angle + h * speed, position_rad)
+        target = self._angle + self.damping * self._speed / self.stiffness
+        return np.where(self.soft, target, asked_rad)
+
+    def _stepped(
+        self, asked_rad: FloatArray, momentum: FloatArray, h: float
+    ) -> FloatArray:
+        """Speeds of the motors after a step, with servos that may be at their limit."""
+        servo = self._servo
+        kp, kd, limit = servo["kp"], servo["kd"], servo["limit"]
+        inner = servo["emf"] + self.damping
+        mass = self._inertia + h * inner + h * h * self.stiffness
+        assert self._angle is not None
+        error = asked_rad - self._angle
+        free = (momentum + h * kp * error) / (mass + h * kd + h * h * kp)
+        wanted = kp * (error - h * free) - kd * free
+        held = np.minimum(np.maximum(wanted, -limit), limit)
+        bound = (momentum + h * held) / mass
+        return np.asarray(np.where(np.abs(wanted) > limit, bound, free))
+
+    def seen(self, position_rad: FloatArray) -> FloatArray:
+        """(n, j) what encoders on the motors' side see, of the links' positions."""
+        if self._angle is None:
+            return position_rad
+        return np.where(self.soft, self._angle, position_rad)

@@ -1,0 +1,77 @@
+"""Errors on the recordings that were kept for the end."""
+
+import numpy as np
+
+from diagnosis.belief import confusable
+from diagnosis.ceiling import ceiling_errors
+from diagnosis.controls import wrong_effects, wrong_places
+from diagnosis.predictor import Model, Predictor
+from diagnosis.search_result import Found
+from diagnosis.verdict import ChannelFit, Fit
+from groundwalk.arrays import FloatArray
+
+
+class FinalTest:
+    """The test data, opened once: errors of the plant, the model and the controls."""
+
+    def __init__(
+        self,
+        nominal: tuple[Predictor, Predictor],
+        both: Predictor,
+        test: Predictor,
+        searched: Found,
+        model: Model,
+        seed: np.random.SeedSequence,
+    ) -> None:
+        """Work out all errors.
+
+        Args:
+          nominal: predictors of the data learned from and of the test data, calibrated
+            at the plant alone.
+          both: of the data learned from, calibrated at the model.
+          test: of the test data, likewise.
+          searched: what the search came to.
+          model: that is believed, fitted to `both`.
+          seed: of the flexible regression.
+        """
+        tried = searched.best.get(searched.chosen, [])
+        others = {
+            f"{at.name}@{at.place}"
+            for placed in (searched.winner.model if searched.winner else ())
+            for at in confusable(searched, placed)
+        }
+        self._test = test
+        self._errors = {"nominal": _error(nominal[1], ())}
+        self._errors["corrected"] = _error(test, model)
+        if model:
+            elsewhere = wrong_places(both, model)
+            other = wrong_effects(both, model, tried, others)
+            for name, control in (("wrong_place", elsewhere), ("wrong_effect", other)):
+                if control is not None:
+                    self._errors[name] = _error(test, control)
+        self._errors["ceiling"] = ceiling_errors(*nominal, seed)
+
+    def fit(self) -> Fit:
+        """For `Verdict.fit`."""
+        channels = {
+            name: ChannelFit(
+                unit=self._test.channels.unit(i),
+                floor=float(noise),
+                **{key: float(rms[i] * noise) for key, rms in self._errors.items()},
+            )
+            for i, (name, noise) in enumerate(
+                zip(self._test.channels.names, self._test.channels.noise, strict=True)
+            )
+        }
+        every = {
+            key: float(np.sqrt(np.mean(rms**2))) for key, rms in self._errors.items()
+        }
+        return Fit(floor=1.0, channels=channels, **every)
+
+
+def _error(test: Predictor, model: Model) -> FloatArray:
+    """(c,) rms [noise] on the test data."""
+    squares = test.residuals([model])[0] ** 2
+    c = len(test.channels.names)
+    count = np.maximum(np.bincount(test.channel, test.scored, c), 1)
+    return np.asarray(np.sqrt(np.bincount(test.channel, squares, c) / count))

@@ -1,0 +1,66 @@
+"""The nominal model of a robot, as the diagnosis replays it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+from diagnosis.servo import Servo
+
+if TYPE_CHECKING:
+    import mujoco
+
+Base = Literal["fixed", "floating"]
+ROOT = "root"
+
+
+@dataclass(frozen=True, eq=False)
+class Plant:
+    """A MuJoCo model whose joints are driven by servos of one law.
+
+    Attributes:
+      name: of the robot, or the stem of its file.
+      spec: has one affine actuator for each driven joint, named as the joint; its
+        control is a position target. A floating base has the free joint `root`.
+      joints: hinges and slides that traces speak of, in the model's order; all others
+        are held still.
+      servo: of these joints, where a trace does not say otherwise.
+      base: "fixed" or "floating".
+      feet: names of the bodies that touch the ground, left before right.
+    """
+
+    name: str
+    spec: "mujoco.MjSpec"
+    joints: tuple[str, ...]
+    servo: Servo
+    base: Base = "fixed"
+    feet: tuple[str, ...] = ()
+
+    @cached_property
+    def model(self) -> "mujoco.MjModel":
+        """The compiled model; do not change it."""
+        return self.spec.compile()
+
+    @cached_property
+    def dofs(self) -> list[int]:
+        """Degree of freedom of each joint."""
+        return [int(self.model.joint(name).dofadr[0]) for name in self.joints]
+
+    @cached_property
+    def qpos(self) -> list[int]:
+        """Row in the position vector of each joint."""
+        return [int(self.model.joint(name).qposadr[0]) for name in self.joints]
+
+    @cached_property
+    def actuators(self) -> list[int]:
+        """Actuator of each joint."""
+        return [int(self.model.actuator(name).id) for name in self.joints]
+
+    @cached_property
+    def bodies(self) -> tuple[str, ...]:
+        """Names of the bodies that have mass and move."""
+        model = self.model
+        return tuple(
+            model.body(i).name
+            for i in range(1, model.nbody)
+            if model.body_mass[i] > 0 and model.body_weldid[i] > 0
+        )

@@ -1,0 +1,125 @@
+"""Robots in files: MJCF, URDF, and the URDFs of example-robot-data."""
+
+from collections import Counter
+from functools import cache
+from importlib.metadata import PackageNotFoundError, files
+from pathlib import Path
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import numpy as np
+
+from groundwalk.errors import BadModelError
+
+if TYPE_CHECKING:
+    import mujoco
+
+_COLLECTION = "example-robot-data"
+_COMPILER = {"balanceinertia": "true", "boundmass": "1e-6", "boundinertia": "1e-9"}
+_INERTIA_AXES = ("xx", "yy", "zz", "xy", "xz", "yz")
+_NO_DYNAMICS = ("transmission", "gazebo", "material", "mujoco")
+
+
+@cache
+def example_robots() -> dict[str, Path]:
+    """URDF files of the installed example-robot-data by name.
+
+    The name is the file's stem, such as "go2"; where two files share it, their
+    folder's name stands before it, such as "anymal_b_simple_description/anymal".
+    """
+    try:
+        listed = files(_COLLECTION) or []
+    except PackageNotFoundError:
+        return {}
+    found = [file for file in listed if file.suffix == ".urdf"]
+    times = Counter(file.stem for file in found)
+    return {
+        file.stem if times[file.stem] == 1 else f"{file.parts[-3]}/{file.stem}": Path(
+            str(file.locate())
+        )
+        for file in found
+    }
+
+
+def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
+    """A URDF as a MuJoCo specification, without what it looks like.
+
+    Meshes are never read: they do not matter to the dynamics, and their paths are
+    often wrong. Inertias that no body can have are replaced as MuJoCo's
+    `balanceinertia` does; moving links without mass or inertia get next to
+    none.
+
+    Args:
+      path: the file.
+      contacts: keep collision shapes that are boxes, cylinders and spheres; they
+        touch only the ground.
+
+    Raises:
+      BadModelError: it is no URDF.
+    """
+    import mujoco
+
+    try:
+        root = ElementTree.parse(path).getroot()
+    except (ElementTree.ParseError, OSError) as error:
+        raise BadModelError(f"{path} cannot be read: {error}") from error
+    if root.tag != "robot":
+        raise BadModelError(f"{path} is no URDF: its root is <{root.tag}>, not <robot>")
+    for link in root.iter("link"):
+        _strip(link, contacts)
+    for tag in _NO_DYNAMICS:
+        for element in root.findall(tag):
+            root.remove(element)
+    extension = ElementTree.SubElement(root, "mujoco")
+    ElementTree.SubElement(extension, "compiler", _COMPILER)
+    try:
+        spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
+    except (ValueError, IndexError) as error:
+        raise _not_a_model(path, error) from error
+    for geom in spec.geoms:
+        geom.conaffinity = 0
+    return spec
+
+
+def mjcf_spec(path: Path) -> "mujoco.MjSpec":
+    """An MJCF file as a MuJoCo specification.
+
+    Raises:
+      BadModelError: MuJoCo cannot read it.
+    """
+    import mujoco
+
+    try:
+        return mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise _not_a_model(path, error) from error
+
+
+def _strip(link: ElementTree.Element, contacts: bool) -> None:
+    """Take out shapes, and inertials that state no mass."""
+    for shape in [*link.findall("visual"), *link.findall("collision")]:
+        is_mesh = shape.find("geometry/mesh") is not None
+        if shape.tag == "visual" or is_mesh or not contacts:
+            link.remove(shape)
+    for inertial in link.findall("inertial"):
+        mass = inertial.find("mass")
+        if mass is None or float(mass.get("value", "0")) <= 0:
+            link.remove(inertial)
+        for inertia in inertial.findall("inertia"):
+            if not _is_positive(inertia):
+                least = dict.fromkeys(("ixx", "iyy", "izz"), _COMPILER["boundinertia"])
+                inertia.attrib = {**dict.fromkeys(("ixy", "ixz", "iyz"), "0"), **least}
+
+
+def _is_positive(inertia: ElementTree.Element) -> bool:
+    """Whether MuJoCo takes the inertia: its eigenvalues are above zero."""
+    xx, yy, zz, xy, xz, yz = (
+        float(inertia.get(f"i{axes}", "0")) for axes in _INERTIA_AXES
+    )
+    matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return bool(np.linalg.eigvalsh(matrix).min() > 0)
+
+
+def _not_a_model(path: Path, error: Exception) -> BadModelError:
+    reason = str(error).partition("\n")[0]
+    return BadModelError(f"{path} is no model that MuJoCo can read: {reason}")

@@ -1,0 +1,190 @@
+"""What models of a plant predict, and how far that is from what was measured."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.channels import Channels, channels_of, measured_of, stacked
+from diagnosis.effect import Placed
+from diagnosis.library import effect
+from diagnosis.plant import Plant
+from diagnosis.replay import STEP_S, replay
+from diagnosis.run import runs_of, window_s
+from diagnosis.start_state import (
+    POSITION_SPREAD_RAD,
+    POSITION_STEP_RAD,
+    VELOCITY_SPREAD_RAD_S,
+    VELOCITY_STEP_RAD_S,
+    StartDoubt,
+    nudged,
+)
+from diagnosis.trace import Trace
+from diagnosis.variants import Variants
+from groundwalk.arrays import BoolArray, FloatArray
+
+Model = tuple[Placed, ...]
+"""The plant with these effects; empty for the plant as it is."""
+
+WARM_UP_S = 0.4
+"""Not scored: the start state is known to the sensors' noise only."""
+
+BLOCK_S = 0.5
+"""Errors within a block may be alike, those of different blocks are not."""
+
+MOST_ROWS = 192
+"""Simulations in one batch."""
+
+WORST = 1e4
+
+
+class Predictor:
+    """Replays models on traces, with the integrator's error taken out.
+
+    Replays at a coarse step are wrong by something smooth that hardly depends on the
+    model. Its size is found once, with finer steps and Richardson's extrapolation
+    (first order: twice the finer less the coarser), and added to every replay since.
+    """
+
+    def __init__(
+        self,
+        plant: Plant,
+        traces: Sequence[Trace],
+        channels: Channels | None = None,
+        step_s: float = STEP_S,
+        threads: int = 1,
+    ) -> None:
+        """Find the states that the traces start from.
+
+        Args:
+          plant: nominal.
+          traces: to be predicted, all with the same channels.
+          channels: with their noise; measured on the traces where None.
+          step_s: of the coarse replays.
+          threads: of every batch.
+        """
+        self.plant, self.traces = plant, list(traces)
+        self.step_s, self._threads = step_s, threads
+        self.channels = channels or channels_of(plant, traces)
+        per_trace = [runs_of(plant, trace) for trace in traces]
+        self._runs = [run for runs in per_trace for run in runs]
+        self._first_run = np.cumsum([0, *(len(runs) for runs in per_trace)]).tolist()
+        rows = [trace.ticks for trace in traces]
+        c = len(self.channels.names)
+        self._measured = np.concatenate(
+            [measured_of(trace, self.channels) for trace in traces]
+        )
+        self._scored = np.isfinite(self._measured) & ~self._warming()[:, None]
+        self._correction = np.zeros((sum(rows), c))
+        self._ends = np.cumsum(rows).tolist()
+        self._doubt: StartDoubt | None = None
+        self.channel = np.tile(np.arange(c), sum(rows))
+        self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
+        self.scored = self._scored.reshape(-1)
+        blocks = np.concatenate(
+            [
+                (t.time_s - t.time_s[0]) // BLOCK_S + 1000 * i
+                for i, t in enumerate(traces)
+            ]
+        )
+        _, block = np.unique(np.repeat(blocks, c), return_inverse=True)
+        self.block = block
+
+    def part(self, first: int, last: int) -> "Predictor":
+        """Of traces `first` to `last - 1` only, as well calibrated."""
+        some = Predictor(
+            self.plant,
+            self.traces[first:last],
+            self.channels,
+            self.step_s,
+            self._threads,
+        )
+        ends = [0, *self._ends]
+        some._correction = self._correction[ends[first] : ends[last]]
+        if self._doubt is not None:
+            runs = self._first_run[first], self._first_run[last]
+            some._doubt = self._doubt.part(*runs)
+        return some
+
+    def calibrate(self, model: Model = ()) -> float:
+        """Measure the integrator's error at a model; the rms [noise] that is left.
+
+        So is what wrong starts change.
+        """
+        coarse, fine, finer = (
+            self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
+        )
+        self._correction = 2 * finer - fine - coarse
+        self._doubt = self._start_doubt(model)
+        # of the first order, twice the finer less the fine is left with the second
+        left = (finer - fine) - (fine - coarse) / 2
+        return float(np.sqrt(np.nanmean((left / self.channels.noise) ** 2)))
+
+    def _start_doubt(self, model: Model) -> StartDoubt:
+        runs, variants = nudged(self._runs), variants_of(self.plant, [model])
+        results = replay(runs, variants, self.step_s, self._threads)
+        stacks = [stacked(result, self.channels)[0] for result in results]
+        count = len(self._runs)
+        plain, positions, velocities = (
+            np.concatenate(stacks[k * count : (k + 1) * count]) for k in range(3)
+        )
+        changes = [
+            np.where(self._scored, (other - plain) * scale / self.channels.noise, 0.0)
+            for other, scale in (
+                (positions, POSITION_SPREAD_RAD / POSITION_STEP_RAD),
+                (velocities, VELOCITY_SPREAD_RAD_S / VELOCITY_STEP_RAD_S),
+            )
+        ]
+        changes = [np.nan_to_num(change) for change in changes]
+        ends = np.cumsum([run.trace.ticks for run in self._runs])
+        return StartDoubt(changes, ends.tolist())
+
+    def _warming(self) -> BoolArray:
+        """Rows that are not scored: of whole traces a while, of windows their first."""
+        flags = []
+        for run in self._runs:
+            since_s = run.trace.time_s - run.trace.time_s[0]
+            whole = window_s(self.plant, run.trace) is None
+            flags.append(since_s < WARM_UP_S if whole else since_s <= 0)
+        return np.concatenate(flags)
+
+    def measured(self, index: int) -> FloatArray:
+        """(T, c) what a trace measured."""
+        return measured_of(self.traces[index], self.channels)
+
+    def predict(self, models: Sequence[Model]) -> FloatArray:
+        """(n, rows, c), the traces' rows one after another."""
+        most = max(1, MOST_ROWS // len(self._runs))
+        parts = [
+            self._replayed(models[i : i + most], self.step_s)
+            for i in range(0, len(models), most)
+        ]
+        return np.concatenate(parts) + self._correction
+
+    def residuals(self, models: Sequence[Model]) -> FloatArray:
+        """(n, N) measured less predicted, in units of noise; 0 where not scored.
+
+        What blew up is as wrong as anything can be.
+        """
+        wrong = (self._measured - self.predict(models)) / self.channels.noise
+        wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
+        wrong = np.where(self._scored, wrong, 0.0)
+        if self._doubt is not None:
+            wrong = self._doubt.without(wrong)
+        return wrong.reshape(len(models), -1)
+
+    def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
+        variants = variants_of(self.plant, models)
+        results = replay(self._runs, variants, step_s, self._threads)
+        return np.concatenate(
+            [stacked(result, self.channels) for result in results], axis=1
+        )
+
+
+def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
+    """A row for each model."""
+    variants = Variants(plant, len(models))
+    for row, model in enumerate(models):
+        for placed in model:
+            values = np.array(placed.values)
+            effect(placed.effect).apply(variants, row, placed.place, values)
+    return variants

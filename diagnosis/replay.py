@@ -1,0 +1,67 @@
+"""Replays: what n variants of a plant do when they get the commands of traces."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.drive import Drive
+from diagnosis.replay_batch import ReplayBatch
+from diagnosis.run import Run
+from diagnosis.variants import Variants
+from groundwalk.arrays import FloatArray
+
+STEP_S = 0.002
+BLOCK = 256
+"""Steps whose commands are worked out at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """What n variants would have measured in one run, at the rows of its trace.
+
+    Attributes:
+      position_rad: (n, T, j).
+      velocity_rad_s: (n, T, j).
+      servo_nm: (n, T, j) what the servos gave, without back-EMF.
+      base: (n, T, 13) as `Run.base`, for a floating base.
+      gyroscope_rad_s: (n, T, 3).
+    """
+
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+    servo_nm: FloatArray
+    base: FloatArray | None
+    gyroscope_rad_s: FloatArray
+
+
+def replay(
+    runs: Sequence[Run], variants: Variants, step_s: float = STEP_S, threads: int = 1
+) -> list[Replayed]:
+    """Drive every variant through every run, all in one batch.
+
+    Args:
+      runs: R; each starts from its own state and follows its own trace.
+      variants: n.
+      step_s: of the physics.
+      threads: of the batch.
+    """
+    batch = ReplayBatch(runs, variants, step_s, threads)
+    start_s = np.array([run.trace.time_s[0] for run in runs])
+    longest_s = max(run.trace.duration_s for run in runs)
+    steps = int(np.ceil((longest_s + 1e-9) / step_s))
+    drive = Drive(runs, variants.signals.command_delay_s, step_s)
+    tape = batch.tape(steps)
+    for first in range(0, steps, BLOCK):
+        numbers = np.arange(first, min(first + BLOCK, steps))
+        now_s = start_s + numbers[:, None] * step_s
+        asked, pushed = drive.at(now_s)
+        for i in range(len(numbers)):
+            if asked is not None:
+                batch.servo(asked[i], now_s[i])
+            if pushed is not None:
+                batch.push_joints(pushed[i])
+            batch.push_bodies(now_s[i])
+            batch.step()
+            tape.note(first + i + 1)
+    return tape.read(runs, variants)

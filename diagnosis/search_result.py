@@ -1,0 +1,150 @@
+"""What a search goes by, and what it comes to."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from diagnosis.fitting import Fit
+from diagnosis.predictor import Model
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How far the search looks, and when it believes.
+
+    Attributes:
+      singles: effects alone that are fitted ...
+      others: ... of which so many are effects that are not among the best guesses.
+      beam: models that grow further.
+      growths: ways in which each of them grows.
+      paired: effects that are paired with each other at first order ...
+      pairs: ... of which so many are fitted.
+      first_steps: of a fit, after which most models are given up ...
+      finished: ... but for so many.
+      swaps: effects that are tried in the stead of each one of the best model.
+      largest: effects in a model.
+      suspicious: times the noise's energy: so much is looked at in pairs, even if no
+        effect alone is of use.
+      least_gain: log-likelihood that an effect must gain on the selection data.
+      least_pattern: and as much as a pattern of this rms [noise] would: below it is
+        what integrators and clocks do wrong.
+      least_share: and this share of the energy above the noise that the best model so
+        far leaves.
+      least_of_all: and this share of what the plant alone leaves.
+    """
+
+    singles: int = 12
+    others: int = 4
+    beam: int = 3
+    growths: int = 4
+    paired: int = 30
+    pairs: int = 6
+    first_steps: int = 3
+    finished: int = 6
+    swaps: int = 6
+    largest: int = 3
+    suspicious: float = 1.5
+    least_gain: float = 15.0
+    least_pattern: float = 0.15
+    least_share: float = 0.3
+    least_of_all: float = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A fitted model and how well it does on both kinds of data.
+
+    Attributes:
+      fit: on the fitting data.
+      selected: energy on the selection data: minus the log-likelihood.
+    """
+
+    fit: Fit
+    selected: float
+
+    @property
+    def model(self) -> Model:
+        """The effects."""
+        return self.fit.model
+
+    @property
+    def keys(self) -> frozenset[str]:
+        """Effects and places, without values."""
+        return keys_of(self.model)
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a search came to.
+
+    Attributes:
+      nothing: energy of the plant alone on the selection data.
+      floor: energy that noise alone would leave there.
+      best: the models of each size that do best, the best first.
+      chosen: how many effects are believed.
+    """
+
+    nothing: float
+    floor: float
+    best: dict[int, list[Judged]]
+    chosen: int
+
+    @property
+    def winner(self) -> Judged | None:
+        """The model that is believed; None for the plant alone."""
+        return self.best[self.chosen][0] if self.chosen else None
+
+    def worse(self, judged: Judged) -> float:
+        """Nats by which a model of the chosen size is less plausible than the best."""
+        assert self.winner is not None
+        scale = scale_of(self.best[self.chosen], self.floor)
+        return plausibility(judged, scale) - plausibility(self.winner, scale)
+
+    def closed(self, judged: Judged) -> float:
+        """Share of the energy above the noise that a model takes away."""
+        excess = self.nothing - self.floor
+        return (self.nothing - judged.selected) / excess if excess > 0 else 0.0
+
+
+def keys_of(model: Model) -> frozenset[str]:
+    """Effects and places of a model, without values."""
+    return frozenset(placed.key for placed in model)
+
+
+RARE_NATS = {
+    "drag": 3.0,
+    "servo_damping": 2.0,
+    "sensor_delay": 1.0,
+    "servo_fade": 1.0,
+    "com_offset": 1.0,
+    "external_force": 3.0,
+}
+"""What is seldom the matter must fit better by so much than what often is."""
+
+VALUE_NATS = 2.0
+"""So must what has more values."""
+
+
+def plausibility(judged: Judged, scale: float) -> float:
+    """Energy on the selection data, more for what is rare or has many values.
+
+    Args:
+      judged: a model.
+      scale: energy of the best model over that of the noise, at least 1: where no model
+        is exact, residuals are larger than the noise and tell less.
+    """
+    return judged.selected / scale + sum(
+        RARE_NATS.get(placed.effect, 0.0) + VALUE_NATS * len(placed.values)
+        for placed in judged.model
+    )
+
+
+def scale_of(judged: Sequence[Judged], floor: float) -> float:
+    """How much larger than the noise's energy that of the best model is."""
+    least = min((one.selected for one in judged), default=floor)
+    return max(least / floor, 1.0) if floor > 0 else 1.0
+
+
+def ranked(judged: Sequence[Judged], floor: float) -> list[Judged]:
+    """The most plausible first."""
+    scale = scale_of(judged, floor)
+    return sorted(judged, key=lambda one: plausibility(one, scale))

@@ -1,0 +1,168 @@
+"""How the robot of a concealed case moves: plant, ticks, servo gains and commands.
+
+On a fixed base two of the four recordings are made with half the servos' gains, as
+their metadata say: what is a wrong gain grows and shrinks with it, what is a payload or
+a friction does not. These are the chirp and the ramps, so that most pairs of motions,
+such as multisine and chirp, have both: a diagnosis sets whole recordings aside.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from experiments.excitation import MOTIONS, Excitation
+from experiments.excitation_standing import standing_commands, walking_feed
+from groundwalk.arrays import BoolArray, FloatArray
+from worlds.hidden_clock import Clock
+from worlds.hidden_plant import HiddenPlant, hidden_plant
+from worlds.hidden_run import Feed
+
+STEP_S = 0.00025
+FLOATING_STEP_S = 0.0005
+_STANDING = ("squat", "fast_squat", "sway", "squat")
+_RATES_HZ, _RATE_SHARES = (100.0, 200.0, 50.0), (0.7, 0.15, 0.15)
+_FLOATING_HZ = 100.0
+_DURATION_S, _FLOATING_DURATION_S = (8.0, 10.0), (5.0, 6.0)
+"""Contacts cost time: recordings on feet are shorter."""
+_SOFT_MOTIONS, _SOFT = ("chirp", "ramps"), 0.5
+"""Recordings with a part of the gains."""
+_MIDDLE = 0.4
+"""Centres lie within this part of a joint's range."""
+_WALK_REST_S = 0.8
+_BEFORE_S, _STILL_S = (0.3, 1.2), 8.0
+"""Time before a recording; a joint that is not to be excited has sagged by then."""
+
+
+@dataclass(frozen=True, eq=False)
+class CaseMotion:
+    """What the robot of a case is told, in each of its recordings.
+
+    Attributes:
+      plant: the robot.
+      plants: the same with each recording's servo gains.
+      names: of the motions.
+      places: joints at which something may be hidden.
+      moves: (j,) joints that are excited.
+      centre_rad: (j,) that fixed robots start from.
+      rate_hz: ticks a second.
+      spans_s: before each recording, and of it.
+      jitter_s: most by which a tick is off.
+      seeds: entropy of each motion.
+    """
+
+    plant: HiddenPlant
+    plants: tuple[HiddenPlant, ...]
+    names: tuple[str, ...]
+    places: tuple[int, ...]
+    moves: BoolArray
+    centre_rad: FloatArray
+    rate_hz: float
+    spans_s: tuple[tuple[float, float], ...]
+    jitter_s: float
+    seeds: tuple[int, ...]
+
+    @classmethod
+    def drawn(
+        cls, plant_name: str, held: bool, jitter_s: float, rng: np.random.Generator
+    ) -> "CaseMotion":
+        """Draw rate, durations, gains, pose, and which joint is held still.
+
+        Args:
+          plant_name: one of `concealed_draw.PLANTS`.
+          held: whether the joint where something is hidden never moves.
+          jitter_s: most by which a tick is off.
+          rng: draws all of it.
+        """
+        plant, names = _plant(plant_name)
+        coupled = plant.description.coupled if plant.description else ()
+        tied = {joint for pair in coupled for joint in pair}
+        places = tuple(i for i in range(len(plant.joints)) if i not in tied)
+        moves = np.ones(len(plant.joints), bool)
+        if held:
+            places = (int(rng.choice(places)),)
+            moves[places[0]] = False
+        low, high = plant.range_rad.T
+        middle = 0.5 + _MIDDLE * rng.uniform(-0.5, 0.5, len(low))
+        for first, second in coupled:
+            middle[second] = middle[first]
+        lengths_s = _FLOATING_DURATION_S if plant.floating else _DURATION_S
+        duration_s = float(rng.uniform(*lengths_s))
+        rate_hz = float(rng.choice(_RATES_HZ, p=_RATE_SHARES))
+        n = len(names)
+        before_s = rng.uniform(*_BEFORE_S, n) + (_STILL_S if held else 0.0)
+        return cls(
+            plant=plant,
+            plants=_gains(plant, names, rng),
+            names=names,
+            places=places,
+            moves=moves,
+            centre_rad=low + middle * (high - low),
+            rate_hz=_FLOATING_HZ if plant.floating else rate_hz,
+            spans_s=tuple((float(before), duration_s) for before in before_s),
+            jitter_s=jitter_s,
+            seeds=tuple(int(seed) for seed in rng.integers(2**32, size=n)),
+        )
+
+    @property
+    def duration_s(self) -> float:
+        """Of each recording."""
+        return self.spans_s[0][1]
+
+    def clock(self, number: int, step_s: float | None = None) -> Clock:
+        """When the ticks of a recording happen.
+
+        Args:
+          number: of the recording.
+          step_s: fine step; the case's own where None.
+        """
+        own = FLOATING_STEP_S if self.plant.floating else STEP_S
+        rng = np.random.default_rng([self.seeds[number], 1])
+        return Clock.drawn(
+            step_s or own, self.rate_hz, self.spans_s[number], self.jitter_s, rng
+        )
+
+    def feed(self, number: int) -> tuple[FloatArray, Feed]:
+        """Pose at the start, and commands, of a recording."""
+        rng = np.random.default_rng([self.seeds[number], 0])
+        name, description = self.names[number], self.plant.description
+        if name == "walk" and description is not None:
+            rest_rows = round(_WALK_REST_S * self.rate_hz)
+            return walking_feed(description, rng, rest_rows)
+        rows = sum(round(span * self.rate_hz) for span in self.spans_s[number]) + 1
+        time_s = np.arange(rows) / self.rate_hz
+        if self.plant.floating and description is not None:
+            return table_feed(standing_commands(description, name, time_s, rng))
+        plan = Excitation(
+            self.centre_rad,
+            self.plant.range_rad,
+            self.plant.speed_rad_s,
+            self.moves,
+            description.coupled if description else (),
+        )
+        return table_feed(plan.commands(name, time_s, rng))
+
+
+def table_feed(command_rad: FloatArray) -> tuple[FloatArray, Feed]:
+    """The first row of commands (rows, j) as pose, and the rows one by one."""
+    return command_rad[0], lambda row, sense: command_rad[row]
+
+
+def _plant(name: str) -> tuple[HiddenPlant, tuple[str, ...]]:
+    if name == "nao_walking":
+        return hidden_plant("nao", floating=True), ("walk",) * len(MOTIONS)
+    if name == "nao_standing":
+        return hidden_plant("nao", floating=True), _STANDING
+    return hidden_plant("nao" if name == "nao_air" else name), MOTIONS
+
+
+def _gains(
+    plant: HiddenPlant, names: Sequence[str], rng: np.random.Generator
+) -> tuple[HiddenPlant, ...]:
+    """Known servo gains of each recording; on feet the robot needs its own."""
+    if plant.floating:
+        return (plant,) * len(names)
+    # A described robot's gain is known; others' may be set to anything.
+    own = 1.0 if plant.description is not None else float(rng.uniform(0.8, 1.25))
+    given, softer = plant.with_gains(own), plant.with_gains(own * _SOFT, _SOFT)
+    return tuple(softer if name in _SOFT_MOTIONS else given for name in names)

@@ -1,0 +1,109 @@
+"""`groundwalk concealed run`: diagnose every case without looking at its truth."""
+
+import json
+import multiprocessing
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import tyro
+
+from diagnosis.diagnose import diagnose
+from diagnosis.trace_reading import read_traces
+from diagnosis.verdict import Verdict
+from experiments.command_line import run_verb
+from experiments.progress import progress
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from groundwalk.files import write_text
+
+ANSWERS, CASES, PLANT = "answers", "cases", "plant.json"
+RECORDINGS = "recordings"
+
+
+@dataclass(frozen=True)
+class ConcealedRun:
+    """Diagnose the cases of a set; cases with an answer are not diagnosed again.
+
+    Attributes:
+      folder: the set.
+      seed: every random number follows from it and the case's name.
+      threads: cases at a time, each in a process of its own; 0 for one per core.
+    """
+
+    folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
+    seed: int = 1
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no set."""
+        if not (self.folder / CASES).is_dir():
+            raise RunFolderError(f"{self.folder} holds no {CASES}: make them first")
+        if self.seed < 0 or self.threads < 0:
+            raise BadValueError("seed and threads must not be negative")
+
+
+def main(config: ConcealedRun) -> None:
+    """Diagnose what has no answer yet."""
+    answer_all(config.folder, ANSWERS, diagnosed, config.seed, config.threads)
+
+
+Answer = Callable[[Path, int], Verdict]
+"""The verdict on a case's folder, with a seed."""
+
+
+def answer_all(
+    folder: Path, kind: str, answer: Answer, seed: int, threads: int
+) -> None:
+    """Write the missing answers of a kind.
+
+    Args:
+      folder: the set.
+      kind: subfolder for the answers.
+      answer: a function of a module, so that processes find it.
+      seed: of every case.
+      threads: processes; 0 for one per core.
+    """
+    cases = sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
+    missing = [case for case in cases if not _path(folder, kind, case).exists()]
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    context = multiprocessing.get_context("spawn")
+    workers = threads or os.cpu_count() or 1
+    with (
+        progress("cases diagnosed", len(cases), done=len(cases) - len(missing)) as bar,
+        ProcessPoolExecutor(workers, mp_context=context) as pool,
+    ):
+        asked = {pool.submit(answer, case, seed): case for case in missing}
+        try:
+            for future in as_completed(asked):
+                case = asked[future]
+                write_text(_path(folder, kind, case), future.result().to_json())
+                bar.advance(case.name)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def diagnosed(case: Path, seed: int) -> Verdict:
+    """The diagnosis' own verdict; recordings that it refuses are not identifiable."""
+    spec = json.loads((case / PLANT).read_text())
+    source = case / spec["robot"]
+    robot = source if source.exists() else spec["robot"]
+    paths = sorted((case / RECORDINGS).glob("*.parquet"))
+    own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
+    try:
+        plant, traces = read_traces(paths, robot)
+        return diagnose(plant, traces, own).verdict
+    except BadRecordingError as error:
+        return Verdict(kind="not_identifiable", limits=(str(error),))
+
+
+def _path(folder: Path, kind: str, case: Path) -> Path:
+    return folder / kind / f"{case.name}.json"
+
+
+if __name__ == "__main__":
+    run_verb(ConcealedRun, main)

@@ -1,0 +1,159 @@
+"""`groundwalk diagnose`: what physics does the sim lack that recordings show?"""
+
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import tyro
+
+import robots
+from diagnosis.diagnose import Diagnosis, diagnose
+from diagnosis.predictor import Model, Predictor
+from diagnosis.trace_reading import read_traces
+from experiments.command_line import run_verb
+from experiments.diagnosis_console import print_verdict
+from experiments.diagnosis_overlay import write_overlay
+from experiments.diagnosis_report import write_report
+from experiments.diagnosis_report_facts import ReportFacts
+from experiments.diagnosis_report_series import ChannelSeries, ReportSeries
+from experiments.run_folder import PROVENANCE, RunFolder, check_free, to_plain
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError, UnknownNameError
+from worlds import ServoGains
+
+VERB = "diagnose"
+VERDICT, REPORT, OVERLAY, AUDIT = (
+    "diagnosis.json", "report.html", "overlay.rrd", "audit.json",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Diagnose:
+    """Find out what physics a sim lacks, from recordings of the robot.
+
+    Attributes:
+      recordings: files of format 1, Parquet or CSV; at least one.
+      robot: its name, a model file (.xml or .urdf), or a robot of example-robot-data.
+      kp: stiffness of all servos [N m/rad], where recordings do not say.
+      kd: damping of all servos [N m s/rad], likewise.
+      max_torque: limit of all servos [N m], likewise; no limit by default.
+      seed: every random number follows from it.
+      threads: of the replays.
+      out: the run's folder; a new one under runs/ by default.
+      json: print the verdict as JSON.
+    """
+
+    recordings: Annotated[
+        tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RECORDING...")
+    ]
+    robot: str
+    kp: float | None = None
+    kd: float | None = None
+    max_torque: float | None = None
+    seed: int = 1
+    threads: int = 2
+    out: Path | None = None
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what no diagnosis can do."""
+        if not self.recordings:
+            raise BadValueError("no recording is given; give one at least")
+        for name in ("kp", "kd", "max_torque"):
+            value = getattr(self, name)
+            if value is not None and not 0 <= value < np.inf:
+                raise BadValueError(f"{name} is {value}; it must not be negative")
+        if self.kp is None and (self.kd, self.max_torque) != (None, None):
+            raise BadValueError("kd or max_torque is given without kp")
+        if self.seed < 0 or self.threads < 0:
+            raise BadValueError("seed and threads must not be negative")
+
+    @property
+    def gains(self) -> ServoGains | None:
+        """Of all servos, if they are given."""
+        if self.kp is None:
+            return None
+        limit = sys.float_info.max if self.max_torque is None else self.max_torque
+        return ServoGains(self.kp, self.kd or 0.0, limit)
+
+
+def main(config: Diagnose) -> None:
+    """Diagnose, and write down the verdict, the report and the overlay."""
+    check_free(config.out)
+    plant, traces = read_traces(config.recordings, config.robot, config.gains)
+    seed = np.random.SeedSequence(config.seed)
+    found = diagnose(plant, traces, seed, threads=config.threads)
+    folder = RunFolder.create(VERB, config)
+    folder.write_text(VERDICT, found.verdict.to_json())
+    folder.write_text(AUDIT, found.audit.to_json() + "\n")
+    series = held_out(found)
+    facts = _facts(config, folder, found)
+    write_report(folder.path / REPORT, found.verdict, series, facts)
+    write_overlay(
+        folder.path / OVERLAY, series, found.verdict.fit, _description(config)
+    )
+    if config.json:
+        print(found.verdict.to_json(), end="")
+    else:
+        print_verdict(found.verdict, [folder.path / name for name in (REPORT, OVERLAY)])
+
+
+def held_out(found: Diagnosis) -> list[ReportSeries]:
+    """Real, sim and corrected sim on the recordings that no fit has seen."""
+    sim = _by_trace(found.nominal, ())
+    corrected = _by_trace(found.test, found.model)
+    names = found.test.channels.names
+    series = []
+    for k, trace in enumerate(found.test.traces):
+        real = found.test.measured(k)
+        channels = {
+            name: ChannelSeries(real[:, i], sim[k][:, i], corrected[k][:, i])
+            for i, name in enumerate(names)
+        }
+        series.append(ReportSeries(trace.name, trace.time_s, channels))
+    return series
+
+
+def _by_trace(predictor: Predictor, model: Model) -> Sequence[FloatArray]:
+    """(T, c) of every trace."""
+    predicted = predictor.predict([model])[0]
+    ends = np.cumsum([trace.ticks for trace in predictor.traces])
+    return np.split(predicted, ends[:-1])
+
+
+def _description(config: Diagnose) -> robots.Description | None:
+    try:
+        return robots.get(config.robot)
+    except UnknownNameError:
+        return None
+
+
+def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts:
+    provenance = folder.read_json(PROVENANCE)
+    settings = {
+        name: str(value)
+        for name, value in to_plain(config).items()
+        if value is not None and name not in ("recordings", "out", "json")
+    }
+    files = {
+        VERDICT: "the verdict, for programs",
+        OVERLAY: "real, sim and corrected sim in Rerun",
+        AUDIT: "what the recordings are like",
+    }
+    packages = {k: str(v) for k, v in provenance["packages"].items() if v}
+    return ReportFacts(
+        robot=config.robot,
+        base=found.plant.base,
+        command="groundwalk " + shlex.join(provenance["arguments"]),
+        settings=settings,
+        versions={"groundwalk": provenance["groundwalk"], **packages},
+        files=files,
+    )
+
+
+if __name__ == "__main__":
+    run_verb(Diagnose, main)

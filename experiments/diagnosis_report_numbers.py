@@ -1,0 +1,102 @@
+"""Numbers as people read them: no more digits than are known, and handy units."""
+
+import math
+from collections.abc import Iterable
+
+from diagnosis.verdict import Amount, Estimate
+
+DASH = "\N{EN DASH}"
+
+_HANDY = {
+    "s": (0.5, 1e3, "ms"),
+    "m": (0.1, 1e3, "mm"),
+    "1/s": (math.inf, 1e2, "% per second"),
+}
+"""Below the first number, times the second, in the third."""
+_ERRORS = {
+    "rad": (0.1, 1e3, "mrad"),
+    "m": (0.1, 1e3, "mm"),
+    "rad/s": (0.1, 1e3, "mrad/s"),
+}
+
+
+def estimate_text(estimate: Estimate) -> str:
+    """For example "0.030 rad (0.027 to 0.034)"."""
+    size = max(abs(estimate.low), abs(estimate.high))
+    factor, unit = _handy(_HANDY, estimate.unit, size)
+    value, low, high = (
+        factor * part for part in (estimate.value, estimate.low, estimate.high)
+    )
+    if low == high:
+        return f"{value:.3g} {unit}".rstrip()
+    places = _decimals(high - low, abs(value))
+    numbers = [f"{_no_minus_zero(part, places)}" for part in (value, low, high)]
+    name = f" {unit}" if unit else ""
+    return f"{numbers[0]}{name} ({numbers[1]} to {numbers[2]})"
+
+
+def amount_text(amount: Amount) -> str:
+    """For example "0.0042 rad"."""
+    factor, unit = _handy(_HANDY, amount.unit, amount.value)
+    return f"{_two_digits(factor * amount.value)} {unit}".rstrip()
+
+
+def error_unit(unit: str, largest: float) -> tuple[float, str]:
+    """By what to multiply errors of a unit, and the unit that they are then in.
+
+    Args:
+      unit: SI.
+      largest: of all errors that stand together.
+    """
+    return _handy(_ERRORS, unit, largest)
+
+
+def errors_text(errors: Iterable[float | None]) -> list[str]:
+    """Errors that stand together, with the same decimals; a dash for None."""
+    given = list(errors)
+    known = [abs(error) for error in given if error]
+    places = 0
+    if known:
+        most = max(0, 3 - math.floor(math.log10(max(known))))
+        places = min(_decimals(min(known) / 2, min(known)), most)
+    return [DASH if error is None else f"{error:.{places}f}" for error in given]
+
+
+def percent(part: float) -> str:
+    """For example "97 %"; never all of it if it is not."""
+    text = f"{100 * part:.0f} %"
+    if text == "100 %" and part < 1:
+        return "over 99 %"
+    return "under 1 %" if text == "0 %" and part > 0 else text
+
+
+def unit_text(unit: str) -> str:
+    """A unit as it is printed."""
+    return {"1": ""}.get(unit, unit.replace("^2", "²").replace("^3", "³"))
+
+
+def _handy(
+    table: dict[str, tuple[float, float, str]], unit: str, size: float
+) -> tuple[float, str]:
+    below, factor, handy = table.get(unit, (0.0, 1.0, ""))
+    return (factor, handy) if size < below else (1.0, unit_text(unit))
+
+
+def _decimals(width: float, size: float) -> int:
+    """Decimals for a value that is known up to a width: one digit of it, or two."""
+    step = width if width > 0 else size / 100
+    if step <= 0:
+        return 0
+    exponent = math.floor(math.log10(step))
+    leading = step / 10.0**exponent
+    return min(max(0, -exponent + (leading < 3)), 8)
+
+
+def _two_digits(value: float) -> str:
+    if value == 0:
+        return "0"
+    return f"{value:.{max(0, 1 - math.floor(math.log10(abs(value))))}f}"
+
+
+def _no_minus_zero(value: float, places: int) -> str:
+    return f"{round(value, places) + 0.0:.{places}f}"

@@ -1,0 +1,156 @@
+"""`groundwalk record`: a recording of a robot in either world."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from experiments.command_line import run_verb
+from experiments.concealed_motion import FLOATING_STEP_S, STEP_S, table_feed
+from experiments.excitation import MOTIONS, Excitation
+from experiments.excitation_standing import (
+    STANDING_MOTIONS,
+    standing_commands,
+    walking_feed,
+)
+from experiments.new_file import check_new
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError, GroundwalkError
+from worlds.hidden_clock import Clock
+from worlds.hidden_effects import Hidden
+from worlds.hidden_plant import HiddenPlant, hidden_plant
+from worlds.hidden_run import Feed, run_hidden
+from worlds.hidden_sensors import HiddenSensors, hidden_recording
+from worlds.recording_files import write_recording
+from worlds.recording_metadata import RecordingMetadata
+
+ENGINES = {"sim": "mujoco", "real": "bullet"}
+_RATE_HZ = 100.0
+_JITTER_S = 0.0005
+_REST_S = 0.8
+_LONGEST_S = 600.0
+Motion = Literal[
+    "chirp", "multisine", "steps", "ramps", "squat", "fast_squat", "sway", "walk"
+]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Make a recording of a robot that moves, in the sim's or the real world's engine.
+
+    Both compute in fine steps. In the air a robot's base is fixed; squats, sway and
+    walks are on its feet.
+
+    Attributes:
+      out: the file to write, .parquet or .csv.
+      robot: pendulum, so101, or a robot of `groundwalk list robots`.
+      world: sim is MuJoCo, real is PyBullet.
+      motion: what the robot does.
+      base: fixed or floating; by default what the motion needs.
+      hidden: physics that the model lacks, such as backlash@LKneePitch:gap=0.02 or
+        coulomb_friction@LKneePitch:torque=0.2.
+      duration: in seconds.
+      seed: every random number follows from it.
+    """
+
+    out: Path
+    robot: str = "nao"
+    world: Literal["sim", "real"] = "real"
+    motion: Motion = "multisine"
+    base: Literal["fixed", "floating"] | None = None
+    hidden: tuple[str, ...] = ()
+    duration: float = 10.0
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse what no recording can be, before anything is computed."""
+        check_new(self.out)
+        if self.out.suffix.lower() not in (".parquet", ".csv"):
+            raise BadValueError(f"out is {self.out}; a recording is .parquet or .csv")
+        if not 0.1 <= self.duration <= _LONGEST_S:
+            raise BadValueError(
+                f"duration is {self.duration}; from 0.1 to {_LONGEST_S:g} s"
+            )
+        if self.seed < 0:
+            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        if self.base is not None and (self.base == "floating") != self.on_feet:
+            needs = "floating" if self.on_feet else "fixed"
+            raise BadValueError(f"motion {self.motion} needs a {needs} base")
+        self.effects()
+        self.plant()
+
+    @property
+    def on_feet(self) -> bool:
+        """Whether the motion is one on the ground."""
+        return self.motion not in MOTIONS
+
+    def effects(self) -> tuple[Hidden, ...]:
+        """What is hidden, as data."""
+        return tuple(Hidden.parse(text) for text in self.hidden)
+
+    def plant(self) -> HiddenPlant:
+        """The robot."""
+        return hidden_plant(self.robot, floating=self.on_feet)
+
+
+def main(config: Record) -> None:
+    """Let the robot move and write the recording."""
+    plant, effects = config.plant(), config.effects()
+    of_motion, of_clock, of_noise, of_ground = np.random.SeedSequence(
+        config.seed
+    ).spawn(4)
+    start_rad, feed = _feed(config, plant, np.random.default_rng(of_motion))
+    clock = Clock.drawn(
+        FLOATING_STEP_S if plant.floating else STEP_S,
+        _RATE_HZ,
+        (0.0, config.duration),
+        _JITTER_S,
+        np.random.default_rng(of_clock),
+    )
+    run = run_hidden(
+        plant, effects, ENGINES[config.world], clock, feed, start_rad, of_ground
+    )
+    if not run.ok:
+        raise GroundwalkError("the robot fell, or its physics blew up: no recording")
+    model = config.robot
+    if plant.file is not None:
+        model = f"{config.out.stem}.{plant.file[0]}"
+        config.out.with_name(model).write_text(plant.file[1])
+    metadata = RecordingMetadata(
+        robot=model,
+        base="floating" if plant.floating else "fixed",
+        source=f"groundwalk record: {config.motion}, seed {config.seed}",
+        servo=plant.servo,
+        world=config.world,
+    )
+    recording = hidden_recording(
+        plant, run, effects, HiddenSensors(), np.random.default_rng(of_noise), metadata
+    )
+    write_recording(recording, config.out)
+    print(f"wrote {config.out}: {recording.ticks} ticks of {plant.name}")
+
+
+def _feed(
+    config: Record, plant: HiddenPlant, rng: np.random.Generator
+) -> tuple[FloatArray, Feed]:
+    """The pose to start from, and the commands."""
+    time_s = np.arange(round(config.duration * _RATE_HZ) + 1) / _RATE_HZ
+    description = plant.description
+    if config.motion == "walk" and description is not None:
+        return walking_feed(description, rng, round(_REST_S * _RATE_HZ))
+    if config.motion in STANDING_MOTIONS and description is not None:
+        commands = standing_commands(description, config.motion, time_s, rng)
+        return table_feed(commands)
+    plan = Excitation(
+        centre_rad=plant.range_rad.mean(axis=1),
+        range_rad=plant.range_rad,
+        speed_rad_s=plant.speed_rad_s,
+        moves=np.ones(len(plant.joints), bool),
+        together=description.coupled if description else (),
+    )
+    return table_feed(plan.commands(config.motion, time_s, rng))
+
+
+if __name__ == "__main__":
+    run_verb(Record, main)

@@ -1,0 +1,413 @@
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+
+from diagnosis.audit import audit
+from diagnosis.plant import Plant
+from diagnosis.servo import Servo
+from diagnosis.trace import Trace
+from diagnosis.trace_reading import read_traces
+from worlds.recording_metadata import ServoGains
+
+DATA = Path(__file__).parents[3] / "shared" / "data"
+HZ, SECONDS = 100, 20
+NOISE, QUANTUM = 3e-4, 1.5e-3
+
+
+@pytest.fixture(scope="module")
+def plant():
+    bodies = "".join(
+        f'<body><joint name="{name}" axis="0 1 0" range="-100 100"/><geom size=".1"/>'
+        for name in ("a", "b", "c")
+    )
+    spec = mujoco.MjSpec.from_string(
+        f"<mujoco><worldbody>{bodies}{'</body>' * 3}</worldbody></mujoco>"
+    )
+    return Plant("three", spec, ("a", "b", "c"), servo())
+
+
+def servo(kp=20.0):
+    return Servo(np.full(3, kp), np.ones(3), np.full(3, 5.0), np.zeros(3))
+
+
+def motions(time_s):
+    """(T, 3) three motions that have little in common."""
+    return np.stack(
+        [
+            0.4 * np.sin(2 * np.pi * 0.7 * time_s),
+            0.3 * np.sin(2 * np.pi * 1.1 * time_s + 1) + 0.2,
+            0.5 * np.sin(2 * np.pi * 0.3 * time_s + 2) - 0.1,
+        ],
+        axis=1,
+    )
+
+
+@pytest.fixture
+def trace():
+    """A good one: noise, quantum and a lag of 30 ms."""
+    rng = np.random.default_rng(0)
+    time_s = np.arange(HZ * SECONDS) / HZ
+    position = motions(time_s - 0.03) + NOISE * rng.normal(size=(len(time_s), 3))
+    velocity = (motions(time_s - 0.029) - motions(time_s - 0.031)) / 0.002
+    return Trace(
+        "good",
+        time_s,
+        np.round(position / QUANTUM) * QUANTUM,
+        servo(),
+        velocity_rad_s=velocity + 0.01 * rng.normal(size=position.shape),
+        command_rad=motions(time_s),
+    )
+
+
+def changed(values, column, new):
+    copy = values.copy()
+    copy[:, column] = new
+    return copy
+
+
+def texts(traces, plant, severity):
+    findings = audit(traces, plant).findings
+    return [item.text for item in findings if item.severity == severity]
+
+
+def one(texts, *words):
+    """The only text that has all the words."""
+    found = [text for text in texts if all(word in text for word in words)]
+    assert len(found) == 1, texts
+    return found[0]
+
+
+def test_good_trace_has_no_findings(trace, plant):
+    result = audit([trace], plant)
+    assert result.findings == ()
+    assert result.refused == () == result.limits
+    (found,) = result.traces
+    assert found.rate_hz == pytest.approx(HZ)
+    assert found.jitter_s < 1e-9
+    assert found.rows == HZ * SECONDS
+    channels = {channel.name: channel for channel in found.channels}
+    assert len(channels) == 9
+    assert channels["position.a"].quantum == pytest.approx(QUANTUM, rel=1e-4)
+    assert channels["velocity.b"].noise_std == pytest.approx(0.01, rel=0.15)
+    assert channels["velocity.b"].quantum is None
+
+
+def test_motion_is_measured(trace, plant):
+    joint = audit([trace], plant).traces[0].joints[1]
+    assert joint.name == "b"
+    assert joint.moves
+    assert joint.low_rad == pytest.approx(-0.1, abs=0.01)
+    assert joint.high_rad == pytest.approx(0.5, abs=0.01)
+    assert joint.speed_rad_s == pytest.approx(0.3 * 2 * np.pi * 1.1, rel=0.03)
+    assert joint.reversals == 2 * round(1.1 * SECONDS)
+
+
+def test_json_is_plain(trace, plant):
+    text = audit([trace], plant).to_json()
+    document = json.loads(text)
+    assert document["traces"][0]["channels"][0]["name"] == "position.a"
+    assert document["findings"] == []
+
+
+def test_jitter_and_gaps(trace, plant):
+    rng = np.random.default_rng(1)
+    jitter = replace(trace, time_s=trace.time_s + rng.uniform(-1e-3, 1e-3, trace.ticks))
+    # the difference of two uniform values within +-1 ms
+    std = 1e-3 * np.sqrt(2 / 3)
+    assert audit([jitter], plant).traces[0].jitter_s == pytest.approx(std, rel=0.1)
+    uneven = replace(jitter, time_s=trace.time_s + 2 * (jitter.time_s - trace.time_s))
+    one(texts([uneven], plant, "limit"), "vary by")
+    late = trace.time_s + 0.5 * (trace.time_s > 10)
+    text = one(texts([replace(trace, time_s=late)], plant, "limit"), "gap")
+    assert "1 gaps" in text
+    assert "510 ms" in text
+
+
+@pytest.mark.parametrize(
+    ("stop", "stride", "word"),
+    [(90, 1, "lasts 0.89 s"), (400, 10, "40 rows"), (1, 1, "1 rows")],
+)
+def test_too_little_is_refused(trace, plant, stop, stride, word):
+    rows = slice(None, stop, stride)
+    short = Trace(
+        "short",
+        trace.time_s[rows],
+        trace.position_rad[rows],
+        servo(),
+        command_rad=trace.command_rad[rows],
+    )
+    one(texts([short], plant, "refuse"), word)
+
+
+def test_slow_rows_limit_what_is_said(trace, plant):
+    slow = Trace(
+        "slow",
+        trace.time_s[::4],
+        trace.position_rad[::4],
+        servo(),
+        command_rad=trace.command_rad[::4],
+    )
+    one(texts([slow], plant, "limit"), "25 rows a second", "armature")
+
+
+def test_time_backwards_and_in_milliseconds(trace, plant):
+    time_s = trace.time_s.copy()
+    time_s[500] = time_s[498]
+    text = one(texts([replace(trace, time_s=time_s)], plant, "refuse"), "row 500")
+    assert "does not run forward" in text
+    milli = replace(trace, time_s=1e3 * trace.time_s)
+    one(texts([milli], plant, "refuse"), "milliseconds")
+
+
+def test_degrees_are_refused(trace, plant):
+    both = replace(
+        trace,
+        position_rad=np.degrees(trace.position_rad),
+        command_rad=np.degrees(trace.command_rad),
+        velocity_rad_s=np.degrees(trace.velocity_rad_s),
+    )
+    found = texts([both], plant, "refuse")
+    one(found, "position.a", "degrees")
+    half = replace(trace, position_rad=0.5 * trace.position_rad, velocity_rad_s=None)
+    assert texts([half], plant, "refuse") == []
+    commands = replace(trace, command_rad=np.degrees(trace.command_rad))
+    one(texts([commands], plant, "refuse"), "position.b", "its command", "degrees")
+
+
+def test_velocity_in_another_unit(trace, plant):
+    rpm = replace(trace, velocity_rad_s=trace.velocity_rad_s * 60 / (2 * np.pi))
+    found = texts([rpm], plant, "refuse")
+    assert len(found) == 3
+    one(found, "velocity.a", "9.5")
+    weak = replace(trace, velocity_rad_s=1.3 * trace.velocity_rad_s)
+    assert texts([weak], plant, "refuse") == []
+
+
+def test_swapped_joints(trace, plant):
+    swapped = replace(
+        trace, position_rad=trace.position_rad[:, [1, 0, 2]], velocity_rad_s=None
+    )
+    found = texts([swapped], plant, "refuse")
+    assert len(found) == 2
+    one(found, "position.a of good follows the command of b")
+    one(found, "position.b of good follows the command of a")
+    turned = replace(
+        trace, position_rad=trace.position_rad[:, [1, 2, 0]], velocity_rad_s=None
+    )
+    assert len(texts([turned], plant, "refuse")) == 3
+
+
+def test_a_bad_joint_is_not_taken_for_a_swapped_one(trace, plant):
+    # b hardly follows and happens to look like a; a is healthy
+    weak = 0.9 * motions(trace.time_s)[:, 0]
+    tired = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 1, weak),
+        velocity_rad_s=None,
+    )
+    assert texts([tired], plant, "refuse") == []
+
+
+def test_flipped_sign(trace, plant):
+    flipped = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 2, -trace.position_rad[:, 2]),
+        velocity_rad_s=None,
+    )
+    one(texts([flipped], plant, "refuse"), "position.c", "runs against its command")
+
+
+def test_missing_values(trace, plant):
+    position = trace.position_rad.copy()
+    position[300:340, 0] = np.nan
+    text = one(
+        texts([replace(trace, position_rad=position)], plant, "limit"), "position.a"
+    )
+    assert "2.0% of the values are missing, up to 0.41 s" in text
+    position[: int(0.6 * trace.ticks), 1] = np.nan
+    found = texts([replace(trace, position_rad=position)], plant, "refuse")
+    one(found, "position.b", "60%")
+
+
+def test_a_scattered_gap_is_only_noted(trace, plant):
+    position = trace.position_rad.copy()
+    position[::50, 0] = np.nan
+    bad = replace(trace, position_rad=position)
+    one(texts([bad], plant, "note"), "position.a", "2.0%")
+    assert texts([bad], plant, "limit") == []
+
+
+def test_constant_channels(trace, plant):
+    dead = replace(trace, position_rad=changed(trace.position_rad, 0, 0.1))
+    dead = replace(dead, velocity_rad_s=None)
+    found = audit([dead], plant)
+    one(found.limits, "position.a of good never changes although its command does")
+    one(found.limits, "a never moves", "friction")
+    assert found.refused == ()
+    none = replace(dead, position_rad=np.full_like(trace.position_rad, 0.1))
+    assert len(audit([none], plant).refused) == 3
+
+
+def test_a_joint_that_nobody_moves(trace, plant):
+    still = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 0, QUANTUM),
+        command_rad=changed(trace.command_rad, 0, 0.0),
+        velocity_rad_s=None,
+    )
+    assert texts([still], plant, "refuse") == []
+    one(texts([still], plant, "limit"), "a never moves", "friction")
+    # another trace moves it
+    assert texts([still, trace], plant, "limit") == []
+
+
+def test_no_reversals(trace, plant):
+    ramp = 0.04 * trace.time_s - 0.4
+    rising = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 2, ramp),
+        command_rad=changed(trace.command_rad, 2, ramp),
+        velocity_rad_s=None,
+    )
+    one(texts([rising], plant, "limit"), "c reverses 0 times", "Coulomb")
+
+
+def test_clipping(trace, plant):
+    torque = 4 * np.sin(2 * np.pi * 0.7 * trace.time_s)
+    torques = np.zeros_like(trace.position_rad) + torque[:, None]
+    free = replace(trace, torque_nm=torques)
+    assert texts([free], plant, "limit") == []
+    clipped = replace(trace, torque_nm=changed(torques, 1, np.clip(torque, -4, 2)))
+    text = one(texts([clipped], plant, "limit"), "torque.b", "stuck at an extreme")
+    # sin is above one half a third of the time
+    share = audit([clipped], plant).traces[0].channels[-2].clipped_share
+    assert share == pytest.approx(1 / 3, abs=0.02)
+    assert f"{share:.1%}" in text
+
+
+def test_positions_that_come_to_rest_are_not_clipped(trace, plant):
+    steps = np.where(trace.time_s % 4 < 2, 0.0, 1.0)
+    rest = np.zeros_like(steps)
+    for k in range(1, len(rest)):
+        rest[k] = rest[k - 1] + 0.1 * (steps[k] - rest[k - 1])
+    rested = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 0, np.round(rest / QUANTUM) * QUANTUM),
+        command_rad=changed(trace.command_rad, 0, steps),
+        velocity_rad_s=None,
+    )
+    assert audit([rested], plant).findings == ()
+
+
+def test_repeated_rows(trace, plant):
+    position = trace.position_rad.copy()
+    position[1::2] = position[::2]
+    twice = replace(trace, position_rad=position, velocity_rad_s=None)
+    text = one(texts([twice], plant, "limit"), "repeat the positions")
+    assert audit([twice], plant).traces[0].repeated_share == pytest.approx(
+        0.5, abs=0.03
+    )
+    assert "50%" in text or "49%" in text or "51%" in text
+    assert audit([trace], plant).traces[0].repeated_share < 0.02
+
+
+def test_unknown_servo(trace, plant):
+    unknown = replace(trace, servo=Servo.ideal(3))
+    assert len(texts([unknown], plant, "refuse")) == 3
+    one(texts([unknown], plant, "refuse"), "command.a", "no servo gains are known")
+    driven = replace(unknown, torque_nm=1e-2 * trace.velocity_rad_s)
+    assert texts([driven], plant, "refuse") == []
+
+
+def test_joint_without_any_drive(trace, plant):
+    half = replace(trace, command_rad=changed(trace.command_rad, 1, np.nan))
+    one(texts([half], plant, "refuse"), "nothing says what drove b")
+
+
+def test_torques_in_another_unit(trace, plant):
+    torque = 4 * np.sin(trace.time_s)[:, None] * np.ones(3)
+    assert texts([replace(trace, torque_nm=torque)], plant, "refuse") == []
+    milli = replace(trace, torque_nm=1e3 * torque)
+    one(texts([milli], plant, "refuse"), "torque.a", "4e+03")
+
+
+def test_accelerometer_in_g(trace, plant):
+    rng = np.random.default_rng(4)
+    lying = np.array([0.1, 0.0, 9.81]) + 0.1 * rng.normal(size=(trace.ticks, 3))
+    assert texts([replace(trace, accelerometer_m_s2=lying)], plant, "refuse") == []
+    in_g = replace(trace, accelerometer_m_s2=lying / 9.81)
+    one(texts([in_g], plant, "refuse"), "accelerometer", "in g")
+
+
+def test_gyroscope_in_degrees(trace, plant):
+    turning = np.sin(trace.time_s)[:, None] * np.array([3.0, 1.0, 0.5])
+    assert texts([replace(trace, gyroscope_rad_s=turning)], plant, "refuse") == []
+    degrees = replace(trace, gyroscope_rad_s=np.degrees(turning))
+    one(texts([degrees], plant, "refuse"), "gyroscope", "degrees per second")
+
+
+def test_channels_without_any_value(trace, plant):
+    empty = replace(
+        trace,
+        position_rad=np.full_like(trace.position_rad, np.nan),
+        accelerometer_m_s2=np.full((trace.ticks, 3), np.nan),
+    )
+    found = texts([empty], plant, "refuse")
+    assert (
+        len([text for text in found if "100% of the values are missing" in text]) == 3
+    )
+
+
+def test_floating_base_needs_its_pose(trace, plant):
+    floating = replace(plant, base="floating")
+    one(texts([trace], floating, "refuse"), "base.position")
+    posed = replace(
+        trace,
+        base_position_m=np.zeros((trace.ticks, 3)),
+        base_orientation=np.tile([1.0, 0, 0, 0], (trace.ticks, 1)),
+    )
+    assert texts([posed], floating, "refuse") == []
+
+
+def test_beyond_the_model_s_range(trace, plant):
+    # the range is +-1.745
+    high = changed(trace.position_rad, 0, trace.position_rad[:, 0] + 1.6)
+    beyond = replace(trace, position_rad=high)
+    assert texts([beyond], plant, "refuse") == []
+    one(texts([beyond], plant, "limit"), "position.a", "beyond its range")
+    spike = trace.position_rad.copy()
+    spike[700, 0] = 100.0
+    spiked = replace(trace, position_rad=spike, velocity_rad_s=None)
+    assert not any("beyond" in text for text in texts([spiked], plant, "refuse"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("pattern", "source", "servo"),
+    [
+        ("so101/*.parquet", "so101", ServoGains(15.0, 1.0, 3.0)),
+        ("go2/*.parquet", "go2", ServoGains(20.0, 1.5, 45.0)),
+        ("emps/*.parquet", DATA / "emps" / "emps.xml", None),
+    ],
+)
+def test_real_recordings_are_accepted(pattern, source, servo):
+    paths = sorted(DATA.glob(pattern))
+    if not paths:
+        pytest.skip(f"no recordings of {pattern} in ../shared/data")
+    plant, traces = read_traces(paths, source, servo)
+    result = audit(traces, plant)
+    assert result.refused == ()
+    if source == "so101":
+        channels = [channel for one in result.traces for channel in one.channels]
+        quanta = [
+            channel.quantum
+            for channel in channels
+            if channel.quantum and channel.name.startswith("position.")
+        ]
+        # a servo's 4096 steps a turn
+        np.testing.assert_allclose(quanta, 2 * np.pi / 4096, rtol=1e-3)
+        assert len(quanta) > 50

@@ -1,0 +1,146 @@
+"""Searches on recordings whose truth is known, and the sizes they can see."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from known_arms import CHANNELS, LEAN, NOISE_RAD, measured
+from made_up_search import judged
+from made_up_traces import arm, recorded
+
+from diagnosis.power import smallest_detectable
+from diagnosis.predictor import Predictor
+from diagnosis.search import Search
+from diagnosis.search_result import Found, ranked
+
+PLANT = arm()
+
+
+def search_of(*traces):
+    """The first is fitted, the second selects."""
+    predictors = [Predictor(PLANT, [trace], CHANNELS, step_s=0.004) for trace in traces]
+    for predictor in predictors:
+        predictor.calibrate()
+    return Search(*predictors, LEAN)
+
+
+@cache
+def searched(*effects):
+    traces = [
+        recorded(PLANT, *effects, duration_s=3.0, seed=seed, noise_rad=NOISE_RAD)
+        for seed in range(2)
+    ]
+    search = search_of(*traces)
+    return search, search.run()
+
+
+@pytest.mark.parametrize(
+    "truth",
+    [
+        ("coulomb_friction", "shoulder", 0.1),
+        ("payload_mass", "lower", 0.05),
+        ("command_latency", "commands", 0.007),
+    ],
+)
+def test_one_effect_is_found_with_its_value(truth):
+    name, place, value = truth
+    _, found = searched(truth)
+    assert found.chosen == 1
+    (placed,) = found.winner.model
+    assert placed.key == f"{name}@{place}"
+    assert placed.values[0] == pytest.approx(value, rel=0.05)
+    assert found.closed(found.winner) == pytest.approx(1, abs=0.03)
+    assert found.winner.selected == pytest.approx(found.floor, rel=0.4)
+    assert found.nothing > 2 * found.floor
+
+
+def test_two_effects_are_found_together():
+    truth = ("servo_gain", "elbow", 0.9), ("coulomb_friction", "shoulder", 0.1)
+    _, found = searched(*truth)
+    assert found.chosen == 2
+    values = {placed.key: placed.values[0] for placed in found.winner.model}
+    assert set(values) == {"servo_gain@elbow", "coulomb_friction@shoulder"}
+    assert values["servo_gain@elbow"] == pytest.approx(0.9, rel=0.02)
+    assert values["coulomb_friction@shoulder"] == pytest.approx(0.1, rel=0.1)
+    assert found.best[2][0].selected < found.best[1][0].selected - 100
+
+
+def test_where_nothing_is_nothing_is_found():
+    _, found = searched()
+    assert found.chosen == 0
+    assert found.winner is None
+    assert found.nothing == pytest.approx(found.floor, rel=0.4)
+    assert found.best[1]  # it did look
+
+
+@pytest.mark.slow
+def test_what_no_effect_makes_is_not_explained():
+    """Cogging: a torque by position, in waves of a quarter of a radian."""
+
+    def cogging(t, q, v):
+        return np.array([0, 0.6]) * np.sin(25 * q)
+
+    traces = [measured(seed, cogging) for seed in range(2)]
+    found = search_of(*traces).run()
+    assert found.nothing > 20 * found.floor
+    best = found.winner.selected if found.winner else found.nothing
+    assert best - found.floor > 0.5 * (found.nothing - found.floor)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("key", "values_of"),
+    [
+        ("viscous_friction@elbow", lambda size: size),
+        ("servo_gain@elbow", lambda size: 1 - size),
+    ],
+)
+def test_the_smallest_size_is_just_seen(key, values_of):
+    """What is a quarter larger is found and named, half of it is not."""
+    search, nothing = searched()
+    assert nothing.chosen == 0
+    sizes = smallest_detectable(search.fit, search.signatures, search.least_gain)
+    name, place = key.split("@")
+    _, found = searched((name, place, values_of(1.25 * sizes[key].value)))
+    assert found.chosen == 1
+    assert found.winner.keys == {key}
+    _, found = searched((name, place, values_of(0.5 * sizes[key].value)))
+    assert found.chosen == 0
+
+
+def test_what_acts_above_a_threshold_has_no_smallest_size():
+    search, _ = searched()
+    sizes = smallest_detectable(search.fit, search.signatures, search.least_gain)
+    names = {key.split("@")[0] for key in sizes}
+    assert not names & {"torque_limit", "speed_limit", "end_stop", "joint_elasticity"}
+    assert {"backlash", "armature", "payload_mass", "encoder_offset"} <= names
+    assert sizes["viscous_friction@elbow"].unit == "N m s/rad"
+    more = smallest_detectable(search.fit, search.signatures, 4 * search.least_gain)
+    for key, size in sizes.items():
+        assert more[key].value == pytest.approx(2 * size.value)
+
+
+def test_shares_of_what_is_above_the_noise():
+    best = judged(PLANT, 200.0, "armature@elbow")
+    found = Found(1100.0, 100.0, {1: [best]}, 1)
+    assert found.closed(best) == pytest.approx(0.9)
+    assert found.winner is best
+    assert Found(90.0, 100.0, {1: [best]}, 0).closed(best) == 0.0
+    assert Found(90.0, 100.0, {1: [best]}, 0).winner is None
+
+
+def test_rare_effects_and_more_values_must_fit_better():
+    one = judged(PLANT, 100.0, "armature@elbow")
+    three = judged(PLANT, 100.0, "stribeck_friction@elbow")
+    both = judged(PLANT, 100.0, "armature@elbow", "servo_gain@elbow")
+    better = judged(PLANT, 90.0, "stribeck_friction@elbow")
+    assert ranked([three, one, both], 100.0) == [one, both, three]
+    assert ranked([three, one, both, better], 100.0)[0] is better
+
+
+def test_residuals_that_are_no_noise_tell_less():
+    """Of 900 and 906 nats where noise leaves 100 a ninth counts."""
+    one = judged(PLANT, 906.0, "armature@elbow")
+    both = judged(PLANT, 900.0, "armature@elbow", "servo_gain@elbow")
+    assert ranked([one, both], 900.0)[0] is both
+    assert ranked([one, both], 100.0)[0] is one

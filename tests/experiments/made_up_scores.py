@@ -1,0 +1,65 @@
+"""Made-up truths, answers and oracles of concealed cases."""
+
+from diagnosis.verdict import EffectAt, Estimate, Found, Unexplained, Verdict
+from experiments.concealed_score import DIAGNOSIS, score_of
+from experiments.concealed_score_oracle import Oracle
+from experiments.concealed_score_truth import TrueCase, TrueEffect, Truth
+
+KNEE, HIP = "LKneePitch", "LHipPitch"
+DRY = TrueEffect("coulomb_friction", KNEE, {"torque": 0.2})
+WET = TrueEffect("viscous_friction", HIP, {"coefficient": 0.5})
+
+
+def found(name, place, value=0.2, low=0.1, high=0.3, probability=0.95, others=()):
+    parameter = {"coulomb_friction": "torque", "viscous_friction": "coefficient"}
+    return Found(
+        name,
+        place,
+        {parameter.get(name, "size"): Estimate(value, low, high, "1")},
+        probability,
+        tuple(EffectAt(other, place) for other in others),
+    )
+
+
+def names(*effects, **rest):
+    return Verdict("effects", effects, **rest)
+
+
+NOTHING = Verdict("none")
+RIGHT = found("coulomb_friction", KNEE)
+UNKNOWN = Verdict(
+    "unknown",
+    unexplained=Unexplained(0.5, "c", "rad", "p", "rad", (0.0,), (0.1,), (0.01,)),
+)
+UNSURE = Verdict("not_identifiable", limits=("the knee never moved",))
+
+
+def oracle(gain=200.0, nominal=5.0, fitted=1.0, **answered):
+    return Oracle(
+        gain,
+        nominal,
+        fitted,
+        {
+            f"coulomb_friction@{KNEE}": {"torque": 0.0},
+            f"viscous_friction@{HIP}": {"coefficient": 0.0},
+        },
+        {method: ("key", rms) for method, rms in answered.items()},
+    )
+
+
+def case(number, kind, *effects):
+    return TrueCase(f"case_{number:03d}", "nao_air", "mujoco", kind, effects)
+
+
+def scored(*rows, method=DIAGNOSIS):
+    """Score of (kind, effects, verdict or None, oracle or None) rows."""
+    cases = tuple(case(i, kind, *hidden) for i, (kind, hidden, _, _) in enumerate(rows))
+    verdicts = {
+        one.name: row[2] for one, row in zip(cases, rows, strict=True) if row[2]
+    }
+    oracles = {one.name: row[3] for one, row in zip(cases, rows, strict=True) if row[3]}
+    return score_of(Truth(7, "ab12", cases), {method: verdicts}, oracles)
+
+
+def single(verdict, its_oracle=None):
+    return ("single", (DRY,), verdict, its_oracle or oracle())

@@ -1,0 +1,86 @@
+"""When a hidden world's ticks happen, and how commands travel meanwhile."""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.errors import BadValueError
+
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """When ticks happen, in fine steps.
+
+    Attributes:
+      step_s: fine step.
+      ticks: (rows,) number of the fine step of each tick, the first one 0.
+      first: the tick at which the recording begins; its time is 0.
+    """
+
+    step_s: float
+    ticks: IntArray
+    first: int
+
+    @property
+    def time_s(self) -> FloatArray:
+        """(rows,) in the recording's time; negative before it begins."""
+        return np.asarray((self.ticks - self.ticks[self.first]) * self.step_s)
+
+    @classmethod
+    def drawn(
+        cls,
+        step_s: float,
+        rate_hz: float,
+        spans_s: tuple[float, float],
+        jitter_s: float,
+        rng: np.random.Generator,
+    ) -> "Clock":
+        """Even ticks, each late or early by a whole number of fine steps.
+
+        Args:
+          step_s: fine step.
+          rate_hz: ticks a second.
+          spans_s: how long before the recording, and how long it is.
+          jitter_s: most by which a tick is off.
+          rng: draws the jitter.
+        """
+        first = round(spans_s[0] * rate_hz)
+        rows = first + round(spans_s[1] * rate_hz) + 1
+        even = np.arange(rows) / rate_hz
+        off = rng.uniform(-jitter_s, jitter_s, rows)
+        ticks = np.round((even + off) / step_s).astype(np.intp)
+        ticks -= ticks[0]
+        if (np.diff(ticks) < 1).any():
+            raise BadValueError(f"a jitter of {jitter_s} s swaps ticks")
+        return cls(step_s, ticks, first)
+
+
+_LEAD_STEPS = 0.5
+"""A leapfrog's force at a step's start stands for half a step before and after it."""
+
+
+class CommandLine:
+    """Carries commands to the servos, late by any part of a fine step."""
+
+    def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
+        """Nothing is under way; (j,) start_rad has arrived."""
+        self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
+        self._coming: deque[tuple[float, FloatArray]] = deque()
+
+    def send(self, step: int, command_rad: FloatArray) -> None:
+        """Send a (j,) command at the beginning of a fine step."""
+        self._coming.append((step + self._delay, command_rad))
+
+    def over(self, step: int) -> FloatArray:
+        """(j,) mean command over the fine step that begins."""
+        if not self._coming or self._coming[0][0] >= step + 1:
+            return self._now
+        mean, done = np.zeros_like(self._now), 0.0
+        while self._coming and self._coming[0][0] < step + 1:
+            at, command = self._coming.popleft()
+            part = max(at - step, 0.0)
+            mean += (part - done) * self._now
+            self._now, done = command, part
+        return np.asarray(mean + (1.0 - done) * self._now)

@@ -1,0 +1,120 @@
+"""What a hidden world asks of a physics engine."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from terrain import Heightfield
+from worlds.hidden_effects import Hidden
+from worlds.hidden_model import hidden_model
+from worlds.hidden_plant import HiddenPlant
+
+WATCH_STEPS = 8
+"""Forces and accelerations are means over so many fine steps."""
+
+
+@dataclass(frozen=True, eq=False)
+class BodySense:
+    """What the base's sensors and the feet feel, and where the base is.
+
+    All in the frame of the mount or the ground. Zero where a robot has no such sensor.
+
+    Attributes:
+      gyroscope_rad_s, accelerometer_m_s2: (3,) base frame.
+      foot_force_n: (8,) as in `worlds.Observation`.
+      position_m: (3,), orientation: (4,) w, x, y, z.
+      linear_m_s: (3,) ground frame, angular_rad_s: (3,) base frame.
+    """
+
+    gyroscope_rad_s: FloatArray
+    accelerometer_m_s2: FloatArray
+    foot_force_n: FloatArray
+    position_m: FloatArray
+    orientation: FloatArray
+    linear_m_s: FloatArray
+    angular_rad_s: FloatArray
+
+
+class HiddenEngine(Protocol):
+    """One robot under joint torques, a fine step at a time."""
+
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+
+    def reset(self, pose_rad: FloatArray, height_m: float) -> None:
+        """Put the robot at rest; a floating base upright at a height."""
+
+    def step(self, torque_nm: FloatArray) -> None:
+        """One fine step under (j,) torques and the pushes since the last step."""
+
+    def push(self, body: str, force_n: FloatArray) -> None:
+        """Let a force (3,) act at a body's centre of mass over the next step."""
+
+    def body_velocity(self, body: str) -> FloatArray:
+        """(3,) velocity of a body's centre of mass [m/s]."""
+
+    def watch(self) -> None:
+        """Take the sensors in; called after each of the last steps of a row."""
+
+    def sense(self) -> BodySense:
+        """What the sensors say, as a mean of what was watched since last asked."""
+
+    def close(self) -> None:
+        """Give back memory."""
+
+
+def hidden_engine(
+    name: str,
+    plant: HiddenPlant,
+    effects: Sequence[Hidden],
+    step_s: float,
+    ground: Heightfield | None,
+) -> HiddenEngine:
+    """An engine with the robot in it.
+
+    Raises:
+      BadValueError: the engine does not know one of the effects.
+    """
+    from worlds.hidden_bullet import HiddenBullet
+    from worlds.hidden_mujoco import HiddenMujoco
+
+    model = hidden_model(plant, effects, step_s, ground)
+    names = {effect.name for effect in effects}
+    if name == "mujoco":
+        if "contact_compliance" in names:
+            raise BadValueError("contact_compliance is hidden in bullet only")
+        return HiddenMujoco(plant, model)
+    if name != "bullet":
+        raise BadValueError(f"engine is {name!r}; it must be bullet or mujoco")
+    if "armature" in names:
+        raise BadValueError("armature is hidden in mujoco only; Bullet has none")
+    return HiddenBullet(plant, model, effects, ground)
+
+
+def least_inertia_kg_m2(
+    plant: HiddenPlant, poses_rad: Sequence[FloatArray]
+) -> FloatArray:
+    """(j,) what a torque at each joint accelerates, all others free; the least.
+
+    Args:
+      plant: the nominal robot.
+      poses_rad: (j,) poses that it takes.
+    """
+    import mujoco
+
+    model = plant.make_spec().compile()
+    data = mujoco.MjData(model)
+    free = 7 if plant.floating else 0
+    least = np.full(len(plant.joints), np.inf)
+    for pose in poses_rad:
+        data.qpos[free:] = pose
+        mujoco.mj_forward(model, data)
+        mass = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, mass)
+        inverse = np.diag(np.linalg.inv(mass))[-len(plant.joints) :]
+        least = np.minimum(least, 1.0 / inverse)
+    return least

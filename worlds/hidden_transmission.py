@@ -1,0 +1,86 @@
+"""What is between a motor and its joint when it is not rigid."""
+
+from dataclasses import dataclass
+
+
+@dataclass
+class Transmission:
+    """A motor that reaches its joint through a spring with play.
+
+    The rotor's inertia is part of the link in the nominal models, so the motor itself
+    is taken as massless: its torque and that of the spring are in balance at all
+    times. The servo closes its loop on the motor's side. With u the motor's torque,
+      u = clip(kp (command - m) - kd dm/dt, +-most) - back_emf dm/dt,
+      u = stiffness dead_zone(m - q, play / 2) + damping (dm/dt - dq/dt in contact),
+    the motor's angle m follows by one implicit Euler step.
+
+    Attributes:
+      stiffness_nm_rad, damping_nm_s_rad: of the spring.
+      gap_rad: total play.
+      step_s: time step.
+      motor_rad: the motor's angle; None before the first step.
+    """
+
+    stiffness_nm_rad: float
+    damping_nm_s_rad: float
+    gap_rad: float
+    step_s: float
+    motor_rad: float | None = None
+
+    def torque(
+        self,
+        angle_rad: float,
+        speed_rad_s: float,
+        command_rad: float,
+        servo: tuple[float, float, float, float],
+    ) -> float:
+        """Torque on the joint for the next step.
+
+        Args:
+          angle_rad: of the joint.
+          speed_rad_s: of the joint.
+          command_rad: the servo's set-point, in the motor's angle.
+          servo: kp, kd, most torque, back-EMF.
+        """
+        kp, kd, most, back_emf = servo
+        before = angle_rad if self.motor_rad is None else self.motor_rad
+        free = (kp, kp * command_rad, kd + back_emf)
+        motor = self._balance(before, angle_rad, speed_rad_s, free)
+        rate = (motor - before) / self.step_s
+        wanted = kp * (command_rad - motor) - kd * rate
+        if abs(wanted) > most:
+            held = most if wanted > 0 else -most
+            motor = self._balance(before, angle_rad, speed_rad_s, (0.0, held, back_emf))
+            rate = (motor - before) / self.step_s
+        self.motor_rad = motor
+        return self._spring(motor - angle_rad, rate - speed_rad_s)
+
+    def _spring(self, twist_rad: float, rate_rad_s: float) -> float:
+        half = self.gap_rad / 2
+        if abs(twist_rad) < half:
+            return 0.0
+        beyond = twist_rad - half if twist_rad > 0 else twist_rad + half
+        return self.stiffness_nm_rad * beyond + self.damping_nm_s_rad * rate_rad_s
+
+    def _balance(
+        self, before: float, q: float, v: float, motor: tuple[float, float, float]
+    ) -> float:
+        """Angle at which the motor's `drive - pull m - drag dm/dt` is the spring's.
+
+        Args:
+          before: the motor's angle one step ago.
+          q: joint angle.
+          v: joint speed.
+          motor: pull, drive, drag.
+        """
+        pull, drive, drag = motor
+        half, h = self.gap_rad / 2, self.step_s
+        weight = pull + drag / h
+        push = drive + drag / h * before
+        if half > 0 and weight > 0 and abs(push / weight - q) < half:
+            return push / weight
+        side = half if push > weight * q else -half
+        stiff, damp = self.stiffness_nm_rad, self.damping_nm_s_rad
+        return (push + stiff * (q + side) + damp * (before / h + v)) / (
+            weight + stiff + damp / h
+        )

@@ -1,0 +1,158 @@
+"""A compiled MuJoCo model as a URDF that PyBullet and MuJoCo read alike.
+
+Only what moves becomes a link: MuJoCo has merged or placed everything that is fixed,
+and PyBullet would give a massless link a kilogram.
+"""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.rigid_body import Inertial
+
+if TYPE_CHECKING:
+    import mujoco
+
+BASE = "base"
+Element = ElementTree.Element
+_LIMIT_RAD_S = "100"
+
+
+def model_urdf(
+    model: "mujoco.MjModel",
+    name: str,
+    rotor_kg_m2: float = 0.0,
+    effort_nm: float = 1000.0,
+) -> str:
+    """The model's moving bodies, hinges, and the spheres with which it touches.
+
+    Args:
+      model: a tree of hinges, on a fixed base or with a first free joint.
+      name: of the robot.
+      rotor_kg_m2: inertia of a rotor that is lumped into each link.
+      effort_nm: most torque of each joint, as the file states it.
+    """
+    import mujoco
+
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    robot = Element("robot", name=name)
+    root = free_body(model)
+    if root is None:
+        ElementTree.SubElement(robot, "link", name=BASE)
+    else:
+        _add_link(robot, model, root, _inertial(model, root))
+    for joint in hinges(model):
+        body = int(model.jnt_bodyid[joint])
+        inertial = _inertial(model, body).with_rotor(model.jnt_axis[joint], rotor_kg_m2)
+        _add_link(robot, model, body, inertial)
+    for joint in hinges(model):
+        _add_joint(robot, model, data, joint, effort_nm)
+    ElementTree.indent(robot)
+    return ElementTree.tostring(robot, encoding="unicode") + "\n"
+
+
+def free_body(model: "mujoco.MjModel") -> int | None:
+    """The body that floats, if one does."""
+    import mujoco
+
+    if model.njnt and model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE:
+        return int(model.jnt_bodyid[0])
+    return None
+
+
+def hinges(model: "mujoco.MjModel") -> range:
+    """Numbers of the model's hinges."""
+    return range(0 if free_body(model) is None else 1, model.njnt)
+
+
+def _inertial(model: "mujoco.MjModel", body: int) -> Inertial:
+    turn = _matrix(model.body_iquat[body])
+    inertia = turn @ np.diag(model.body_inertia[body]) @ turn.T
+    return Inertial(float(model.body_mass[body]), model.body_ipos[body].copy(), inertia)
+
+
+def _matrix(quaternion: FloatArray) -> FloatArray:
+    import mujoco
+
+    flat = np.zeros(9)
+    mujoco.mju_quat2Mat(flat, quaternion)
+    return flat.reshape(3, 3)
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _add_link(
+    robot: Element, model: "mujoco.MjModel", body: int, inertial: Inertial
+) -> None:
+    import mujoco
+
+    link = ElementTree.SubElement(robot, "link", name=model.body(body).name)
+    element = ElementTree.SubElement(link, "inertial")
+    place = _numbers(inertial.com_m)
+    ElementTree.SubElement(element, "origin", xyz=place, rpy="0 0 0")
+    ElementTree.SubElement(element, "mass", value=repr(inertial.mass_kg))
+    names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    moments = inertial.inertia_kg_m2[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    values = dict(zip(names, map(repr, moments.tolist()), strict=True))
+    ElementTree.SubElement(element, "inertia", values)
+    for geom in np.flatnonzero(model.geom_bodyid == body):
+        if model.geom_contype[geom] == 0:
+            continue
+        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_SPHERE:
+            continue
+        shape = ElementTree.SubElement(link, "collision")
+        place = _numbers(model.geom_pos[geom])
+        ElementTree.SubElement(shape, "origin", xyz=place, rpy="0 0 0")
+        geometry = ElementTree.SubElement(shape, "geometry")
+        radius = repr(float(model.geom_size[geom, 0]))
+        ElementTree.SubElement(geometry, "sphere", radius=radius)
+
+
+def _add_joint(
+    robot: Element,
+    model: "mujoco.MjModel",
+    data: "mujoco.MjData",
+    joint: int,
+    effort_nm: float,
+) -> None:
+    body = int(model.jnt_bodyid[joint])
+    parent = int(model.body_parentid[body])
+    place, turn = model.body_pos[body], _matrix(model.body_quat[body])
+    moves = model.body_weldid[parent] != 0
+    if not moves:
+        world = data.xmat[parent].reshape(3, 3)
+        place, turn = data.xpos[parent] + world @ place, world @ turn
+    element = ElementTree.SubElement(
+        robot, "joint", name=model.joint(joint).name, type="revolute"
+    )
+    above = model.body(parent).name if moves else BASE
+    ElementTree.SubElement(element, "parent", link=above)
+    ElementTree.SubElement(element, "child", link=model.body(body).name)
+    ElementTree.SubElement(
+        element, "origin", xyz=_numbers(place), rpy=_numbers(_roll_pitch_yaw(turn))
+    )
+    ElementTree.SubElement(element, "axis", xyz=_numbers(model.jnt_axis[joint]))
+    lower, upper = model.jnt_range[joint].tolist()
+    ElementTree.SubElement(
+        element,
+        "limit",
+        lower=repr(lower),
+        upper=repr(upper),
+        effort=repr(effort_nm),
+        velocity=_LIMIT_RAD_S,
+    )
+
+
+def _roll_pitch_yaw(turn: FloatArray) -> tuple[float, float, float]:
+    """Fixed-axis angles of a rotation matrix."""
+    pitch = float(np.arcsin(np.clip(-turn[2, 0], -1.0, 1.0)))
+    if abs(turn[2, 0]) > 1 - 1e-12:
+        return float(np.arctan2(-turn[1, 2], turn[1, 1])), pitch, 0.0
+    roll = float(np.arctan2(turn[2, 1], turn[2, 2]))
+    return roll, pitch, float(np.arctan2(turn[1, 0], turn[0, 0]))
