@@ -1,16 +1,13 @@
 """The servos of the joints in a batch of simulations."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from diagnosis.elastic import ElasticJoints
 from diagnosis.plant import Plant
-from diagnosis.run import Run
 from diagnosis.servo import Servo
-from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray
 
 SERVO = ("kp_nm_rad", "kd_nm_s_rad", "max_torque_nm", "back_emf_nm_s_rad")
@@ -28,21 +25,21 @@ class BatchServos:
         self,
         batch: Any,
         plant: Plant,
-        runs: Sequence[Run],
+        servos: Sequence[Servo],
         joints: Mapping[str, FloatArray],
     ) -> None:
-        """Set each trace's own servos, times what the variants change of them.
+        """Set each run's own servos, times what the variants change of them.
 
         Args:
           batch: a `mujoco.batch.Batch`.
           plant: that it simulates.
-          runs: R, one after another for each variant.
+          servos: of R runs, one after another for each variant.
           joints: `Joints`, rows as the batch has them.
         """
         self._joints, self._actuators = joints, plant.actuators
         self.fades = bool(joints["fade_1_s"].any())
         """Whether any servo grows weaker with time."""
-        self.law = _laws(runs, joints)
+        self.law = _laws(servos, joints)
         self._full_kp = kp = self.law["kp"]
         self._gain, self._bias, self._range, self._damping, limited = (
             np.asarray(batch.expand(name))
@@ -90,12 +87,11 @@ class BatchServos:
 
 
 def _laws(
-    runs: Sequence[Run], joints: Mapping[str, FloatArray]
+    servos: Sequence[Servo], joints: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
-    n = len(joints["kp_factor"]) // len(runs)
+    n = len(joints["kp_factor"]) // len(servos)
     kp, kd, limit, emf = (
-        np.tile([getattr(_law(run.trace), name) for run in runs], (n, 1))
-        for name in SERVO
+        np.tile([getattr(servo, name) for servo in servos], (n, 1)) for name in SERVO
     )
     return {
         "kp": kp * joints["kp_factor"],
@@ -103,11 +99,3 @@ def _laws(
         "limit": np.minimum(limit, joints["max_torque_nm"]),
         "emf": emf * joints["damping_factor"],
     }
-
-
-def _law(trace: Trace) -> Servo:
-    """A trace's servo; where torques drive it only the motor's back-EMF is left."""
-    if trace.command_rad is not None:
-        return trace.servo
-    none = np.zeros_like(trace.servo.kp_nm_rad)
-    return replace(trace.servo, kp_nm_rad=none, kd_nm_s_rad=none)

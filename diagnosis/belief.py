@@ -3,6 +3,7 @@
 import numpy as np
 
 from diagnosis.effect import Placed
+from diagnosis.plant import Plant
 from diagnosis.search_result import Found
 from diagnosis.verdict import EffectAt
 
@@ -27,6 +28,17 @@ def confusable(found: Found, placed: Placed) -> tuple[EffectAt, ...]:
         if other and found.worse(judged) <= TIED_NATS:
             others[own[0].key] = EffectAt(own[0].effect, own[0].place)
     return tuple(others.values())
+
+
+def twins(plant: Plant, placed: Placed) -> tuple[EffectAt, ...]:
+    """Effects that nothing in any recording of this plant tells from one."""
+    if placed.effect == "command_latency" and plant.base == "fixed":
+        return (EffectAt("sensor_delay", "encoders"),)
+    if placed.effect == "viscous_friction" and placed.place in plant.joints:
+        column = plant.joints.index(placed.place)
+        if plant.servo.back_emf_nm_s_rad[column] > 0:
+            return (EffectAt("servo_damping", placed.place),)
+    return ()
 
 
 def alternatives(found: Found) -> tuple[tuple[EffectAt, ...], ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.audit import audit
 from diagnosis.audit_result import Audit
-from diagnosis.belief import alternatives, confusable, probability
+from diagnosis.belief import alternatives, confusable, probability, twins
 from diagnosis.channels import channels_of
 from diagnosis.effect import Placed
 from diagnosis.estimates import estimates
@@ -29,6 +29,7 @@ from diagnosis.split import Split, split
 from diagnosis.trace import Trace
 from diagnosis.unexplained import unexplained
 from diagnosis.verdict import (
+    EffectAt,
     Found,
     Recordings,
     Verdict,
@@ -45,7 +46,7 @@ TOO_SHORT = (
 FIT_S, SELECT_S, TEST_S = 40.0, 20.0, 40.0
 """So much of the recordings is replayed."""
 
-LEAST_CLOSED = 0.8
+LEAST_CLOSED = 0.95
 """A model that takes away less of the energy above the noise is not all there is ..."""
 
 MOST_LEFT = 0.5
@@ -184,13 +185,19 @@ def _effects(
             place=placed.place,
             parameters=own,
             probability=probability(searched, placed),
-            confusable_with=confusable(searched, placed),
+            confusable_with=_distinct(
+                confusable(searched, placed) + twins(both.plant, placed)
+            ),
             when=_when(both, placed),
             native=effect(placed.effect).native,
         )
         for placed, own in zip(refitted.model, values, strict=True)
     ]
     return tuple(sorted(found, key=lambda one: -one.probability))
+
+
+def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
+    return tuple(dict.fromkeys(effects))
 
 
 def _when(both: Predictor, placed: Placed) -> When:

@@ -35,7 +35,11 @@ class OutsideForces:
         if pushes or self._dragged.size:
             self._force = batch.bind("xfrc_applied")
             self._centres = batch.bind("xipos")
-        self._share = np.zeros((len(pushes), runs))
+        self.begin()
+
+    def begin(self) -> None:
+        """Nothing pushes so far."""
+        self._share = np.zeros((len(self._row), self._runs))
         self._pushed_n = np.zeros((*self._drag.shape, 3))
         self._last_m: FloatArray | None = None
 

@@ -64,3 +64,20 @@ class Plant:
             for i in range(1, model.nbody)
             if model.body_mass[i] > 0 and model.body_weldid[i] > 0
         )
+
+    def neighbours(self, body: str) -> frozenset[str]:
+        """The bodies that carry a body, and those that it carries."""
+        model = self.model
+        own = int(model.body(body).id)
+        carried = [i for i in range(1, model.nbody) if _carries(model, own, i)]
+        carrying = [i for i in range(1, model.nbody) if _carries(model, i, own)]
+        return frozenset(model.body(i).name for i in (*carried, *carrying))
+
+
+def _carries(model: "mujoco.MjModel", body: int, other: int) -> bool:
+    """Whether a body is between another one and the world."""
+    while other > 0:
+        other = int(model.body_parentid[other])
+        if other == body:
+            return True
+    return False

@@ -53,8 +53,6 @@ def load_plant(
       BadModelError: the file is no model.
       BadRecordingError: the model lacks one of the joints.
     """
-    import mujoco
-
     name, spec, description = _read(source, base)
     known = _compiled(spec.copy(), name)  # compiling may merge bodies
     ours = _chosen(known, joints, name)
@@ -63,17 +61,35 @@ def load_plant(
     else:
         own = model_servo(known, ours)
     own = with_gains(own, ours, servo)
-    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     _equip(spec, base, ours, own)
     model = _compiled(spec, name)
     return Plant(name, spec, ours, own, base, _feet(model, base, description))
+
+
+def described_plant(
+    description: Description, spec: "mujoco.MjSpec", base: Base
+) -> Plant:
+    """The plant of a described robot in a specification, which is changed.
+
+    Args:
+      description: the robot.
+      spec: the robot's, with or without a ground.
+      base: how the base is held.
+    """
+    servo = described_servo(description, description.joints)
+    _equip(spec, base, description.joints, servo)
+    feet = _described_feet(description)
+    return Plant(description.name, spec, description.joints, servo, base, feet)
 
 
 def _equip(
     spec: "mujoco.MjSpec", base: Base, joints: Sequence[str], servo: Servo
 ) -> None:
     """Hold the base, lock what is not recorded, put the servos in."""
+    import mujoco
+
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     remove_actuators(spec)
     set_base(spec, base)
     lock_joints(spec, {*joints, ROOT} if base == "floating" else set(joints))
@@ -149,7 +165,9 @@ def _feet(
     model: "mujoco.MjModel", base: Base, description: Description | None
 ) -> tuple[str, ...]:
     if description is not None:
-        return tuple(
-            description.links[foot.joint].link.name for foot in description.feet
-        )
+        return _described_feet(description)
     return standing_bodies(model) if base == "floating" else ()
+
+
+def _described_feet(description: Description) -> tuple[str, ...]:
+    return tuple(description.links[foot.joint].link.name for foot in description.feet)

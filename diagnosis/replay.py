@@ -58,10 +58,10 @@ def replay(
         asked, pushed = drive.at(now_s)
         for i in range(len(numbers)):
             if asked is not None:
-                batch.servo(asked[i], now_s[i])
+                batch.laws.servo(asked[i], now_s[i])
             if pushed is not None:
-                batch.push_joints(pushed[i])
-            batch.push_bodies(now_s[i])
+                batch.laws.push_joints(pushed[i])
+            batch.laws.push_bodies(now_s[i])
             batch.step()
             tape.note(first + i + 1)
     return tape.read(runs, variants)

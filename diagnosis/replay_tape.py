@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from diagnosis.hermite import hermite
 from diagnosis.run import Run
 from diagnosis.variants import Variants
 from groundwalk.arrays import FloatArray, IntArray
@@ -33,8 +34,8 @@ class Tape:
     def note(self, step: int) -> None:
         """Write down the state after so many steps."""
         batch = self._batch
-        _, self._velocity[step] = batch.joint_state()
-        self._position[step] = batch.encoder_rad()
+        _, self._velocity[step] = batch.laws.joint_state()
+        self._position[step] = batch.laws.encoder_rad()
         self._torque[step] = self._force[:, batch.plant.actuators]
         if self._base is not None:
             self._base[step, :, :7] = batch.qpos[:, :7]
@@ -80,20 +81,17 @@ class Tape:
     def _joints_at(
         self, rows: IntArray, time_s: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Positions by cubic Hermite interpolation, velocities by linear.
+        """Positions and velocities in between.
 
         Of (n,) rows at (n, T) times since the start; before it the start holds.
         """
-        h = self._batch.step_s
         low, t = self._between(time_s)
         row = rows[:, None]
-        q0, q1 = self._position[low, row], self._position[low + 1, row]
-        v0, v1 = h * self._velocity[low, row], h * self._velocity[low + 1, row]
-        rise = q1 - q0
-        position = q0 + t * (
-            v0 + t * (3 * rise - 2 * v0 - v1 + t * (v0 + v1 - 2 * rise))
+        before, after = (
+            (self._position[step, row], self._velocity[step, row])
+            for step in (low, low + 1)
         )
-        return position, (v0 + t * (v1 - v0)) / h
+        return hermite(before, after, self._batch.step_s, t)
 
     def _linear(
         self, values: FloatArray, rows: IntArray, time_s: FloatArray

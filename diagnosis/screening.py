@@ -14,10 +14,17 @@ import numpy as np
 from diagnosis.effect import Effect, Placed
 from diagnosis.fitting import Coordinates
 from diagnosis.library import EFFECTS
+from diagnosis.plant import Plant
 from diagnosis.predictor import Model, Predictor
 from diagnosis.trial_values import THRESHOLDS, VECTORS, Interval, trial_values
 from diagnosis.usage import Usage
 from groundwalk.arrays import FloatArray, IntArray
+
+ALONE = frozenset({"joint_elasticity"})
+"""Effects that show at the neighbours more than at their own joint."""
+
+AT_TIPS = frozenset({"external_force", "drag"})
+"""Effects that are first tried at the outermost bodies only: there they show most."""
 
 LARGEST_STRETCH = 4.0
 """A signature may be stretched so far before it is no guess any more."""
@@ -84,12 +91,14 @@ def _trials(
     for name in names:
         kind = EFFECTS[name]
         places = kind.places(predictor.plant, predictor.traces)
+        if name in AT_TIPS:
+            places = tuple(p for p in places if p in tips(predictor.plant)) or places
         options = {
             place: _values(predictor, kind, place, usage, intervals) for place in places
         }
         if not any(options.values()):
             continue
-        if kind.place_kind == "joint":
+        if kind.place_kind == "joint" and name not in ALONE:
             for level in range(max(map(len, options.values()))):
                 model = tuple(
                     Placed(name, place, values[level])
@@ -103,6 +112,14 @@ def _trials(
                 for each in values
             ]
     return trials
+
+
+def tips(plant: Plant) -> frozenset[str]:
+    """Bodies that carry no other."""
+    model = plant.model
+    carrying = {int(parent) for parent in model.body_parentid[1:]}
+    every = range(1, model.nbody)
+    return frozenset(model.body(i).name for i in every if i not in carrying)
 
 
 def _values(

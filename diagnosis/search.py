@@ -9,7 +9,9 @@ the selection data.
 from collections.abc import Sequence
 
 from diagnosis.bursts import push_intervals
+from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
+from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model, Predictor
 from diagnosis.screening import Guess, Screen, Signature, signatures
 from diagnosis.search_result import Found, Judged, Rules, keys_of, ranked
@@ -132,7 +134,23 @@ class Search:
                 keys = keys_of(model)
                 if len(keys) == len(model) and keys != judged.keys:
                     swaps.setdefault(keys, model)
+        for model in self._moved(judged):
+            swaps.setdefault(keys_of(model), model)
         return list(swaps.values())
+
+    def _moved(self, judged: Judged) -> list[Model]:
+        """The model with an effect on a body moved to the next bodies of the chain."""
+        plant, traces = self.fit.plant, self.fit.traces
+        return [
+            tuple(
+                Placed(other.effect, place, other.values) if other is placed else other
+                for other in judged.model
+            )
+            for placed in judged.model
+            if EFFECTS[placed.effect].place_kind == "body"
+            for place in EFFECTS[placed.effect].places(plant, traces)
+            if place in plant.neighbours(placed.place)
+        ]
 
     def _judged(self, starts: Sequence[Model]) -> list[Judged]:
         """Fitted and judged, the best on the selection data first.

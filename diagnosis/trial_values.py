@@ -68,7 +68,7 @@ def _joint_values(
             return [(coulomb, extra, v) for v in (0.03, 0.2)]
         case "joint_elasticity":
             stiffness, damping = typical
-            return [(stiffness * k, damping * k) for k in (0.25, 1.0, 4.0)]
+            return [(stiffness * k, damping * k) for k in (1.0, 5.0)]
         case "joint_spring":
             return [
                 (typical[0], (low + high) / 2),

@@ -48,15 +48,26 @@ class GroundSlope(Effect):
         """Turn what is there once more."""
         if not np.any(values):
             return
-        tilt = _tilt(*values)
         if variants.plant.base == "fixed":
-            gravity = variants.field("opt.gravity")
-            gravity[row] = _turned(_inverse(tilt), gravity[row])
+            tilt_gravity(variants, row, values)
             return
+        tilt = _tilt(*values)
         places, turns = variants.field("geom_pos"), variants.field("geom_quat")
         for geom in ground_geoms(variants.plant):
             places[row, geom] = _turned(tilt, places[row, geom])
             turns[row, geom] = _product(tilt, turns[row, geom])
+
+
+def tilt_gravity(variants: "Variants", row: int, values: FloatArray) -> None:
+    """Turn gravity instead of what it acts on.
+
+    Args:
+      variants: of a plant.
+      row: which of them.
+      values: pitch and roll of the ground or the base.
+    """
+    gravity = variants.field("opt.gravity")
+    gravity[row] = _turned(_inverse(_tilt(*values)), gravity[row])
 
 
 def _tilt(pitch_rad: float, roll_rad: float) -> FloatArray:

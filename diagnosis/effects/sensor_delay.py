@@ -24,8 +24,13 @@ class SensorDelay(Effect):
     native = False
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """All joints at once."""
-        return ("encoders",)
+        """All joints at once, where something else than positions is measured.
+
+        Held by servos on a fixed base, old measurements of positions are those of a
+        late command: nothing tells the two apart.
+        """
+        other = any(trace.torque_nm is not None for trace in traces)
+        return ("encoders",) if plant.base == "floating" or other else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """The delay; 2 to 40 ms are usual."""

@@ -1,0 +1,155 @@
+"""The laws that effects bring into a batch of simulations, and MuJoCo lacks."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from diagnosis.batch_friction import BatchFriction
+from diagnosis.batch_servos import BatchServos
+from diagnosis.elastic import ElasticJoints
+from diagnosis.outside_forces import OutsideForces
+from diagnosis.servo import Servo
+from diagnosis.variants import Variants
+from groundwalk.arrays import FloatArray
+
+
+class BatchLaws:
+    """What servos, gears and hands do at every step of n variants times R runs."""
+
+    def __init__(
+        self, batch: Any, variants: Variants, servos: Sequence[Servo], step_s: float
+    ) -> None:
+        """Set the constants of all simulations; their states come later.
+
+        Args:
+          batch: a `mujoco.batch.Batch` of the variants' plant, variant by variant.
+          variants: n.
+          servos: of each of the R runs.
+          step_s: of the physics.
+        """
+        plant, runs = variants.plant, len(servos)
+        self._batch, self._step_s = batch, step_s
+        self._dofs, self._columns = plant.dofs, plant.qpos
+        self._actuators = plant.actuators
+        self._qpos, self._qvel, self._ctrl = map(self._bind, ("qpos", "qvel", "ctrl"))
+        self.joints = joints = {
+            name: np.repeat(values, runs, axis=0)
+            for name, values in vars(variants.joints).items()
+        }
+        for name, values in variants.fields.items():
+            self._expand(name)[:] = np.repeat(values, runs, axis=0)
+        self._rotor_kg_m2 = self._rotors()
+        self._batch.set_const()
+        self._servos = BatchServos(batch, plant, servos, joints)
+        self._friction = BatchFriction(batch, plant, joints, step_s)
+        # most variants have none of these laws: they cost nothing then
+        self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
+        self._gaps = bool(joints["gap_rad"].any())
+        self._setpoint: FloatArray | None = None
+        # what is bound later than the start would know of the start a step late
+        self._force = self._bind("actuator_force")
+        self._applied = self._bind("qfrc_applied")
+        self._outside = OutsideForces(batch, variants, runs, step_s)
+        self._elastic: ElasticJoints | None = None
+
+    def begin(self, asked_rad: FloatArray | None = None) -> None:
+        """Begin, or begin anew, in the state that the simulations are in.
+
+        Args:
+          asked_rad: (n R, j) position targets so far; the first ones where None.
+        """
+        self._setpoint = None
+        if asked_rad is not None:
+            self._setpoint = asked_rad - self.joints["offset_rad"]
+        self._outside.begin()
+        is_first = self._elastic is None
+        law, inertia = self._servos.law, self._rotor_kg_m2
+        self._elastic = ElasticJoints.of(self.joints, law, inertia)
+        if self._elastic is not None and is_first:
+            self._servos.soften(self._elastic, self._step_s)
+
+    def servo(self, asked_rad: FloatArray, time_s: FloatArray) -> None:
+        """Set the controls of one step.
+
+        Args:
+          asked_rad: (n R, j) position targets, as the encoders have it.
+          time_s: (R,) now; fading servos need it.
+        """
+        asked_rad = asked_rad - self.joints["offset_rad"]
+        if self._slews:
+            asked_rad = self._slewed(asked_rad)
+        if self._servos.fades:
+            self._servos.fade(time_s)
+        position, velocity = self.joint_state()
+        if self._friction.varies:
+            self._friction.follow(velocity, self._force[:, self._actuators])
+        if self._gaps:
+            asked_rad = self._through_gap(asked_rad, position, velocity)
+        if self._elastic is not None:
+            asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
+        self._ctrl[:, self._actuators] = asked_rad
+
+    def push_joints(self, torque_nm: FloatArray) -> None:
+        """Apply (n R, j) torques where no servo drives."""
+        position, velocity = self.joint_state()
+        if self._elastic is not None:
+            self._ctrl[:, self._actuators] = self._elastic.drive(
+                position, position, velocity, self._step_s, torque_nm
+            )
+            torque_nm = np.where(self._elastic.soft, 0.0, torque_nm)
+        if self._friction.varies:
+            driven_nm = self._force[:, self._actuators] + torque_nm
+            self._friction.follow(velocity, driven_nm)
+        self._applied[:, self._dofs] = torque_nm
+
+    def push_bodies(self, time_s: FloatArray) -> None:
+        """Apply forces from outside at (R,) times."""
+        self._outside.apply(time_s)
+
+    def joint_state(self) -> tuple[FloatArray, FloatArray]:
+        """(n R, j) positions and velocities."""
+        return self._qpos[:, self._columns], self._qvel[:, self._dofs]
+
+    def encoder_rad(self) -> FloatArray:
+        """(n R, j) positions on the encoders' side, without offsets."""
+        position = self._qpos[:, self._columns]
+        return position if self._elastic is None else self._elastic.seen(position)
+
+    def _bind(self, name: str) -> FloatArray:
+        return np.asarray(self._batch.bind(name))
+
+    def _expand(self, name: str) -> FloatArray:
+        return np.asarray(self._batch.expand(name))
+
+    def _slewed(self, asked_rad: FloatArray) -> FloatArray:
+        if self._setpoint is None:
+            self._setpoint = asked_rad.copy()
+        most = self.joints["setpoint_speed_rad_s"] * self._step_s
+        change = np.minimum(np.maximum(asked_rad - self._setpoint, -most), most)
+        self._setpoint = self._setpoint + change
+        return self._setpoint
+
+    def _through_gap(
+        self, asked_rad: FloatArray, position: FloatArray, velocity: FloatArray
+    ) -> FloatArray:
+        """Targets that give the torque of the error less the gap; none within it."""
+        half = self.joints["gap_rad"] / 2
+        error = asked_rad - position
+        within = (np.abs(error) < half) & (half > 0)
+        damping = self._servos.law["kd"] + self._servos.law["emf"]
+        self._applied[:, self._dofs] = np.where(within, damping * velocity, 0.0)
+        felt = np.sign(error) * np.maximum(np.abs(error) - half, 0.0)
+        return np.asarray(position + felt)
+
+    def _rotors(self) -> FloatArray:
+        """Armatures; those of elastic joints turn beside their links, not with them.
+
+        To be taken out before `set_const`, which the mass matrix of bodies with one
+        simple joint is from.
+        """
+        armature = self._expand("dof_armature")
+        inertia = armature[:, self._dofs].copy()
+        stiff = np.isinf(self.joints["spring_nm_rad"])
+        armature[:, self._dofs] = np.where(stiff, inertia, 0.0)
+        return inertia
