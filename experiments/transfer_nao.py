@@ -36,13 +36,13 @@ VERB = "transfer-nao"
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"
 PLAN = (
     (START, 0),
-    (NONE, 1),
-    (GAT, 1),
     (SGAT, 1),
-    (ENSEMBLE, 1),
-    (GAT, 2),
+    (GAT, 1),
     (SGAT, 2),
+    (GAT, 2),
+    (ENSEMBLE, 1),
     (ENSEMBLE, 2),
+    (NONE, 1),
     (RANDOMISED, 1),
     (ANE, 1),
     (REAL, 1),

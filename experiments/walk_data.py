@@ -55,12 +55,21 @@ def leg_senses(description: Description) -> WalkSenses:
     return WalkSenses([*legs.left_leg, *legs.right_leg])
 
 
+ON_COURSE = TrialRules(limit_s=15.0, start_spread_rad=0.01)
+"""As long as a course of 3 m takes."""
+
+FLAT_TICKS = 300
+"""The ground around the start is flat: what a robot does there says nothing of lumps,
+and a grounding that averages over both falls too seldom."""
+
+
 def walk(
     world_name: str,
     description: Description,
     vectors: FloatArray,
     seed: np.random.SeedSequence,
     exploration_rad: Sequence[float] = (0.0,),
+    rules: TrialRules = WALK,
 ) -> tuple[Trials, Transitions]:
     """Each gait walks once, on ground of its own; everything is noted.
 
@@ -70,6 +79,7 @@ def walk(
       vectors: (n, 16) gaits.
       seed: of grounds, noise, start poses and exploration.
       exploration_rad: noise on the commands; the gaits get them in turn.
+      rules: when a walk is over.
     """
     kind = worlds.kind(world_name)
     levels = np.resize(np.asarray(exploration_rad, float), (len(vectors), 1))
@@ -88,6 +98,12 @@ def walk(
             children[len(vectors) + first],
         )
         with contextlib.closing(world):
-            trials.append(walk_trials(world, vectors[rows], WALK, seeds))
+            trials.append(walk_trials(world, vectors[rows], rules, seeds))
             noted.append(world.transitions())
     return Trials.joined(trials), reduce(Transitions.joined, noted)
+
+
+def on_lumps(walks: Transitions) -> Transitions:
+    """Walks without what was noted on the flat ground that they start from."""
+    first = np.searchsorted(walks.episode, walks.episode)
+    return walks.subset(np.arange(walks.n) - first >= FLAT_TICKS)

@@ -9,7 +9,7 @@ import numpy as np
 import robots
 from experiments.search import GaitSearch
 from experiments.search_run import Entry, run_search
-from experiments.walk_data import GaitCloud, walk
+from experiments.walk_data import ON_COURSE, GaitCloud, on_lumps, walk
 from experiments.walk_groundings import (
     GROUNDINGS,
     ROBOT,
@@ -97,7 +97,8 @@ class Grounding:
             self._cloud.draw(self._around, count, seed)
             for count, seed in zip(self._walks, self._seeds, strict=False)
         )
-        _, real = walk("real", description, of_real, self._seeds[2])
+        _, real = walk("real", description, of_real, self._seeds[2], rules=ON_COURSE)
+        real = on_lumps(real)
         _, sim = walk("sim", description, of_sim, self._seeds[3], EXPLORATION_RAD)
         if self._before is None:
             return real, sim

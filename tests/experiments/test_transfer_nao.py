@@ -1,13 +1,16 @@
 import math
 
+import numpy as np
 import pytest
 
 from experiments.run_folder import HISTORY, RunFolder
 from experiments.transfer_nao import TransferNao, main
 from experiments.transfer_nao_figure import cells_figure
 from experiments.transfer_nao_page import claims_of, more_falls_p, table_of
+from experiments.walk_data import FLAT_TICKS, on_lumps
 from experiments.walk_groundings import ENSEMBLE, GAT, SGAT
 from groundwalk.errors import BadValueError, UnknownNameError
+from sgat.transitions import Transitions
 
 SMOKE = {
     "methods": (SGAT,), "trials": 2, "population": 4, "generations": 1, "repeats": 1,
@@ -86,3 +89,15 @@ def test_impossible_studies_are_refused(change):
 def test_unknown_methods_are_named():
     with pytest.raises(UnknownNameError, match="SGAT"):
         TransferNao(methods=("SGATT",))
+
+
+def test_what_is_noted_on_the_flat_start_does_not_count():
+    episode = np.repeat([0, 1, 2], [FLAT_TICKS + 2, 5, FLAT_TICKS + 1])
+    tick = np.concatenate([np.arange(n) for n in (FLAT_TICKS + 2, 5, FLAT_TICKS + 1)])
+    rows = np.stack([episode, tick], axis=1).astype(float)
+    kept = on_lumps(Transitions(rows, rows, rows, episode))
+    assert kept.state.tolist() == [
+        [0, FLAT_TICKS],
+        [0, FLAT_TICKS + 1],
+        [2, FLAT_TICKS],
+    ]
