@@ -10,7 +10,6 @@ import numpy as np
 
 from diagnosis.batch_friction import BatchFriction
 from diagnosis.batch_servos import BatchServos
-from diagnosis.effect import Placed
 from diagnosis.library import effect
 from diagnosis.plant import Plant
 from diagnosis.predictor import Model, variants_of
@@ -23,6 +22,9 @@ if TYPE_CHECKING:
     import mujoco
 
 CORRECTED_XML = "corrected.xml"
+_LINEAR = 1
+"""MuJoCo's number for a course between two controls that is straight."""
+
 _DIGITS = 17
 """As many as it takes to read a number back as it was."""
 
@@ -55,4 +57,57 @@ def corrected_mjcf(
     folder = Path(spec.modelfiledir or ".").resolve()
     spec.meshdir = str(folder / spec.meshdir) if spec.meshes else spec.meshdir
     with _all_digits():
-        return spec.to_xml()
+        return str(spec.to_xml())
+
+
+class _OneModel:
+    """A compiled model as a batch of one, whose fields can be written."""
+
+    def __init__(self, model: "mujoco.MjModel") -> None:
+        self._model = model
+
+    def expand(self, name: str) -> FloatArray:
+        """(1, ...) live values of an array."""
+        return np.asarray(getattr(self._model, name))[None]
+
+
+def _write_fields(
+    compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
+) -> None:
+    """Put the only row of some variants into a model."""
+    for name, values in variants.fields.items():
+        *holder, last = name.split(".")
+        target = compiled.opt if holder else compiled
+        value = getattr(target, last)
+        if isinstance(value, np.ndarray):
+            value[...] = values[0]
+        else:
+            setattr(target, last, type(value)(values[0]))
+    one, joints = _OneModel(compiled), vars(variants.joints)
+    BatchServos(one, variants.plant, [servo], joints)
+    BatchFriction(one, variants.plant, joints, step_s)
+
+
+def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:
+    """Let actuators act on old controls, a mix of two where it is not whole steps."""
+    if delay_s == 0:
+        return
+    for actuator in spec.actuators:
+        actuator.delay = delay_s
+        actuator.nsample = int(np.ceil(delay_s / step_s)) + 1
+        actuator.interp = _LINEAR
+
+
+@contextmanager
+def _all_digits() -> Iterator[None]:
+    """MuJoCo writes six digits unless its library is told otherwise."""
+    import mujoco
+
+    folder = Path(mujoco.__file__).parent
+    library = ctypes.CDLL(str(next(folder.glob("*mujoco.*"))))
+    before = library._mjPRIVATE__get_xml_precision()
+    library._mjPRIVATE__set_xml_precision(_DIGITS)
+    try:
+        yield
+    finally:
+        library._mjPRIVATE__set_xml_precision(before)

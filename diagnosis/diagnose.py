@@ -36,6 +36,7 @@ from diagnosis.verdict import (
     VerdictKind,
     When,
 )
+from diagnosis.widespread import widespread
 from groundwalk.errors import BadRecordingError
 
 TOO_SHORT = (
@@ -109,6 +110,8 @@ def diagnose(
         raise BadRecordingError(TOO_SHORT)
     search = Search(fit, select, rules)
     searched = search.run()
+    if _kind(searched, plant, audited) == "unknown":
+        searched = widespread(search, searched)
     if searched.winner:
         whole.calibrate(searched.winner.model)
     both, test = whole.part(0, learned), whole.part(learned, len(every))

@@ -45,7 +45,7 @@ class Search:
         intervals = push_intervals(self.fit, residual)
         self.signatures = signatures(self.fit, (), self.usage, intervals)
         screen = Screen(self.fit, self.signatures)
-        best = {1: self._judged(self._short(screen.singles(residual)))}
+        best = {1: self.judged(self._short(screen.singles(residual)))}
         chosen, size, energy = 0, 1, nothing
         while best.get(size):
             if self._worth(energy, best[size][0].selected, nothing):
@@ -60,9 +60,9 @@ class Search:
             if size == 1:
                 starts += self._pairs(screen, residual, starts)
             size += 1
-            best[size] = self._judged(starts)
+            best[size] = self.judged(starts)
         if chosen:
-            swapped = self._judged(self._swaps(best[chosen][0], screen))
+            swapped = self.judged(self._swaps(best[chosen][0], screen))
             best[chosen] = ranked(best[chosen] + swapped, self.floor)
         return Found(nothing, self.floor, best, chosen)
 
@@ -152,7 +152,7 @@ class Search:
             if place in plant.neighbours(placed.place)
         ]
 
-    def _judged(self, starts: Sequence[Model]) -> list[Judged]:
+    def judged(self, starts: Sequence[Model]) -> list[Judged]:
         """Fitted and judged, the best on the selection data first.
 
         Most starts lead nowhere: only those that are among the best after a few steps

@@ -74,7 +74,9 @@ def _knots(time_s: FloatArray) -> FloatArray:
     tick = float(np.median(np.diff(time_s)))
     spans = max(int(np.ceil((time_s[-1] - time_s[0]) / tick)), 1)
     tick = (time_s[-1] - time_s[0]) / spans
-    return np.asarray(time_s[0] + tick * np.arange(-_DEGREE, spans + _DEGREE + 1))
+    knots = time_s[0] + tick * np.arange(-_DEGREE, spans + _DEGREE + 1)
+    knots[-_DEGREE - 1] = time_s[-1]  # rounding must not leave the last row outside
+    return np.asarray(knots)
 
 
 def _fit(

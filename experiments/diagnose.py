@@ -11,6 +11,8 @@ import numpy as np
 import tyro
 
 import robots
+from diagnosis.corrected_mjcf import CORRECTED_XML, corrected_mjcf
+from diagnosis.corrected_model import CORRECTED_JSON, Correction
 from diagnosis.diagnose import Diagnosis, diagnose
 from diagnosis.predictor import Model, Predictor
 from diagnosis.trace_reading import read_traces
@@ -90,6 +92,7 @@ def main(config: Diagnose) -> None:
     folder = RunFolder.create(VERB, config)
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
+    write_correction(folder, found)
     series = held_out(found)
     facts = _facts(config, folder, found)
     write_report(folder.path / REPORT, found.verdict, series, facts)
@@ -100,6 +103,17 @@ def main(config: Diagnose) -> None:
         print(found.verdict.to_json(), end="")
     else:
         print_verdict(found.verdict, [folder.path / name for name in (REPORT, OVERLAY)])
+
+
+def write_correction(folder: RunFolder, found: Diagnosis) -> None:
+    """The sim that is right, if anything was found to be wrong with it."""
+    if not found.verdict.effects:
+        return
+    servo = found.test.traces[0].servo
+    xml = corrected_mjcf(found.plant, found.model, servo)
+    folder.write_text(CORRECTED_XML, xml)
+    text = Correction.of(found.plant, found.model).to_json()
+    folder.write_text(CORRECTED_JSON, text)
 
 
 def held_out(found: Diagnosis) -> list[ReportSeries]:
@@ -144,6 +158,9 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
         OVERLAY: "real, sim and corrected sim in Rerun",
         AUDIT: "what the recordings are like",
     }
+    if found.verdict.effects:
+        files[CORRECTED_XML] = "the corrected model, as far as MuJoCo has the effects"
+        files[CORRECTED_JSON] = "all effects; --sim takes them"
     packages = {k: str(v) for k, v in provenance["packages"].items() if v}
     return ReportFacts(
         robot=config.robot,

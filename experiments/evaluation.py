@@ -4,11 +4,13 @@ import contextlib
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import worlds
+from experiments.corrected_sims import make_sim
 from experiments.progress import progress
 from experiments.recorder import Recorder, servo_gains
 from experiments.run_folder import RECORDINGS, RunFolder
@@ -17,7 +19,14 @@ from groundwalk.errors import BadValueError
 from robots import Description
 from terrain import Heightfield, TerrainSpec, parse
 from walk_engine import Gait
-from worlds import End, Recording, RecordingMetadata, WorldOptions, write_recording
+from worlds import (
+    End,
+    Recording,
+    RecordingMetadata,
+    World,
+    WorldOptions,
+    write_recording,
+)
 
 MOST_AT_ONCE = 60
 """Robots walking side by side: in the real world each needs 70 MB."""
@@ -50,6 +59,7 @@ class Study:
       trials: of each gait.
       rules: when a trial is over.
       threads: of the sim, or processes of the real world; 0 for one per core.
+      correction: folder or file of a diagnosis, for the sim.
     """
 
     world: str
@@ -57,6 +67,7 @@ class Study:
     trials: int = 10
     rules: TrialRules = COURSE_TRIAL
     threads: int = 0
+    correction: Path | None = None
 
     def __post_init__(self) -> None:
         """Refuse unknown worlds and terrains, and no trials."""
@@ -66,6 +77,20 @@ class Study:
             raise BadValueError(f"trials is {self.trials}; it must be at least 1")
         if self.threads < 0:
             raise BadValueError(f"threads is {self.threads}; it must not be negative")
+        if self.correction is not None and self.world != "sim":
+            raise BadValueError(f"only the sim can be corrected, not {self.world!r}")
+
+    def make_world(
+        self,
+        description: Description,
+        grounds: Sequence[Heightfield],
+        seeds: Sequence[np.random.SeedSequence],
+    ) -> World:
+        """The world, with one robot on each ground."""
+        robots = description, grounds, seeds, self.options
+        if self.correction is None:
+            return worlds.make(self.world, *robots)
+        return make_sim(*robots, self.correction)
 
     @property
     def options(self) -> WorldOptions:
@@ -152,7 +177,7 @@ def _walk(
     """Some trials side by side, and the recordings of first trials among them."""
     starts = [start for _, start in wave]
     grounds, seeds = [s.ground for s in starts], [s.of_noise for s in starts]
-    world = worlds.make(study.world, description, grounds, seeds, study.options)
+    world = study.make_world(description, grounds, seeds)
     firsts = [i for i, start in enumerate(starts) if start.number == 0]
     recorder = Recorder(description, firsts)
     with contextlib.closing(world):
@@ -192,10 +217,12 @@ def _metadata(
     end: End,
 ) -> RecordingMetadata:
     latency_ms = study.options.latency_s * 1e3
+    corrected = "" if study.correction is None else "corrected "
     return RecordingMetadata(
         robot=description.name,
         base="floating",
-        source=f"groundwalk, {study.world} world, command latency {latency_ms:.0f} ms",
+        source=f"groundwalk, {corrected}{study.world} world, "
+        f"command latency {latency_ms:.0f} ms",
         servo=servo_gains(description),
         terrain=ground.to_json(),
         gait=dict(gait),

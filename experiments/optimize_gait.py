@@ -1,6 +1,5 @@
 """`groundwalk optimize-gait`: CMA-ES tunes the 16 gait parameters in the sim."""
 
-import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,8 +7,8 @@ from typing import Any
 import numpy as np
 
 import robots
-import worlds
 from experiments.command_line import run_verb
+from experiments.corrected_sims import check_correction, make_sim
 from experiments.evaluation import Study, evaluate, keep
 from experiments.gait_files import load_gait
 from experiments.result_page import write_page
@@ -44,6 +43,7 @@ class OptimizeGait:
       start: name or JSON file of the gait that the search starts from.
       terrain: ground of the search in the sim, for example "lumps:amplitude_m=0.005".
       real_terrain: ground of the evaluation in the real world.
+      sim: folder of a diagnosis; the sim then has the physics that it found missing.
       population: gaits tried in each generation.
       generations: how many generations the search runs.
       sigma: spread of the first generation, as a part of each parameter's range.
@@ -59,6 +59,7 @@ class OptimizeGait:
     start: str = "start"
     terrain: str = "flat"
     real_terrain: str = "lumps"
+    sim: Path | None = None
     population: int = 150
     generations: int = 15
     sigma: float = 0.15
@@ -71,7 +72,9 @@ class OptimizeGait:
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
-        robots.get(self.robot)
+        description = robots.get(self.robot)
+        if self.sim is not None:
+            check_correction(description, self.study("sim").options, self.sim)
         load_gait(self.start)
         check_search(self.population, self.sigma)
         for world in WORLDS:
@@ -86,7 +89,14 @@ class OptimizeGait:
     def study(self, world: str) -> Study:
         """How start and tuned gait are evaluated in a world."""
         ground = dict(zip(WORLDS, (self.terrain, self.real_terrain), strict=True))
-        return Study(world, ground[world], self.trials, threads=self.threads)
+        correction = self.sim if world == "sim" else None
+        return Study(
+            world,
+            ground[world],
+            self.trials,
+            threads=self.threads,
+            correction=correction,
+        )
 
 
 def main(config: OptimizeGait) -> None:
@@ -134,11 +144,11 @@ def _generation(
     mean = strategy.mean
     tried = np.vstack([strategy.ask(), mean.to_vector()])
     ground = TerrainSpec(*parse(config.terrain), seed=ground_seed).make()
-    options = dataclasses.replace(worlds.kind("sim").options, threads=config.threads)
+    options = config.study("sim").options
     n = len(tried)
     nobody = [np.random.SeedSequence(0)] * n
     description = robots.get(config.robot)
-    world = worlds.make("sim", description, [ground] * n, nobody, options)
+    world = make_sim(description, [ground] * n, nobody, options, config.sim)
     trials = walk_trials(world, tried, SEARCH_TRIAL)
     rewards = reward_cm_s(trials, SEARCH_TRIAL.limit_s)
     strategy.tell(rewards[:-1])

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, ClassVar, Protocol, Self, TypeVar
+from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args
 
 from groundwalk import __version__
 from groundwalk.errors import BadValueError, RunFolderError
@@ -152,7 +152,7 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
         if field.name in FREE_WHEN_RESUMED:
             continue
         given = getattr(config, field.name)
-        before = _revived(stored.get(field.name))
+        before = _revived(stored.get(field.name), field.type)
         if given not in (field.default, before):
             raise BadValueError(
                 f"{field.name} cannot change from {before} to {given} when a run is "
@@ -173,8 +173,10 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def _revived(value: Any) -> Any:
-    """JSON knows no tuples."""
+def _revived(value: Any, kind: Any) -> Any:
+    """JSON knows no tuples and no paths."""
+    if isinstance(value, str) and Path in get_args(kind):
+        return Path(value)
     return tuple(value) if isinstance(value, list) else value
 
 

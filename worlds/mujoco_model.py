@@ -1,5 +1,6 @@
 """A robot on its ground as a compiled MuJoCo model."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,20 @@ def mujoco_model(
       options: time step, friction, fixed base.
       ground: what it stands on; None for nothing.
     """
+    grounds = [] if ground is None else [ground]
+    return world_spec(description, options, grounds).compile()
+
+
+def world_spec(
+    description: Description, options: WorldOptions, grounds: Sequence[Heightfield]
+) -> "mujoco.MjSpec":
+    """The robot on all of some grounds, before it is compiled.
+
+    Args:
+      description: the robot.
+      options: time step, friction, fixed base.
+      grounds: what it stands on; the geoms are `ground_name` of their numbers.
+    """
     import mujoco
 
     # Worlds tell what blew up; MuJoCo would litter the screen and write a file.
@@ -36,28 +51,32 @@ def mujoco_model(
     log.set()
     spec = mujoco_spec(description)
     spec.option.timestep = options.timestep_s
+    # A diverged robot shall show its NaN, not start again in silence.
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     spec.compiler.discardvisual = True
     if options.fixed_base:
         spec.delete(spec.joint(ROOT_JOINT))
-    if ground is not None:
-        add_ground(spec, ground)
-    model = spec.compile()
-    # A diverged robot shall show its NaN, not start again in silence.
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
-    soles = model.geom_contype == 1
-    model.geom_friction[soles, 0] = options.friction
-    # The sole's friction counts, not the larger of sole's and ground's.
-    model.geom_priority[soles] = 1
-    return model
+    for sole in [geom for geom in spec.geoms if geom.contype == 1]:
+        sole.friction = [options.friction, *sole.friction[1:]]
+        # The sole's friction counts, not the larger of sole's and ground's.
+        sole.priority = 1
+    for number, ground in enumerate(grounds):
+        add_ground(spec, ground, ground_name(number))
+    return spec
 
 
-def add_ground(spec: Any, ground: Heightfield) -> None:
+def ground_name(number: int) -> str:
+    """Name of a ground's geom, by the ground's number."""
+    return f"ground_{number}" if number else "ground"
+
+
+def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
     """Add a heightfield to a specification, a plane where it is flat."""
     import mujoco
 
     if ground.is_flat:
         spec.worldbody.add_geom(
-            name="ground",
+            name=name,
             type=mujoco.mjtGeom.mjGEOM_PLANE,
             size=[0, 0, 1],
             pos=[0, 0, float(ground.heights_m[0, 0])],
@@ -69,16 +88,16 @@ def add_ground(spec: Any, ground: Heightfield) -> None:
     low, span = float(heights.min()), float(np.ptp(heights))
     (x0, x1), (y0, y1) = ground.x_range_m, ground.y_range_m
     spec.add_hfield(
-        name="ground",
+        name=name,
         nrow=heights.shape[0],
         ncol=heights.shape[1],
         size=[(x1 - x0) / 2, (y1 - y0) / 2, span, _BASE_THICKNESS_M],
         userdata=((heights - low) / span).ravel().tolist(),
     )
     spec.worldbody.add_geom(
-        name="ground",
+        name=name,
         type=mujoco.mjtGeom.mjGEOM_HFIELD,
-        hfieldname="ground",
+        hfieldname=name,
         pos=[(x0 + x1) / 2, (y0 + y1) / 2, low],
         contype=0,
         conaffinity=1,

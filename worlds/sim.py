@@ -1,6 +1,7 @@
 """The deterministic world: MuJoCo, many robots in one batch."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from worlds.rollouts import RolloutWorld, Schedule
 from worlds.standing import Standing
 from worlds.world import TICK_S, WorldOptions
 
+if TYPE_CHECKING:
+    from mujoco.batch import Batch
+
 
 class SimWorld(RolloutWorld):
     """n robots in `mujoco.batch.Batch`, each on its own ground.
@@ -34,18 +38,7 @@ class SimWorld(RolloutWorld):
     ) -> None:
         """Compile a model for each distinct ground, and make the batch."""
         super().__init__(description, grounds, seeds, options)
-        from mujoco.batch import Batch
-
-        models = {
-            id(ground): mujoco_model(
-                description, options, None if options.fixed_base else ground
-            )
-            for ground in self._grounds
-        }
-        per_robot = [models[id(ground)] for ground in self._grounds]
-        self._batch = Batch(per_robot[0], self.n, options.threads)
-        if len(models) > 1:
-            self._batch.set_models(per_robot)
+        self._batch = self._made_batch()
         self._qpos = self._batch.bind("qpos")
         self._qvel = self._batch.bind("qvel")
         self._ctrl = self._batch.bind("ctrl")
@@ -58,6 +51,24 @@ class SimWorld(RolloutWorld):
     def close(self) -> None:
         """Nothing to give back."""
 
+    def _made_batch(self) -> "Batch":
+        """The simulations, each robot's with its own ground."""
+        from mujoco.batch import Batch
+
+        models = {
+            id(ground): mujoco_model(
+                self.description,
+                self.options,
+                None if self.options.fixed_base else ground,
+            )
+            for ground in self._grounds
+        }
+        per_robot = [models[id(ground)] for ground in self._grounds]
+        batch = Batch(per_robot[0], self.n, self.options.threads)
+        if len(models) > 1:
+            batch.set_models(per_robot)
+        return batch
+
     def _start(self, pose_rad: FloatArray) -> None:
         self._batch.reset()
         self._qpos[:, self._joints] = pose_rad
@@ -68,14 +79,18 @@ class SimWorld(RolloutWorld):
         self._batch.forward()
 
     def _advance(self, schedule: Schedule) -> None:
-        from mujoco.batch import SimulationError
-
         for targets, steps in schedule:
             self._ctrl[:] = targets
-            try:
-                self._batch.step(ids=self.active, nstep=steps)
-            except SimulationError as error:
-                self._qpos[error.ids] = np.nan
+            self._run(steps)
+
+    def _run(self, steps: int) -> None:
+        """Physics of the active robots; what blows up becomes NaN."""
+        from mujoco.batch import SimulationError
+
+        try:
+            self._batch.step(ids=self.active, nstep=steps)
+        except SimulationError as error:
+            self._qpos[error.ids] = np.nan
 
     def _read(self) -> tuple[Truth, Observation]:
         """Positions and velocities of now; forces and acceleration of the last step."""

@@ -127,3 +127,12 @@ def test_missing_values_are_bridged(times):
     assert np.abs(smoothed.value - value)[50:-50].max() < 2e-3
     nothing = smooth(times, np.full(len(times), np.nan))
     assert np.isnan(nothing.value).all()
+
+
+def test_no_row_is_beyond_the_last_knot():
+    """Times whose span is no whole number of ticks in floating point."""
+    for rows in range(40, 60):
+        for tick_s in (0.01, 0.02, 0.1 / 3, 0.007):
+            time_s = 0.1 + tick_s * np.arange(rows)
+            found = smooth(time_s, np.sin(time_s))
+            assert np.isfinite(found.value).all()

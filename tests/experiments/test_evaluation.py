@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 
@@ -63,3 +65,18 @@ def test_impossible_studies_are_refused():
         Study("reel", "flat")
     with pytest.raises(BadValueError, match="trials is 0"):
         Study("sim", "flat", trials=0)
+
+
+def test_a_study_in_a_corrected_sim_says_so(tmp_path):
+    late = {"name": "command_latency", "place": "commands"}
+    late["parameters"] = {"delay": 0.04}
+    text = {"format": 1, "robot": "nao", "base": "fixed", "native": [late]}
+    path = tmp_path / "corrected.json"
+    path.write_text(json.dumps({**text, "per_tick": []}))
+    found = run(Study("sim", "flat", 2, SHORT, correction=tmp_path))["start"]
+    plain = run(Study("sim", "flat", 2, SHORT))["start"]
+    assert found.score.speed_cm_s != plain.score.speed_cm_s
+    assert found.recording.metadata.source.startswith("groundwalk, corrected sim world")
+    assert plain.recording.metadata.source.startswith("groundwalk, sim world")
+    with pytest.raises(BadValueError, match="only the sim can be corrected"):
+        Study("real", "flat", correction=tmp_path)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from experiments.optimize_gait import OptimizeGait, search
-from experiments.run_folder import RunFolder
-from groundwalk.errors import GroundwalkError, RunFolderError
+from experiments.run_folder import RunFolder, open_run
+from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
 SMALL = ["--population", "6", "--generations", "4", "--trials", "1"]
@@ -93,6 +93,64 @@ def test_on_uneven_ground_every_generation_walks_on_new_ground(tmp_path):
     uneven = history_of(tmp_path, "uneven", terrain="lumps:amplitude_m=0.004")
     assert uneven == history_of(tmp_path, "again", terrain="lumps:amplitude_m=0.004")
     assert uneven != history_of(tmp_path, "flat")
+
+
+def corrected(folder, **changes):
+    """A folder with what a diagnosis could have found."""
+    late = {
+        "name": "command_latency",
+        "place": "commands",
+        "parameters": {"delay": 0.04},
+    }
+    plain = {"format": 1, "robot": "nao", "base": "fixed", "native": [late]}
+    folder.mkdir()
+    text = json.dumps({**plain, "per_tick": [], **changes})
+    (folder / "corrected.json").write_text(text)
+    return folder
+
+
+def test_the_search_walks_in_the_corrected_sim(tmp_path):
+    late = history_of(tmp_path, "late", sim=corrected(tmp_path / "found"))
+    nominal = history_of(tmp_path, "nominal")
+    assert late != nominal
+    nothing = corrected(tmp_path / "nothing", native=[])
+    assert history_of(tmp_path, "same", sim=nothing) == nominal
+
+
+def test_only_the_sim_is_corrected(tmp_path):
+    config = OptimizeGait(sim=corrected(tmp_path / "found"))
+    assert config.study("sim").correction == tmp_path / "found"
+    assert config.study("real").correction is None
+
+
+def test_a_resumed_run_has_its_corrected_sim_again(tmp_path):
+    config = OptimizeGait(sim=corrected(tmp_path / "found"), out=tmp_path / "run")
+    RunFolder.create("optimize-gait", config)
+    _, resumed = open_run("optimize-gait", OptimizeGait(resume=tmp_path / "run"))
+    assert resumed.sim == tmp_path / "found"
+    other = corrected(tmp_path / "other")
+    again = OptimizeGait(resume=tmp_path / "run", sim=other)
+    with pytest.raises(BadValueError, match="sim cannot change"):
+        open_run("optimize-gait", again)
+
+
+def test_a_folder_that_is_no_diagnosis_is_refused_before_anything(tmp_path):
+    found = corrected(tmp_path / "found", robot="so101")
+    for bad, words in (
+        (tmp_path / "gone", "gone: no such folder or file"),
+        (tmp_path, "is no folder of a diagnosis"),
+        (found, "these effects are of 'so101', the robot is 'nao'"),
+    ):
+        done = subprocess.run(
+            script("--sim", str(bad), "--out", str(tmp_path / "run")),
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+        )
+        assert done.returncode == 2
+        assert words in done.stderr
+        assert done.stderr.count("\n") == 1
+        assert not (tmp_path / "run").exists()
 
 
 def test_the_history_says_what_the_search_did(tmp_path):

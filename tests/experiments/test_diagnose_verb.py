@@ -1,0 +1,73 @@
+import json
+import sys
+
+import pytest
+
+from diagnosis.verdict import Verdict
+from experiments.diagnose import Diagnose, main
+from experiments.record import Record
+from experiments.record import main as record
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    """A pendulum's servo that lets a tenth of its stiffness go."""
+    path = tmp_path_factory.mktemp("recorded") / "swing.parquet"
+    hidden = ("servo_gain@swing:factor=0.9",)
+    record(
+        Record(
+            robot="pendulum", motion="multisine", hidden=hidden, duration=12.0, out=path
+        )
+    )
+    return path
+
+
+@pytest.mark.slow
+def test_a_diagnosis_writes_all_that_it_promises(recording, tmp_path, capsys):
+    model = recording.with_name("swing.nominal.xml")
+    out = tmp_path / "run"
+    main(Diagnose((recording,), str(model), out=out))
+    verdict = Verdict.from_json((out / "diagnosis.json").read_text())
+    assert verdict.kind == "effects"
+    (found,) = verdict.effects
+    assert (found.name, found.place) == ("servo_gain", "swing")
+    factor = found.parameters["factor"]
+    assert factor.low < 0.9 < factor.high
+    assert verdict.fit.corrected < 0.3 * verdict.fit.nominal
+    assert {path.name for path in out.iterdir()} >= {
+        "report.html", "overlay.rrd", "audit.json", "config.json", "provenance.json",
+    }  # fmt: skip
+    config = json.loads((out / "config.json").read_text())
+    assert config["recordings"] == [str(recording)]
+    assert "servo" in capsys.readouterr().out
+    with pytest.raises(RunFolderError, match="exists already"):
+        main(Diagnose((recording,), str(model), out=out))
+
+
+def test_a_recording_of_another_robot_is_refused_and_nothing_is_written(
+    recording, tmp_path
+):
+    with pytest.raises(BadRecordingError, match="swing"):
+        main(Diagnose((recording,), "nao", out=tmp_path / "run"))
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"recordings": ()}, "no recording"),
+        ({"kp": -1.0}, "kp is -1.0"),
+        ({"kd": 1.0}, "without kp"),
+        ({"seed": -1}, "negative"),
+    ],
+)
+def test_impossible_questions_are_refused(recording, change, said):
+    with pytest.raises(BadValueError, match=said):
+        Diagnose(**{"recordings": (recording,), "robot": "nao"} | change)
+
+
+def test_gains_of_the_command_line_hold_for_all_servos(recording):
+    gains = Diagnose((recording,), "nao", kp=8.0).gains
+    assert (gains.kp, gains.kd, gains.max_torque) == (8.0, 0.0, sys.float_info.max)
+    assert Diagnose((recording,), "nao").gains is None
