@@ -23,8 +23,10 @@ PINS = Path(__file__).resolve().parents[1] / "constraints.txt"
 """The tested versions of packages; only a checkout has this file."""
 
 IMPORTS = {
+    "absl-py": "absl",
     "example-robot-data": "",  # files only
     "mujoco": "mujoco.batch",
+    "pyyaml": "yaml",
     "rerun-sdk": "rerun",
     "sb3-contrib": "sb3_contrib",
 }
