@@ -30,7 +30,7 @@ from walk_engine import gaits
 ROBOTS = 150
 TICKS = 200
 ROUNDS = 7
-BLOCK_TICKS = 50
+BLOCK_TICKS, MEMBERS = 50, 4
 MOST = 1.15
 
 
@@ -66,14 +66,14 @@ def report(ratios: list[float]) -> tuple[str, bool]:
 
 
 def _transformer() -> ActionTransformer:
-    """SGAT with an enlarged noise of blocks, as for the walking robot."""
+    """SGAT by an ensemble with a noise of blocks, as for the walking robot."""
     description = robots.get("nao")
     senses = leg_senses(description)
     vectors = GaitCloud().draw(gaits.get("start"), 8, np.random.SeedSequence(2))
     _, noted = walk("sim", description, vectors, np.random.SeedSequence(3), (0.02,))
     seen = dataclasses.replace(noted, state=noted.state[:, : senses.sim_columns])
     seed = np.random.SeedSequence(4)
-    forward = ForwardModel(ForwardConfig(epochs=3)).fit(noted, seed)
+    forward = ForwardModel(ForwardConfig(epochs=3, members=MEMBERS)).fit(noted, seed)
     inverse = InverseModel(NetworkConfig(epochs=3)).fit(seen, seed)
     bound = np.ones(len(senses.joints))
     law = BlockNoise(forward.residuals(noted), noted.episode, BLOCK_TICKS)
@@ -84,6 +84,5 @@ def _transformer() -> ActionTransformer:
         bound,
         law,
         smoothing=0.0,
-        gain=2.0,
         inverse_columns=senses.sim_columns,
     )

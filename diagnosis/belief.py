@@ -13,7 +13,7 @@ alike from row to row, so that they tell less than their number."""
 
 OFFSET, SLOPE = -0.4, 1.6
 """Of the log odds that an effect is right, over the logarithm of the gap to the next
-other effect; found on concealed cases (docs/concealed.md)."""
+other effect. Set by hand: they wait for a calibration on concealed cases."""
 
 
 def confusable(found: Found, placed: Placed) -> tuple[EffectAt, ...]:

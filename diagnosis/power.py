@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnosis.fitting import Coordinates
 from diagnosis.predictor import Predictor
-from diagnosis.screening import Signature
+from diagnosis.signatures import Signature
 from diagnosis.trial_values import THRESHOLDS
 from diagnosis.verdict import Amount
 

@@ -13,8 +13,9 @@ from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
 from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model, Predictor
-from diagnosis.screening import Guess, Screen, Signature, signatures
+from diagnosis.screening import Guess, Screen
 from diagnosis.search_result import Found, Judged, Rules, keys_of, ranked
+from diagnosis.signatures import Signature, signatures
 from diagnosis.usage import Usage
 from groundwalk.arrays import FloatArray
 

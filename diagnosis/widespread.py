@@ -10,9 +10,10 @@ from collections.abc import Sequence
 from diagnosis.effect import Placed
 from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model
-from diagnosis.screening import Guess, Screen, signatures
+from diagnosis.screening import Guess, Screen
 from diagnosis.search import Search
 from diagnosis.search_result import Found, Judged
+from diagnosis.signatures import signatures
 
 KINDS = tuple(
     name

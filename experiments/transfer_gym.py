@@ -5,7 +5,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from experiments.progress import progress
 from experiments.run_folder import RESULT, RunFolder, open_run
@@ -29,6 +29,8 @@ class TransferGym:
 
     Options that are not given follow from the size.
 
+    A study is a subclass that names its environment and its sizes.
+
     Attributes:
       size: of the grid.
       seeds: trainings of each method.
@@ -44,6 +46,9 @@ class TransferGym:
       resume: continue the run of this folder.
       json: print the result as JSON.
     """
+
+    domain: ClassVar[Domain]
+    sizes: ClassVar[Mapping[str, Size]]
 
     size: SizeName = "reduced"
     seeds: int | None = None
@@ -64,20 +69,12 @@ class TransferGym:
         if self.threads < 1:
             raise BadValueError(f"threads is {self.threads}; it must be at least 1")
 
-    def domain(self) -> Domain:
-        """The environment."""
-        raise NotImplementedError
-
-    def sizes(self) -> Mapping[str, Size]:
-        """By their names."""
-        raise NotImplementedError
-
     def study(self) -> GymStudy:
         """How the methods are compared."""
-        size = self.sizes()[self.size]
+        size = self.sizes[self.size]
         return GymStudy(
-            self.domain(),
-            self.domain().settings,
+            self.domain,
+            self.domain.settings,
             size.noises if self.noises is None else self.noises,
             self.methods,
             size.seeds if self.seeds is None else self.seeds,

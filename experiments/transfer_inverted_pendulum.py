@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from experiments.command_line import run_verb
 from experiments.transfer_gym import TransferGym, run_study
@@ -47,13 +48,8 @@ SIZES = {
 class TransferInvertedPendulum(TransferGym):
     """Train for noisy, heavier pendulums: no grounding, GAT, SGAT, ANE, real."""
 
-    def domain(self) -> Domain:
-        """The environment."""
-        return INVERTED_PENDULUM
-
-    def sizes(self) -> Mapping[str, Size]:
-        """By their names."""
-        return SIZES
+    domain: ClassVar[Domain] = INVERTED_PENDULUM
+    sizes: ClassVar[Mapping[str, Size]] = SIZES
 
 
 def main(config: TransferInvertedPendulum) -> None:

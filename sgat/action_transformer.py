@@ -39,7 +39,6 @@ class ActionTransformer:
         high: FloatArray,
         noise: NoiseLaw | None = None,
         smoothing: float = 1.0,
-        gain: float = 1.0,
         inverse_columns: int | None = None,
     ) -> None:
         """Put the models together.
@@ -53,9 +52,6 @@ class ActionTransformer:
             many dimensions as a next state has, or as an action has where the
             inverse is distributional.
           smoothing: share of the transformed action; the rest is the policy's.
-          gain: how much the noise's part of the action is enlarged. An inverse model
-            fitted by least squares answers too small an action to what hardly
-            depends on it; `RealisedShare` measures what the sim makes of it.
           inverse_columns: the inverse model sees the first columns of a state; all
             where None.
         """
@@ -70,13 +66,8 @@ class ActionTransformer:
         self.forward = forward
         self.inverse = inverse
         self.noise = noise
-        if not 0 <= gain < np.inf:
-            raise BadValueError(f"gain is {gain}; it must not be negative")
         self.smoothing = smoothing
-        self.gain = gain
         self._columns = slice(inverse_columns)
-        self.wish: FloatArray | None = None
-        """(n, p) next states that the last call asked for; None without noise."""
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
         self._stream: NoiseStream | None = None
 
@@ -104,14 +95,8 @@ class ActionTransformer:
         seen = state[:, self._columns]
         if self.noise is None:
             return self.inverse.predict(seen, self.forward.predict(state, action))
-        stream = self._noise_of(len(state))
-        sample = self.forward.sample(state, action, stream)
-        self.wish = sample
-        found = self.inverse.predict(seen, sample)
-        if self.gain == 1:
-            return found
-        expected = self.inverse.predict(seen, self.forward.predict(state, action))
-        return expected + self.gain * (found - expected)
+        sample = self.forward.sample(state, action, self._noise_of(len(state)))
+        return self.inverse.predict(seen, sample)
 
     def _noise_of(self, n: int) -> NoiseStream:
         if self._stream is None or self._stream.n != n:

@@ -127,4 +127,4 @@ def test_places_are_recognised():
     assert names_a_place(f"see {ROOT}/README.md")
     assert names_a_place("see " + "/".join(["", "home", "someone", "notes"]))
     assert not names_a_place(f"see docs{ROOT}/README.md")
-    assert not names_a_place("see worlds/home/base and https://a.org/work/b")
+    assert not names_a_place("see worlds/home/base and https://a.org/home/b")

@@ -13,13 +13,12 @@ from robots.description import Description
 from robots.sole import sensor_shares
 from robots.urdf import urdf
 from terrain import Heightfield
+from worlds.bullet_gear import couple
 from worlds.bullet_ground import load_ground
 from worlds.servo_twin import ServoTwin
 from worlds.world import WorldOptions
 
 GRAVITY_M_S2 = 9.81
-_COUPLING_TORQUE_NM = 1e3
-_COUPLING_ERP = 0.2
 _OUT_OF_REACH_M = 100.0
 
 
@@ -107,24 +106,7 @@ class BulletRobot:
             **client,
         )
         for first, second in self._description.coupled:
-            gear = bullet.createConstraint(
-                parentBodyUniqueId=body,
-                parentLinkIndex=first,
-                childBodyUniqueId=body,
-                childLinkIndex=second,
-                jointType=bullet.JOINT_GEAR,
-                jointAxis=[0, 1, 0],
-                parentFramePosition=[0] * 3,
-                childFramePosition=[0] * 3,
-                **client,
-            )
-            bullet.changeConstraint(
-                gear,
-                gearRatio=-1,
-                maxForce=_COUPLING_TORQUE_NM,
-                erp=_COUPLING_ERP,
-                **client,
-            )
+            couple(bullet, client, body, first, second)
         return body
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robots.sole import contact_points
+from worlds.bullet_gear import couple
 from worlds.hidden_effects import Hidden
 from worlds.hidden_plant import HiddenPlant
 from worlds.hidden_silence import silent
@@ -16,7 +17,6 @@ from worlds.hidden_urdf import model_urdf
 if TYPE_CHECKING:
     import mujoco
 
-_COUPLING_TORQUE_NM, _COUPLING_ERP = 1e3, 0.2
 _CONTACT_DAMPING = 0.1
 """Of the critical one, where a compliance does not say otherwise."""
 
@@ -101,24 +101,7 @@ def _couple(
 ) -> None:
     """Gears between joints of one motor."""
     for first, second in plant.description.coupled if plant.description else ():
-        gear = bullet.createConstraint(
-            parentBodyUniqueId=body,
-            parentLinkIndex=links[first],
-            childBodyUniqueId=body,
-            childLinkIndex=links[second],
-            jointType=bullet.JOINT_GEAR,
-            jointAxis=[0, 1, 0],
-            parentFramePosition=[0] * 3,
-            childFramePosition=[0] * 3,
-            **client,
-        )
-        bullet.changeConstraint(
-            gear,
-            gearRatio=-1,
-            maxForce=_COUPLING_TORQUE_NM,
-            erp=_COUPLING_ERP,
-            **client,
-        )
+        couple(bullet, client, body, links[first], links[second])
 
 
 def _soften(

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     import mujoco
 
 GRAVITY_M_S2 = 9.81
-SOLE = "sole_"
 _GROUND_M = 3.0
 _BUMP_WAVELENGTH_M = 0.2
 

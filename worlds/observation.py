@@ -7,8 +7,6 @@ import numpy as np
 
 from groundwalk.arrays import BoolArray, FloatArray
 
-FEET_SENSORS = 8
-
 
 @dataclass(frozen=True, eq=False)
 class _PerRobot:

@@ -9,7 +9,8 @@ from diagnosis.baselines.naming import NORMAL_80, found_effect
 from diagnosis.fitting import Fit, fit_all
 from diagnosis.plant import Plant
 from diagnosis.predictor import Predictor
-from diagnosis.screening import Screen, signatures
+from diagnosis.screening import Screen
+from diagnosis.signatures import signatures
 from diagnosis.trace import Trace
 from diagnosis.usage import Usage
 from diagnosis.verdict import Recordings, Verdict

@@ -6,7 +6,8 @@ from made_up_traces import arm, recorded
 
 from diagnosis.effect import Placed
 from diagnosis.predictor import Channels, Predictor
-from diagnosis.screening import Screen, Signature, signatures
+from diagnosis.screening import Screen
+from diagnosis.signatures import Signature, signatures
 from diagnosis.trial_values import trial_values
 from diagnosis.usage import Usage
 

@@ -135,23 +135,6 @@ def test_smoothing_mixes_the_actions(full, inverse, noisy_real):
     np.testing.assert_array_equal(none, data.action)
 
 
-def test_gain_enlarges_what_the_noise_does(full, inverse, noisy_real):
-    data = noisy_real[1]
-    mean = transformed(ActionTransformer(full, inverse, 9 * LOW, 9 * HIGH), data)
-    once, thrice = (
-        transformed(
-            ActionTransformer(
-                full, inverse, 99 * LOW, 99 * HIGH, WhiteNoise(3), gain=gain
-            ),
-            data,
-        )
-        for gain in (1.0, 3.0)
-    )
-    np.testing.assert_allclose(thrice - mean, 3 * (once - mean), atol=1e-5)
-    with pytest.raises(BadValueError, match="gain"):
-        ActionTransformer(full, inverse, LOW, HIGH, gain=-1.0)
-
-
 def test_the_inverse_may_see_less_of_the_state(full, inverse, noisy_real):
     """One more column that only the forward model was fitted to."""
     seen, data = noisy_real
