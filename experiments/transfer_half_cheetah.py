@@ -32,7 +32,7 @@ SIZES = {
     "reduced": Size(
         seeds=3,
         noises=(0.2, 0.5),
-        timesteps=300_000,
+        timesteps=200_000,
         episodes=20,
         real_steps=10_000,
         sim_steps=20_000,

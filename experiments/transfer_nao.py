@@ -25,6 +25,8 @@ from experiments.walk_groundings import (
     NONE,
     ROBOT,
     SGAT,
+    UNEVEN,
+    GroundedSim,
     action_envelope,
 )
 from experiments.walk_raters import GroundedRater, RandomisedRater, Rater, RealRater
@@ -38,6 +40,8 @@ PLAN = (
     (START, 0),
     (SGAT, 1),
     (GAT, 1),
+    (UNEVEN, 1),
+    (UNEVEN, 2),
     (SGAT, 2),
     (GAT, 2),
     (ENSEMBLE, 1),
@@ -188,7 +192,7 @@ class _Study:
             rater: Rater = RandomisedRater(config.repeats)
             return self._tune(checkpoint, start, rater), {"real_walks": 0}
         if method == NONE:
-            rater = GroundedRater(None, 1)
+            rater = GroundedRater(GroundedSim(), 1)
             return self._tune(checkpoint, start, rater), {"real_walks": 0}
         return self._grounded(checkpoint, method, step)
 
@@ -218,7 +222,8 @@ class _Study:
         found = []
         for level in ENVELOPES_RAD:
             path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.pkl")
-            rater = GroundedRater(action_envelope(level), self._config.repeats)
+            envelope = GroundedSim(action_envelope(level))
+            rater = GroundedRater(envelope, self._config.repeats)
             gait = self._tune(path, gaits.get("start"), rater)
             score = self._try(gait, ENVELOPE_WALKS, OF_ENVELOPES)
             earned = score["speed_mean"] - 15 * score["falls"] / score["trials"]

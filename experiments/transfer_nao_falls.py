@@ -27,10 +27,11 @@ from experiments.transfer_nao_falls_page import (
     write_falls_page,
 )
 from experiments.trials import Trials
-from experiments.walk_data import GaitCloud, walk
+from experiments.walk_data import WALK, GaitCloud, walk
 from experiments.walk_groundings import (
     GROUNDINGS,
     ROBOT,
+    Walked,
     WalkModels,
     walk_in_sim,
 )
@@ -112,17 +113,18 @@ def _stages(
         return
     learned = GaitCloud().draw(start, config.real_walks, _seed(config, 2))
     explored = GaitCloud().draw(start, config.sim_walks, _seed(config, 3))
-    _, real = walk("real", description, learned, _seed(config, 4))
+    trials, real = walk("real", description, learned, _seed(config, 4))
     _, sim = walk("sim", description, explored, _seed(config, 5), EXPLORATION_RAD)
-    models = WalkModels(real, sim, _seed(config, 6))
+    walked = Walked(learned, trials.fell, WALK)
+    models = WalkModels(real, sim, _seed(config, 6), walked)
     if MEASURES not in done:
         _, unseen = walk("real", description, held_out, _seed(config, 8))
         yield MEASURES, measures_of(models, unseen, _seed(config, 9))
     for name in GROUNDINGS:
         if name not in done:
-            transformer = models.transformer(name)
+            grounded = models.grounded(name)
             seed = _seed(config, 7)
-            trials = walk_in_sim(transformer, held_out, config.rollouts, seed)
+            trials = walk_in_sim(grounded, held_out, config.rollouts, seed)
             yield name, _per_gait(trials, config.gaits)
 
 

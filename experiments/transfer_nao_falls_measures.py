@@ -66,7 +66,7 @@ def _actions(
     models: WalkModels, name: str, unseen: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, list[float]]:
     """What the transformer adds to the commands of each joint, over many states."""
-    transformer = models.transformer(name)
+    transformer = models.grounded(name).transformer
     assert transformer is not None
     rows = np.random.default_rng(seed).choice(unseen.n, min(ROWS, unseen.n), False)
     transformer.reset(np.random.SeedSequence(seed.entropy).spawn(len(rows)))

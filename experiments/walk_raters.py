@@ -11,9 +11,8 @@ import worlds
 from experiments.evaluation import MOST_AT_ONCE
 from experiments.reward import reward_cm_s
 from experiments.trials import TrialRules, Trials, walk_trials
-from experiments.walk_groundings import ROBOT, walk_in_sim
+from experiments.walk_groundings import ROBOT, GroundedSim, walk_in_sim
 from groundwalk.arrays import FloatArray
-from sgat.action_transformer import Transformer
 from terrain import Heightfield
 from worlds import WorldOptions
 
@@ -38,16 +37,16 @@ class GroundedRater:
     """The sim, grounded or as it is.
 
     Attributes:
-      transformer: of the commands; None for the sim as it is.
+      sim: that gaits walk in.
       repeats: walks of each gait.
     """
 
-    transformer: Transformer | None
+    sim: GroundedSim
     repeats: int
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
         """See `Rater`."""
-        trials = walk_in_sim(self.transformer, vectors, self.repeats, seed, RATED)
+        trials = walk_in_sim(self.sim, vectors, self.repeats, seed, RATED)
         rewards = _reward_cm_s(trials)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
 

@@ -1,6 +1,6 @@
 """A search for a gait, and the grounding steps that it may walk in."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from experiments.walk_data import ON_COURSE, GaitCloud, on_lumps, walk
 from experiments.walk_groundings import (
     GROUNDINGS,
     ROBOT,
+    Walked,
     WalkModels,
 )
 from experiments.walk_raters import GroundedRater, Rater
@@ -21,6 +22,9 @@ from walk_engine import Gait
 
 EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
 """Noise on the commands of the sim's walks: it shows what an action does."""
+
+RATED_START_M = 0.1
+"""A search's walks are short: they shall not spend half of their time on the flat."""
 
 
 @dataclass(frozen=True)
@@ -90,29 +94,34 @@ class Grounding:
         self._before = before
 
     @cached_property
-    def data(self) -> tuple[Transitions, Transitions]:
-        """Transitions of the real world and of the sim so far."""
+    def data(self) -> tuple[Transitions, Transitions, Walked]:
+        """Transitions of the real world and of the sim so far, and who fell."""
         description = robots.get(ROBOT)
         of_real, of_sim = (
             self._cloud.draw(self._around, count, seed)
             for count, seed in zip(self._walks, self._seeds, strict=False)
         )
-        _, real = walk("real", description, of_real, self._seeds[2], rules=ON_COURSE)
-        real = on_lumps(real)
+        trials, real = walk(
+            "real", description, of_real, self._seeds[2], rules=ON_COURSE
+        )
+        real, walked = on_lumps(real), Walked(of_real, trials.fell, ON_COURSE)
         _, sim = walk("sim", description, of_sim, self._seeds[3], EXPLORATION_RAD)
         if self._before is None:
-            return real, sim
-        return self._before.data[0].joined(real), self._before.data[1].joined(sim)
+            return real, sim, walked
+        real_before, sim_before, _ = self._before.data
+        return real_before.joined(real), sim_before.joined(sim), walked
 
     @cached_property
     def models(self) -> WalkModels:
         """Fitted to all data so far."""
-        return WalkModels(*self.data, self._seeds[4])
+        real, sim, walked = self.data
+        return WalkModels(real, sim, self._seeds[4], walked)
 
     def rater(self, grounding: str, repeats: int) -> GroundedRater:
         """The sim behind one of `GROUNDINGS`."""
         assert grounding in GROUNDINGS
-        return GroundedRater(self.models.transformer(grounding), repeats)
+        sim = self.models.grounded(grounding)
+        return GroundedRater(replace(sim, start_m=RATED_START_M), repeats)
 
 
 def cloud_around(gait: Gait) -> GaitCloud:

@@ -8,7 +8,7 @@ from experiments.transfer_nao import TransferNao, main
 from experiments.transfer_nao_figure import cells_figure
 from experiments.transfer_nao_page import claims_of, more_falls_p, table_of
 from experiments.walk_data import FLAT_TICKS, on_lumps
-from experiments.walk_groundings import ENSEMBLE, GAT, SGAT
+from experiments.walk_groundings import GAT, SGAT, UNEVEN
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transitions import Transitions
 
@@ -53,12 +53,12 @@ def test_fishers_test_counts_tables():
 @pytest.mark.parametrize(
     ("cells", "hold"),
     [
-        ([cell(SGAT, 2, 18.5, 3), cell(GAT, 2, 20, 15), cell(ENSEMBLE, 2, 20, 2)],
-         [True, True, True]),
-        ([cell(SGAT, 2, 17.5, 3), cell(GAT, 2, 20, 5), cell(ENSEMBLE, 2, 20, 20)],
-         [False, False, False]),
-        ([cell(SGAT, 2, 19, 5), cell(GAT, 2, 20, 20), cell(ENSEMBLE, 2, 19.1, 5)],
-         [False, True, True]),
+        ([cell(SGAT, 2, 18.5, 3), cell(GAT, 2, 20, 15), cell(UNEVEN, 2, 20, 2)],
+         [True, True, True, True]),
+        ([cell(SGAT, 2, 17.5, 3), cell(GAT, 2, 20, 5), cell(UNEVEN, 2, 20, 20)],
+         [False, False, False, False]),
+        ([cell(SGAT, 2, 19, 5), cell(GAT, 2, 20, 20), cell(UNEVEN, 2, 19.1, 5)],
+         [False, False, True, True]),
     ],
 )  # fmt: skip
 def test_claims_hold_or_do_not(cells, hold):

@@ -13,7 +13,7 @@ from experiments.transfer_nao_falls_page import (
     prediction_rows,
 )
 from experiments.walk_data import GaitCloud
-from experiments.walk_groundings import ENSEMBLE, GAT, GROUNDINGS, NONE, SGAT
+from experiments.walk_groundings import GAT, GROUNDINGS, NONE, SGAT, UNEVEN
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 from walk_engine.gait import NAMES
@@ -54,8 +54,8 @@ def test_predictions_are_held_against_real():
     assert by_name[SGAT]["correlation"] == pytest.approx(1.0)
     assert by_name[SGAT]["rmse"] == 0.0
     assert by_name[GAT]["rmse"] == pytest.approx(np.sqrt(0.02 / 3))
-    assert by_name[ENSEMBLE]["correlation"] is None
-    assert by_name[ENSEMBLE]["predicted_mean"] == 0.0
+    assert by_name[UNEVEN]["correlation"] is None
+    assert by_name[UNEVEN]["predicted_mean"] == 0.0
     assert json.dumps(rows)
 
 

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from experiments.walk_groundings import GroundedSim
 from experiments.walk_raters import (
     GroundedRater,
     RandomisedRater,
@@ -17,7 +18,7 @@ def vectors(*speeds_m_s):
 
 @pytest.mark.slow
 def test_in_the_plain_sim_a_faster_gait_earns_more():
-    slow, fast = GroundedRater(None, 1)(vectors(0.1, 0.2), SEED)
+    slow, fast = GroundedRater(GroundedSim(), 1)(vectors(0.1, 0.2), SEED)
     # cm/s of a walk that starts from rest, without a fall
     assert slow == pytest.approx(10, abs=1.5)
     assert fast == pytest.approx(18.5, abs=2.5)
