@@ -8,9 +8,13 @@ READY := $(VENV)/ready
 RUN := runs/walk
 RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
-STUDIES := toy cliff inverted-pendulum nao-falls
+STUDIES := toy cliff inverted-pendulum half-cheetah nao-falls
+# Recordings of real robots, where they are at hand, and whose they are.
+DATA := ../shared/data
+REAL := so101 emps go2
 
-.PHONY: help env walk test lint results results-walk results-nao $(STUDIES:%=results-%) bench
+.PHONY: help env walk test lint results results-walk results-nao $(STUDIES:%=results-%) \
+	results-diagnosis $(REAL:%=results-diagnosis-%) bench
 
 help:
 	@echo "make walk    tune a gait in simulation and try it in both worlds (into runs/)"
@@ -36,7 +40,7 @@ lint: $(READY)
 	$(VENV)/bin/lint-imports --no-logo
 
 # Writes every number and picture of docs/results from new runs, or those of one of them.
-results: results-walk results-nao $(STUDIES:%=results-%)
+results: results-walk results-nao $(STUDIES:%=results-%) results-diagnosis
 
 results-walk: $(READY)
 	rm -rf $(RESULTS)/walk
@@ -60,6 +64,19 @@ results-nao: $(READY)
 	cp $(RESULTS)/nao/result.md docs/results/nao.md
 	cp $(RESULTS)/nao/result.json docs/results/nao.json
 	cp $(RESULTS)/nao/transfer_nao.png docs/results
+
+results-diagnosis: $(REAL:%=results-diagnosis-%)
+
+$(REAL:%=results-diagnosis-%): results-diagnosis-%: $(READY)
+ifneq ($(wildcard $(DATA)),)
+	rm -rf $(RESULTS)/diagnosis/$*
+	$(VENV)/bin/groundwalk real-robots $* --data $(DATA) --out $(RESULTS)/diagnosis/$*
+	mkdir -p docs/results
+	cp $(RESULTS)/diagnosis/$*/result.md docs/results/diagnosis_$*.md
+	cp $(RESULTS)/diagnosis/$*/diagnosis.json docs/results/diagnosis_$*.json
+else
+	@echo "skipped: there are no recordings of real robots in $(DATA)"
+endif
 
 bench: $(READY)
 	$(VENV)/bin/python -m benchmarks

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.batch_friction import BatchFriction
+from diagnosis.batch_gaps import BatchGaps
 from diagnosis.batch_servos import BatchServos
 from diagnosis.elastic import ElasticJoints
 from diagnosis.outside_forces import OutsideForces
@@ -45,7 +46,8 @@ class BatchLaws:
         self._friction = BatchFriction(batch, plant, joints, step_s)
         # most variants have none of these laws: they cost nothing then
         self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
-        self._gaps = bool(joints["gap_rad"].any())
+        loose = bool(joints["gap_rad"].any())
+        self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
         self._setpoint: FloatArray | None = None
         # what is bound later than the start would know of the start a step late
         self._force = self._bind("actuator_force")
@@ -62,6 +64,8 @@ class BatchLaws:
         self._setpoint = None
         if asked_rad is not None:
             self._setpoint = asked_rad - self.joints["offset_rad"]
+        if self._gaps is not None:
+            self._gaps.begin()
         self._outside.begin()
         is_first = self._elastic is None
         law, inertia = self._servos.law, self._rotor_kg_m2
@@ -84,8 +88,10 @@ class BatchLaws:
         position, velocity = self.joint_state()
         if self._friction.varies:
             self._friction.follow(velocity, self._force[:, self._actuators])
-        if self._gaps:
-            asked_rad = self._through_gap(asked_rad, position, velocity)
+        if self._gaps is not None:
+            asked_rad, apart = self._gaps.through(asked_rad, position)
+            free_nm = np.where(apart, self._gaps.damping() * velocity, 0.0)
+            self._applied[:, self._dofs] = free_nm
         if self._elastic is not None:
             asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
         self._ctrl[:, self._actuators] = asked_rad
@@ -102,6 +108,12 @@ class BatchLaws:
             driven_nm = self._force[:, self._actuators] + torque_nm
             self._friction.follow(velocity, driven_nm)
         self._applied[:, self._dofs] = torque_nm
+
+    def add_to_joints(self, torque_nm: FloatArray) -> None:
+        """Apply (n R, j) torques beside the servos' own, after `servo`."""
+        loose = self._gaps is not None
+        already = self._applied[:, self._dofs] if loose else 0.0
+        self._applied[:, self._dofs] = already + torque_nm
 
     def push_bodies(self, time_s: FloatArray) -> None:
         """Apply forces from outside at (R,) times."""
@@ -129,18 +141,6 @@ class BatchLaws:
         change = np.minimum(np.maximum(asked_rad - self._setpoint, -most), most)
         self._setpoint = self._setpoint + change
         return self._setpoint
-
-    def _through_gap(
-        self, asked_rad: FloatArray, position: FloatArray, velocity: FloatArray
-    ) -> FloatArray:
-        """Targets that give the torque of the error less the gap; none within it."""
-        half = self.joints["gap_rad"] / 2
-        error = asked_rad - position
-        within = (np.abs(error) < half) & (half > 0)
-        damping = self._servos.law["kd"] + self._servos.law["emf"]
-        self._applied[:, self._dofs] = np.where(within, damping * velocity, 0.0)
-        felt = np.sign(error) * np.maximum(np.abs(error) - half, 0.0)
-        return np.asarray(position + felt)
 
     def _rotors(self) -> FloatArray:
         """Armatures; those of elastic joints turn beside their links, not with them.

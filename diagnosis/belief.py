@@ -3,6 +3,7 @@
 import numpy as np
 
 from diagnosis.effect import Placed
+from diagnosis.library import EFFECTS
 from diagnosis.plant import Plant
 from diagnosis.search_result import Found
 from diagnosis.verdict import EffectAt
@@ -57,12 +58,18 @@ def alternatives(found: Found) -> tuple[tuple[EffectAt, ...], ...]:
 
 def probability(found: Found, placed: Placed) -> float:
     """That an effect of the winner is right, from the gap to models without it."""
+    same = {placed.key, *_containing(placed)}
     without = [
         found.worse(other)
         for size, models in found.best.items()
         for other in models
-        if size <= found.chosen and placed.key not in other.keys
+        if size <= found.chosen and not same & other.keys
     ]
     gap = max(min(without, default=np.inf), 0.0)
     odds = OFFSET + SLOPE * np.log1p(gap / TIED_NATS)
     return float(1 / (1 + np.exp(-odds)))
+
+
+def _containing(placed: Placed) -> set[str]:
+    """Keys of effects that are this one and something more: no other answer."""
+    return {grown.key for kind in EFFECTS.values() for grown in kind.grown_from(placed)}

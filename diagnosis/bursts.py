@@ -4,6 +4,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from diagnosis.predictor import Predictor
+from diagnosis.stretches import stretches
 from groundwalk.arrays import BoolArray, FloatArray
 
 BIN_S = 0.05
@@ -18,6 +19,10 @@ CHANCE = 1e-3
 
 REACTION_S = 0.03
 """A push is seen a little after it began."""
+
+LEAD_S = 1.0
+"""What pushes all the time began so long before and ends so long after: a fit must not
+find that its beginning matters."""
 
 MOST = 3
 
@@ -55,7 +60,7 @@ def _strongest(
         by_chance = chi2.isf(CHANCE / len(scored), np.maximum(scored, 1))
         least = max(STANDS_OUT * np.median(energy), LEAST * scored.mean())
         limit = np.maximum(by_chance, least)
-        for first, last in _stretches(energy > limit):
+        for first, last in stretches(energy > limit):
             start_s = float(trace.time_s[0] + first * BIN_S)
             end_s = float(trace.time_s[0] + last * BIN_S)
             found.append((float(energy[first:last].sum()), start_s, end_s))
@@ -72,12 +77,4 @@ def push_intervals(
         (max(start - REACTION_S, 0.0), max(end - start - BIN_S, BIN_S))
         for start, end in bursts(predictor, residual)
     ]
-    return [(0.0, float(last_s) + 1.0), *short]
-
-
-def _stretches(flags: BoolArray) -> list[tuple[int, int]]:
-    """First and one past the last index of stretches of flags, gaps of one ignored."""
-    closed = flags.copy()
-    closed[1:-1] |= flags[:-2] & flags[2:]
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], closed.astype(int), [0]])))
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+    return [(-LEAD_S, float(last_s) + 2 * LEAD_S), *short]

@@ -17,6 +17,9 @@ LEAST_NOISE_RAD = 3e-4
 
 LEAST_RATE_RAD_S, LEAST_NOISE_M = 1e-3, 2e-4
 
+LEAST_TORQUE = 0.02
+"""Of the torques that are measured: so well are a motor's constants known."""
+
 
 @dataclass(frozen=True, eq=False)
 class Channels:
@@ -49,7 +52,7 @@ def channels_of(plant: Plant, traces: Sequence[Trace]) -> Channels:
     least = [LEAST_NOISE_RAD] * len(names)
     if all(trace.torque_nm is not None and not trace.unheld for trace in traces):
         names += [f"torque.{joint}" for joint in plant.joints]
-        least += [0.0] * len(plant.joints)
+        least += [LEAST_TORQUE * size for size in _torques(traces)]
     if all(trace.gyroscope_rad_s is not None for trace in traces):
         names += [f"gyroscope.{axis}" for axis in "xyz"]
         least += [LEAST_RATE_RAD_S] * 3
@@ -61,6 +64,12 @@ def channels_of(plant: Plant, traces: Sequence[Trace]) -> Channels:
     found = np.array([_noise(trace, bare) for trace in traces])
     noise = np.maximum(np.median(found, axis=0), least)
     return Channels(tuple(names), np.where(noise > 0, noise, 1.0))
+
+
+def _torques(traces: Sequence[Trace]) -> FloatArray:
+    """(j,) rms of the measured torques."""
+    every = np.concatenate([t.torque_nm for t in traces if t.torque_nm is not None])
+    return np.asarray(np.sqrt(np.nanmean(every**2, axis=0)))
 
 
 def _noise(trace: Trace, channels: Channels) -> FloatArray:

@@ -8,7 +8,7 @@ from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model, Predictor
 from diagnosis.search_result import Judged, keys_of
 
-MOST = 8
+MOST = 4
 
 
 def wrong_places(predictor: Predictor, model: Model) -> Model | None:

@@ -1,57 +1,40 @@
 """From recordings to a verdict."""
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.answer import effects_of, kind_of
 from diagnosis.audit import audit
 from diagnosis.audit_result import Audit
-from diagnosis.belief import alternatives, confusable, probability, twins
+from diagnosis.belief import alternatives
 from diagnosis.channels import channels_of
-from diagnosis.effect import Placed
-from diagnosis.estimates import estimates
+from diagnosis.evidence import Evidence
 from diagnosis.final_test import FinalTest
-from diagnosis.fitting import Fit as FittedModel
 from diagnosis.fitting import fit_all
-from diagnosis.library import effect
 from diagnosis.next_experiment import next_experiment
 from diagnosis.plant import Plant
 from diagnosis.power import smallest_detectable
 from diagnosis.predictor import Model, Predictor
+from diagnosis.preparing import prepared
+from diagnosis.proven import proven
+from diagnosis.reference import said_of, standing_of, well_of
 from diagnosis.regimes import mismatch
 from diagnosis.search import Search
 from diagnosis.search_result import Found as Searched
 from diagnosis.search_result import Rules
-from diagnosis.shortening import shortened
-from diagnosis.split import Split, split
+from diagnosis.simpler import simpler
+from diagnosis.torque_drive import DriveBy
 from diagnosis.trace import Trace
 from diagnosis.unexplained import unexplained
-from diagnosis.verdict import (
-    EffectAt,
-    Found,
-    Recordings,
-    Verdict,
-    VerdictKind,
-    When,
-)
+from diagnosis.verdict import Amount, Verdict, VerdictKind
 from diagnosis.widespread import widespread
 from groundwalk.errors import BadRecordingError
 
-TOO_SHORT = (
-    "the recordings are too short: a part for fitting, selecting or testing ends "
-    "before its start state is forgotten"
-)
-
-FIT_S, SELECT_S, TEST_S = 40.0, 20.0, 40.0
-"""So much of the recordings is replayed."""
-
-LEAST_CLOSED = 0.95
-"""A model that takes away less of the energy above the noise is not all there is ..."""
-
-MOST_LEFT = 0.5
-"""... unless what it leaves is below so large a part of the noise's own energy."""
+MORE_ON_FEET = 4
+"""More effects are fitted alone: contacts make guesses at first order worth less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +48,7 @@ class Diagnosis:
       test: predicts the recordings that were kept for the end, calibrated at the model.
       nominal: the same, calibrated at the plant alone.
       audit: of the recordings.
+      given: effects that were there when all was well; none without a reference.
     """
 
     verdict: Verdict
@@ -73,6 +57,7 @@ class Diagnosis:
     test: Predictor
     nominal: Predictor
     audit: Audit
+    given: Model = ()
 
 
 def diagnose(
@@ -81,6 +66,8 @@ def diagnose(
     seed: np.random.SeedSequence,
     rules: Rules | None = None,
     threads: int = 1,
+    reference: Sequence[Trace] = (),
+    drive: DriveBy = "servos",
 ) -> Diagnosis:
     """Find out what physics a plant lacks.
 
@@ -90,6 +77,8 @@ def diagnose(
       seed: of the flexible regression.
       rules: of the search; the usual ones where None.
       threads: of the replays.
+      reference: recordings of the robot when all was well; what they show is no effect.
+      drive: what moves the joints in replays where both are known.
 
     Raises:
       BadRecordingError: nothing can be said from these recordings.
@@ -98,118 +87,68 @@ def diagnose(
     audited = audit(traces, plant)
     if audited.refused:
         raise BadRecordingError(audited.refused[0])
-    parts = _affordable(split(traces))
-    every = [*parts.fit, *parts.select, *parts.test]
-    whole = Predictor(plant, every, channels_of(plant, traces), threads=threads)
-    whole.calibrate()
-    learned = len(parts.fit) + len(parts.select)
-    fit = whole.part(0, len(parts.fit))
-    select = whole.part(len(parts.fit), learned)
-    nominal = whole.part(0, learned), whole.part(learned, len(every))
-    if not all(part.scored.any() for part in (fit, select, nominal[1])):
-        raise BadRecordingError(TOO_SHORT)
-    search = Search(fit, select, rules)
-    searched = search.run()
-    if _kind(searched, plant, audited) == "unknown":
-        searched = widespread(search, searched)
-    if searched.winner:
-        whole.calibrate(searched.winner.model)
-    both, test = whole.part(0, learned), whole.part(learned, len(every))
-    refitted = fit_all(both, [searched.winner.model])[0] if searched.winner else None
+    ready = prepared(plant, traces, drive)
+    traces, reference = ready.traces, prepared(plant, reference, drive).traces
+    channels = channels_of(plant, [*traces, *reference])
+    standing = (
+        standing_of(plant, reference, channels, rules, threads) if reference else None
+    )
+    data = Evidence.of(plant, traces, channels, standing, threads)
+    well = well_of(plant, reference, channels, threads) if reference else ()
+    search = Search(data.fit, data.select, _rules(plant, rules), well)
+    searched = _searched(search, audited)
+    kind, winner = kind_of(searched, plant, audited), searched.winner
+    both, test = data.calibrated(winner.model if winner else ())
+    refitted = fit_all(both, [winner.model])[0] if winner else None
     model = refitted.model if refitted else ()
-    kind = _kind(searched, plant, audited)
-    final = FinalTest(nominal, both, test, searched, model, seed)
-    wrong = nominal[0].residuals([()])[0]
+    wrong = data.learned.residuals([()])[0]
     left = refitted.residual if refitted else wrong
-    share = 1 - searched.closed(searched.winner) if searched.winner else 1.0
-    # signatures are of the fitting data, gains are asked for on the selection data
-    gain = search.least_gain * fit.scored.sum() / select.scored.sum()
+    share = 1 - searched.closed(winner) if winner else 1.0
+    final = FinalTest((data.learned, data.test), both, test, searched, model, seed)
     verdict = Verdict(
         kind=kind,
-        effects=_effects(both, searched, refitted) if kind != "none" else (),
+        effects=effects_of(both, searched, refitted) if kind != "none" else (),
         alternatives=alternatives(searched),
-        smallest_detectable=(
-            smallest_detectable(fit, search.signatures, gain)
-            if kind in ("none", "not_identifiable")
-            else {}
-        ),
+        smallest_detectable=_detectable(search, kind),
         unexplained=unexplained(both, left, share) if kind == "unknown" else None,
-        limits=audited.limits,
-        mismatch=mismatch(nominal[0], wrong),
+        limits=(*audited.limits, *ready.said, *(said_of(standing) if standing else ())),
+        mismatch=mismatch(data.learned, wrong),
+        pulses=ready.pulses,
         fit=final.fit(),
         next_experiment=next_experiment(plant, searched, traces),
-        recordings=Recordings(
-            _names(parts.fit), _names(parts.select), _names(parts.test)
-        ),
+        recordings=data.recordings(),
         seconds=time.monotonic() - begun_s,
     )
-    return Diagnosis(verdict, model, plant, test, nominal[1], audited)
+    given = standing.model if standing else ()
+    return Diagnosis(verdict, model, plant, test, data.test, audited, given)
 
 
-def _affordable(parts: Split) -> Split:
-    """The parts, cut down to what the search can replay some hundred times."""
-    return Split(
-        *(
-            tuple(shortened(some, longest_s))
-            for some, longest_s in (
-                (parts.fit, FIT_S),
-                (parts.select, SELECT_S),
-                (parts.test, TEST_S),
-            )
-        )
+def _rules(plant: Plant, rules: Rules | None) -> Rules:
+    rules = rules or Rules()
+    if plant.base == "fixed":
+        return rules
+    return replace(
+        rules,
+        singles=rules.singles + MORE_ON_FEET,
+        others=rules.others + MORE_ON_FEET,
     )
 
 
-def _names(traces: Sequence[Trace]) -> tuple[str, ...]:
-    return tuple(trace.name for trace in traces)
+def _searched(search: Search, audited: Audit) -> Searched:
+    """What single effects explain, or whole kinds of them if these do not."""
+    plant = search.fit.plant
+    searched = proven(search, simpler(search, search.run()))
+    # on feet, models of whole kinds would take an hour
+    if plant.base == "fixed" and kind_of(searched, plant, audited) == "unknown":
+        return widespread(search, searched)
+    return searched
 
 
-def _kind(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
-    energy = searched.winner.selected if searched.winner else searched.nothing
-    left = energy - searched.floor
-    closed = searched.closed(searched.winner) if searched.winner else 0.0
-    if left > MOST_LEFT * searched.floor and closed < LEAST_CLOSED:
-        return "unknown"
-    if searched.winner:
-        return "effects"
-    still = [joint for joint in plant.joints if joint not in audited.moving]
-    return "not_identifiable" if still else "none"
-
-
-def _effects(
-    both: Predictor, searched: Searched, refitted: FittedModel | None
-) -> tuple[Found, ...]:
-    if refitted is None or searched.winner is None:
-        return ()
-    values = estimates(both, refitted)
-    found = [
-        Found(
-            name=placed.effect,
-            place=placed.place,
-            parameters=own,
-            probability=probability(searched, placed),
-            confusable_with=_distinct(
-                confusable(searched, placed) + twins(both.plant, placed)
-            ),
-            when=_when(both, placed),
-            native=effect(placed.effect).native,
-        )
-        for placed, own in zip(refitted.model, values, strict=True)
-    ]
-    return tuple(sorted(found, key=lambda one: -one.probability))
-
-
-def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
-    return tuple(dict.fromkeys(effects))
-
-
-def _when(both: Predictor, placed: Placed) -> When:
-    first_s = min(trace.time_s[0] for trace in both.traces)
-    last_s = max(trace.time_s[-1] for trace in both.traces)
-    if placed.effect == "servo_fade":
-        return When("drift", float(first_s), float(last_s))
-    if placed.effect == "external_force":
-        start_s, duration_s = placed.values[3:]
-        if start_s > first_s or start_s + duration_s < last_s:
-            return When("burst", start_s, start_s + duration_s)
-    return When()
+def _detectable(search: Search, kind: VerdictKind) -> Mapping[str, Amount]:
+    if kind not in ("none", "not_identifiable"):
+        return {}
+    # signatures are of the fitting data, gains are asked for on the selection data
+    share = search.fit.scored.sum() / search.select.scored.sum()
+    return smallest_detectable(
+        search.fit, search.signatures, search.least_gain * float(share)
+    )

@@ -62,10 +62,23 @@ class Drive:
         traces = [run.trace for run in runs]
         self._commands = [_held(trace, _command_rad(trace)) for trace in traces]
         self._torques = [_held(trace, _torque_nm(trace)) for trace in traces]
+        self._added = [_held(trace, trace.added_nm) for trace in traces]
+        self._variants, self._joints = len(delay_s), traces[0].position_rad.shape[1]
 
     def at(self, now_s: FloatArray) -> tuple[FloatArray | None, FloatArray | None]:
         """(B, n R, j) position targets and torques of (B, R) steps; None for none."""
         return self._mean(self._commands, now_s), self._mean(self._torques, now_s)
+
+    def added(self, now_s: FloatArray) -> FloatArray | None:
+        """(B, n R, j) torques beside the servos' own in (B, R) steps; None for none."""
+        if not any(self._added):
+            return None
+        nothing = np.zeros((len(now_s), self._joints))
+        columns = [
+            nothing if one is None else one.mean(now_s[:, k], self._step_s)
+            for k, one in enumerate(self._added)
+        ]
+        return np.tile(np.stack(columns, axis=1), (1, self._variants, 1))
 
     def _mean(
         self, held: Sequence[Held | None], now_s: FloatArray

@@ -78,3 +78,11 @@ class Effect(ABC):
 
         Effects are applied one after another; each adds to what is there.
         """
+
+    def grown_from(self, other: Placed) -> tuple[Placed, ...]:
+        """Where to begin if another effect at the same place was found to help.
+
+        Effects that contain a simpler one say so; a fit that begins anywhere else may
+        never get there.
+        """
+        return ()

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from diagnosis.block_variance import block_variance
 from diagnosis.fitting import Fit
 from diagnosis.predictor import Predictor
 from diagnosis.verdict import Estimate
@@ -44,16 +45,15 @@ def standard_errors(predictor: Predictor, fit: Fit) -> FloatArray:
     """(p,) of the values' coordinates.
 
     The sandwich of White 1980 with blocks: residuals are neither white nor of the
-    variance that the sensors' noise has, as no sim is exact. What is not in the data,
+    variance that the sensors' noise has, as no sim is exact; blocks that are alike are
+    joined. What is not in the data,
     a common error of all sims, is added as a part of each value.
     """
     jacobian, residual = fit.jacobian, fit.residual
     known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
     bread = np.linalg.inv(known)
-    scores = jacobian * residual[:, None]
-    sums = np.zeros((int(predictor.block.max()) + 1, len(bread)))
-    np.add.at(sums, predictor.block, scores)
-    variance = np.diag(bread @ (sums.T @ sums) @ bread)
+    influence = (jacobian * residual[:, None]) @ bread
+    variance = block_variance(influence, predictor.block)
     white = np.diag(bread)
     systematic = [
         SYSTEMATIC if p.logarithmic else SYSTEMATIC * abs(c - _neutral(fit, i))

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -10,10 +11,13 @@ from diagnosis.library import effect
 from diagnosis.lockstep import lockstep
 from diagnosis.plant import Plant
 from diagnosis.predictor import Model, Predictor
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
 
 STEP = 0.02
 """Of the differences, as a part of a parameter's scale."""
+
+HOLD = 1e-3
+"""Values that no data show stay where they are: steps would be short without it."""
 
 MOST_STEPS = 8
 TOLERANCE = 1e-4
@@ -107,31 +111,76 @@ def _scale(parameter: Parameter) -> float:
     return size
 
 
+@dataclass(frozen=True, eq=False)
+class Nudges:
+    """Which values are nudged together, to find a Jacobian by differences.
+
+    Attributes:
+      groups: numbers of the values of each nudge.
+      rows: for each value the rows of the residual that are its own; all where None.
+    """
+
+    groups: Sequence[Sequence[int]]
+    rows: Sequence[BoolArray] | None = None
+
+    @classmethod
+    def apart(cls, predictor: Predictor, model: Model) -> "Nudges":
+        """Every value by itself."""
+        count = sum(len(placed.values) for placed in model)
+        return cls([[i] for i in range(count)])
+
+    def steps(self, x: FloatArray, high: FloatArray) -> FloatArray:
+        """(p,) how far each value is nudged, never out of its bounds."""
+        return np.where(x + STEP <= high, STEP, -STEP)
+
+    def nudged(self, x: FloatArray, steps: FloatArray) -> list[FloatArray]:
+        """The points of the differences, one a group."""
+        return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
+
+    def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
+        """(N, p) from what was seen (1 + groups, N) at a point and at its nudges."""
+        found = np.zeros((seen.shape[1], len(steps)))
+        for own, other in zip(self.groups, seen[1:], strict=True):
+            for i in own:
+                slope = (other - seen[0]) / steps[i]
+                shown = True if self.rows is None else self.rows[i]
+                found[:, i] = np.where(shown, slope, 0.0)
+        return found
+
+
 def fit_all(
-    predictor: Predictor, starts: Sequence[Model], steps: int = MOST_STEPS
+    predictor: Predictor,
+    starts: Sequence[Model],
+    steps: int = MOST_STEPS,
+    nudges_of: Callable[[Predictor, Model], Nudges] = Nudges.apart,
 ) -> list[Fit]:
-    """Fit the values of several models, each from its own start."""
+    """Fit the values of several models, each from its own start.
+
+    Args:
+      predictor: of the data.
+      starts: models with values to begin with.
+      steps: most steps of a fit.
+      nudges_of: which values of a model are nudged together.
+    """
 
     def answer(questions: list[list[Model]]) -> list[FloatArray]:
         every = [model for question in questions for model in question]
-        residuals = predictor.residuals(every)
         ends = np.cumsum([len(question) for question in questions])
-        return np.split(residuals, ends[:-1])
+        return np.split(predictor.residuals(every), ends[:-1])
 
-    tasks = [_task(predictor.plant, start, steps) for start in starts]
+    tasks = [
+        partial(
+            _fit,
+            Coordinates(predictor.plant, start),
+            nudges_of(predictor, start),
+            steps,
+        )
+        for start in starts
+    ]
     return lockstep(tasks, answer) if tasks else []
 
 
-def _task(plant: Plant, start: Model, steps: int) -> Callable[[Ask], Fit]:
-    coordinates = Coordinates(plant, start)
-
-    def run(ask: Ask) -> Fit:
-        return _fit(coordinates, start, steps, ask)
-
-    return run
-
-
-def _fit(coordinates: Coordinates, start: Model, steps: int, ask: Ask) -> Fit:
+def _fit(coordinates: Coordinates, nudges: Nudges, steps: int, ask: Ask) -> Fit:
     from scipy.optimize import least_squares
 
     low, high = coordinates.bounds()
@@ -140,20 +189,18 @@ def _fit(coordinates: Coordinates, start: Model, steps: int, ask: Ask) -> Fit:
     def both(x: FloatArray) -> tuple[FloatArray, FloatArray]:
         key = x.tobytes()
         if key not in known:
-            nudges = np.where(x + STEP <= high, STEP, -STEP)
-            nudged = [
-                x + nudge * row
-                for nudge, row in zip(nudges, np.eye(len(x)), strict=True)
-            ]
-            rows = ask([coordinates.model_at(each) for each in (x, *nudged)])
-            known[key] = rows[0], ((rows[1:] - rows[0]) / nudges[:, None]).T
+            far = nudges.steps(x, high)
+            points = (x, *nudges.nudged(x, far))
+            seen = ask([coordinates.model_at(point) for point in points])
+            known[key] = seen[0], nudges.jacobian(seen, far)
         return known[key]
 
-    x = np.clip(coordinates.of(start), low + 1e-9, high - 1e-9)
+    x = np.clip(coordinates.of(coordinates.model), low + 1e-9, high - 1e-9)
+    held = HOLD * np.eye(len(x))
     found = least_squares(
-        lambda x: both(x)[0],
+        lambda now: np.concatenate([both(now)[0], held @ (now - x)]),
         x,
-        jac=lambda x: both(x)[1],
+        jac=lambda now: np.vstack([both(now)[1], held]),
         bounds=(low, high),
         max_nfev=steps,
         ftol=TOLERANCE,

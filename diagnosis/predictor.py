@@ -7,9 +7,11 @@ import numpy as np
 from diagnosis.channels import Channels, channels_of, measured_of, stacked
 from diagnosis.effect import Placed
 from diagnosis.library import effect
+from diagnosis.limbs import Limb, limbs_of
 from diagnosis.plant import Plant
 from diagnosis.replay import STEP_S, replay
-from diagnosis.run import runs_of, window_s
+from diagnosis.run import is_left_over, runs_of, window_s
+from diagnosis.standing import Standing, blocks_of
 from diagnosis.start_state import (
     POSITION_SPREAD_RAD,
     POSITION_STEP_RAD,
@@ -52,6 +54,7 @@ class Predictor:
         channels: Channels | None = None,
         step_s: float = STEP_S,
         threads: int = 1,
+        standing: Standing | None = None,
     ) -> None:
         """Find the states that the traces start from.
 
@@ -61,10 +64,12 @@ class Predictor:
           channels: with their noise; measured on the traces where None.
           step_s: of the coarse replays.
           threads: of every batch.
+          standing: what is wrong when all is well; nothing where None.
         """
         self.plant, self.traces = plant, list(traces)
         self.step_s, self._threads = step_s, threads
         self.channels = channels or channels_of(plant, traces)
+        self._limbs = limbs_of(plant)
         per_trace = [runs_of(plant, trace) for trace in traces]
         self._runs = [run for runs in per_trace for run in runs]
         self._first_run = np.cumsum([0, *(len(runs) for runs in per_trace)]).tolist()
@@ -77,6 +82,8 @@ class Predictor:
         self._correction = np.zeros((sum(rows), c))
         self._ends = np.cumsum(rows).tolist()
         self._doubt: StartDoubt | None = None
+        self._standing = standing
+        self.blocks = blocks_of(self._runs, self._scored.any(axis=1))
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
         self.scored = self._scored.reshape(-1)
@@ -97,6 +104,7 @@ class Predictor:
             self.channels,
             self.step_s,
             self._threads,
+            self._standing,
         )
         ends = [0, *self._ends]
         some._correction = self._correction[ends[first] : ends[last]]
@@ -114,13 +122,16 @@ class Predictor:
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
         )
         self._correction = 2 * finer - fine - coarse
-        self._doubt = self._start_doubt(model)
+        # a window's wrong start is in what the windows of the reference get wrong
+        windowed = self._standing is not None and self.plant.base == "floating"
+        self._doubt = None if windowed else self._start_doubt(model)
         # of the first order, twice the finer less the fine is left with the second
         left = (finer - fine) - (fine - coarse) / 2
         return float(np.sqrt(np.nanmean((left / self.channels.noise) ** 2)))
 
     def _start_doubt(self, model: Model) -> StartDoubt:
-        runs, variants = nudged(self._runs), variants_of(self.plant, [model])
+        runs, models = nudged(self._runs), [self._given(model)]
+        variants = variants_of(self.plant, models)
         results = replay(runs, variants, self.step_s, self._threads)
         stacks = [stacked(result, self.channels)[0] for result in results]
         count = len(self._runs)
@@ -138,13 +149,18 @@ class Predictor:
         ends = np.cumsum([run.trace.ticks for run in self._runs])
         return StartDoubt(changes, ends.tolist())
 
+    def _given(self, model: Model) -> Model:
+        """With what is wrong when all is well."""
+        return (*self._standing.model, *model) if self._standing else model
+
     def _warming(self) -> BoolArray:
         """Rows that are not scored: of whole traces a while, of windows their first."""
         flags = []
         for run in self._runs:
             since_s = run.trace.time_s - run.trace.time_s[0]
             whole = window_s(self.plant, run.trace) is None
-            flags.append(since_s < WARM_UP_S if whole else since_s <= 0)
+            left_over = is_left_over(self.plant, run.trace)
+            flags.append(since_s < WARM_UP_S if whole else (since_s <= 0) | left_over)
         return np.concatenate(flags)
 
     def measured(self, index: int) -> FloatArray:
@@ -153,12 +169,7 @@ class Predictor:
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c), the traces' rows one after another."""
-        most = max(1, MOST_ROWS // len(self._runs))
-        parts = [
-            self._replayed(models[i : i + most], self.step_s)
-            for i in range(0, len(models), most)
-        ]
-        return np.concatenate(parts) + self._correction
+        return self._replayed(models, self.step_s) + self._correction
 
     def residuals(self, models: Sequence[Model]) -> FloatArray:
         """(n, N) measured less predicted, in units of noise; 0 where not scored.
@@ -170,14 +181,34 @@ class Predictor:
         wrong = np.where(self._scored, wrong, 0.0)
         if self._doubt is not None:
             wrong = self._doubt.without(wrong)
+        if self._standing is not None:
+            wrong = self._standing.without(wrong, self.blocks)
         return wrong.reshape(len(models), -1)
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
-        variants = variants_of(self.plant, models)
-        results = replay(self._runs, variants, step_s, self._threads)
-        return np.concatenate(
-            [stacked(result, self.channels) for result in results], axis=1
-        )
+        shape = len(models), len(self._measured), len(self.channels.names)
+        predicted = np.empty(shape)
+        for limb in self._limbs:
+            felt = [limb.felt(self._given(model)) for model in models]
+            rows = {model: i for i, model in enumerate(dict.fromkeys(felt))}
+            own, columns = limb.channels(self.channels)
+            found = self._replayed_limb(limb, list(rows), step_s, own)
+            predicted[:, :, columns] = found[[rows[model] for model in felt]]
+        return predicted
+
+    def _replayed_limb(
+        self, limb: Limb, models: Sequence[Model], step_s: float, own: Channels
+    ) -> FloatArray:
+        """(n, rows, channels of the limb)."""
+        runs = [limb.run(run) for run in self._runs]
+        most = max(1, MOST_ROWS // len(runs))
+        parts = []
+        for first in range(0, len(models), most):
+            variants = variants_of(limb.plant, models[first : first + most])
+            results = replay(runs, variants, step_s, self._threads)
+            stacks = [stacked(result, own) for result in results]
+            parts.append(np.concatenate(stacks, axis=1))
+        return np.concatenate(parts)
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:

@@ -56,11 +56,14 @@ def replay(
         numbers = np.arange(first, min(first + BLOCK, steps))
         now_s = start_s + numbers[:, None] * step_s
         asked, pushed = drive.at(now_s)
+        added = drive.added(now_s)
         for i in range(len(numbers)):
             if asked is not None:
                 batch.laws.servo(asked[i], now_s[i])
             if pushed is not None:
                 batch.laws.push_joints(pushed[i])
+            if added is not None:
+                batch.laws.add_to_joints(added[i])
             batch.laws.push_bodies(now_s[i])
             batch.step()
             tape.note(first + i + 1)

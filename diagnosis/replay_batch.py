@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.batch_laws import BatchLaws
+from diagnosis.conforming_ground import conform
 from diagnosis.replay_tape import Tape
 from diagnosis.run import Run
 from diagnosis.servo import Servo
@@ -39,7 +40,7 @@ class ReplayBatch:
         self.qpos, self.qvel = map(self.bind, ("qpos", "qvel"))
         servos = [_servo(run.trace) for run in runs]
         self.laws = BatchLaws(self._batch, variants, servos, step_s)
-        self._start(runs)
+        self._start(runs, variants)
         self.laws.begin()
 
     def tape(self, steps: int) -> Tape:
@@ -59,7 +60,7 @@ class ReplayBatch:
         """A live view of a field of the simulations."""
         return np.asarray(self._batch.bind(name))
 
-    def _start(self, runs: Sequence[Run]) -> None:
+    def _start(self, runs: Sequence[Run], variants: Variants) -> None:
         n, plant = self.n // self.count, self.plant
         measured = np.tile([run.position_rad for run in runs], (n, 1))
         self.qpos[:, plant.qpos] = measured - self.laws.joints["offset_rad"]
@@ -69,6 +70,10 @@ class ReplayBatch:
             base = np.tile(bases, (n, 1))
             self.qpos[:, :7], self.qvel[:, :6] = base[:, :7], base[:, 7:]
         self._batch.forward()
+        height_m = variants.outside.bump_height_m
+        if height_m.any() and bases:
+            each = [run for _ in range(n) for run in runs]
+            conform(self._batch, plant, each, np.repeat(height_m, self.count))
 
 
 def _servo(trace: Trace) -> Servo:

@@ -18,6 +18,12 @@ UNHELD_WINDOW_S = 0.5
 FLOATING_WINDOW_S = 0.3
 """A robot on its feet is an inverted pendulum: after this its errors have doubled."""
 
+EDGE_S = 0.05
+"""At the edge of a recording speeds are not well known: no window starts there."""
+
+LEAST_WINDOW_S = 0.1
+"""What is shorter is left over at an end, and not scored."""
+
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -57,6 +63,11 @@ def window_s(plant: Plant, trace: Trace) -> float | None:
     return UNHELD_WINDOW_S if trace.unheld else None
 
 
+def is_left_over(plant: Plant, trace: Trace) -> bool:
+    """Whether a run of a floating base is no window, but what is left at an end."""
+    return plant.base == "floating" and trace.duration_s < LEAST_WINDOW_S
+
+
 def runs_of(plant: Plant, trace: Trace) -> list[Run]:
     """The runs that a trace is replayed in: together they have all of its rows."""
     longest_s = window_s(plant, trace)
@@ -64,7 +75,10 @@ def runs_of(plant: Plant, trace: Trace) -> list[Run]:
         return [Run.of(trace)]
     position, velocity = _smoothed(trace.time_s, trace.position_rad)
     base = _bases(trace) if plant.base == "floating" else None
-    number = ((trace.time_s - trace.time_s[0]) / longest_s).astype(int)
+    since_s = trace.time_s - trace.time_s[0]
+    if plant.base == "floating":
+        since_s = np.maximum(since_s - EDGE_S + longest_s, 0.0)
+    number = (since_s / longest_s).astype(int)
     starts = np.searchsorted(number, np.arange(number[-1] + 1))
     starts = np.unique(starts)
     ends = [*starts[1:], trace.ticks]
@@ -97,7 +111,19 @@ def _bases(trace: Trace) -> FloatArray:
     quaternion, rate = _smoothed(trace.time_s, turned)
     length = np.linalg.norm(quaternion, axis=1, keepdims=True)
     quaternion, rate = quaternion / length, rate / length
-    return np.hstack([position, quaternion, velocity, _body_rates(quaternion, rate)])
+    turning = _body_rates(quaternion, rate)
+    velocity = _with_measured(trace, velocity, trace.base_linear_velocity_m_s)
+    turning = _with_measured(trace, turning, trace.base_angular_velocity_rad_s)
+    return np.hstack([position, quaternion, velocity, turning])
+
+
+def _with_measured(
+    trace: Trace, rates: FloatArray, measured: FloatArray | None
+) -> FloatArray:
+    """The mean of rates from two sources: their errors are not the same."""
+    if measured is None or not np.isfinite(measured).all():
+        return rates
+    return np.asarray((rates + _smoothed(trace.time_s, measured)[0]) / 2)
 
 
 def continuous(quaternion: FloatArray) -> FloatArray:

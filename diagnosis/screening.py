@@ -11,6 +11,7 @@ import numpy as np
 
 from diagnosis.effect import Placed
 from diagnosis.fitting import Coordinates
+from diagnosis.plant import Plant
 from diagnosis.predictor import Model, Predictor
 from diagnosis.signatures import Signature
 from diagnosis.trial_values import THRESHOLDS, VECTORS
@@ -124,20 +125,26 @@ class Screen:
     def _placed(self, group: list[int], stretch: FloatArray) -> Placed:
         first = self._found[group[0]].placed
         if first.effect not in VECTORS:
-            return _stretched(self._predictor, first, float(stretch[0]))
+            return stretched(self._predictor.plant, first, float(stretch[0]))
         parts = VECTORS[first.effect]
         every = np.array([self._found[row].placed.values[:parts] for row in group])
         values = (*map(float, stretch @ every), *first.values[parts:])
         return Placed(first.effect, first.place, values)
 
 
-def _stretched(predictor: Predictor, placed: Placed, stretch: float) -> Placed:
-    """The effect with its first value that many times as far from neutral."""
-    first = Coordinates(predictor.plant, (placed,)).parameters[0]
+def stretched(plant: Plant, placed: Placed, stretch: float) -> Placed:
+    """The effect that many times as large: its first value, or its components.
+
+    What acts above a threshold only is left as it is.
+    """
+    parameters = Coordinates(plant, (placed,)).parameters
     if placed.effect in THRESHOLDS:
         return placed
-    value = first.neutral + stretch * (placed.values[0] - first.neutral)
-    if placed.effect == "joint_elasticity":
-        value = placed.values[0] / max(stretch, 1e-3)
-    value = min(max(value, first.low), first.high)
-    return Placed(placed.effect, placed.place, (value, *placed.values[1:]))
+    values = list(placed.values)
+    for i in range(VECTORS.get(placed.effect, 1)):
+        one = parameters[i]
+        value = one.neutral + stretch * (values[i] - one.neutral)
+        if not np.isfinite(one.neutral):
+            value = values[i] / max(stretch, 1e-3)
+        values[i] = min(max(value, one.low), one.high)
+    return Placed(placed.effect, placed.place, tuple(values))

@@ -8,23 +8,32 @@ the selection data.
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from diagnosis.bursts import push_intervals
 from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
 from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model, Predictor
-from diagnosis.screening import Guess, Screen
+from diagnosis.screening import Guess, Screen, stretched
 from diagnosis.search_result import Found, Judged, Rules, keys_of, ranked
 from diagnosis.signatures import Signature, signatures
 from diagnosis.usage import Usage
 from groundwalk.arrays import FloatArray
+
+STRETCHES = (0.3, 0.6, 1.0, 1.7, 3.0)
+"""Of a guess, tried before it is fitted."""
 
 
 class Search:
     """One search; keeps what several steps need."""
 
     def __init__(
-        self, fit: Predictor, select: Predictor, rules: Rules | None = None
+        self,
+        fit: Predictor,
+        select: Predictor,
+        rules: Rules | None = None,
+        well: Sequence[Predictor] = (),
     ) -> None:
         """Get ready.
 
@@ -32,38 +41,46 @@ class Search:
           fit: of the fitting data, calibrated.
           select: of the selection data, calibrated, with the same channels.
           rules: the usual ones where None.
+          well: of recordings when all was well, likewise: what a model gains there is
+            no evidence of a change.
         """
+        self.well = well
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.usage = Usage.of(fit.plant, fit.traces)
         self.floor = 0.5 * float(select.scored.sum())
         self.signatures: list[Signature] = []
         """Of all effects at all places, once the search has run."""
+        self._nothing_fit = np.inf
 
     def run(self) -> Found:
         """Grow models until another effect is not worth it."""
         nothing = self._energy(())
         residual = self.fit.residuals([()])[0]
+        self._nothing_fit = 0.5 * float(residual @ residual)
         intervals = push_intervals(self.fit, residual)
         self.signatures = signatures(self.fit, (), self.usage, intervals)
         screen = Screen(self.fit, self.signatures)
-        best = {1: self.judged(self._short(screen.singles(residual)))}
+        best = {1: self.judged(self._scanned(self._short(screen.singles(residual))))}
         chosen, size, energy = 0, 1, nothing
         while best.get(size):
-            if self._worth(energy, best[size][0].selected, nothing):
-                chosen, energy = size, best[size][0].selected
+            if self.worth(energy, best[size][0].selected, nothing):
+                chosen = size
+                best[size] = self._refined(best[size])
+                energy = best[size][0].selected
             # two together may explain what each alone does not: a gap that rattles
             # without its friction, say
             elif size > 1 or nothing < self.rules.suspicious * self.floor:
                 break
-            if size == self.rules.largest:
+            if size == self.rules.largest or self._exhausted(best[size][0], screen):
                 break
             starts = self._growths(best[size], screen)
             if size == 1:
                 starts += self._pairs(screen, residual, starts)
             size += 1
-            best[size] = self.judged(starts)
+            best[size] = self.judged(self._scanned(starts))
         if chosen:
-            swapped = self.judged(self._swaps(best[chosen][0], screen))
+            swaps = self._scanned(self._swaps(best[chosen][0], screen))
+            swapped = self.judged(swaps)
             best[chosen] = ranked(best[chosen] + swapped, self.floor)
         return Found(nothing, self.floor, best, chosen)
 
@@ -73,7 +90,7 @@ class Search:
         pattern = self.rules.least_pattern**2 * self.floor
         return max(self.rules.least_gain, pattern / len(self.fit.channels.names))
 
-    def _worth(self, before: float, after: float, nothing: float) -> bool:
+    def worth(self, before: float, after: float, nothing: float) -> bool:
         """Whether a step from one energy to another is to be believed."""
         rules = self.rules
         return before - after > max(
@@ -81,6 +98,48 @@ class Search:
             rules.least_share * (before - self.floor),
             rules.least_of_all * (nothing - self.floor),
         )
+
+    def _exhausted(self, judged: Judged, screen: Screen) -> bool:
+        """Whether a model leaves little, and no effect promises to explain it."""
+        if judged.selected > self.rules.suspicious * self.floor:
+            return False
+        guesses = screen.singles(judged.fit.residual)
+        gain = max((guess.gain for guess in guesses), default=0.0)
+        selected = gain * self.select.scored.sum() / self.fit.scored.sum()
+        return bool(selected < self.rules.promising * self.least_gain)
+
+    def _refined(self, best: list[Judged]) -> list[Judged]:
+        """The best once more, with the integrator's error as it is at the best.
+
+        Dry friction and stops change that error. With the best come effects that
+        contain one of theirs.
+        """
+        for part in (self.fit, self.select):
+            part.calibrate(best[0].model)
+        first, rest = best[: self.rules.beam], best[self.rules.beam :]
+        again = [*(judged.model for judged in first), *_grown(best[0].model)]
+        refined = ranked([*self.judged(again), *rest], self.floor)
+        if refined[0].keys != best[0].keys and refined[0].keys in map(keys_of, again):
+            return self._refined(refined)
+        return refined
+
+    def _scanned(self, starts: Sequence[Model]) -> list[Model]:
+        """Starts with the effect that was added last as large as does best.
+
+        Guesses are of first order; a gap or a delay may be far from what they say.
+        """
+        options = [
+            [(*start[:-1], stretched(self.fit.plant, start[-1], k)) for k in STRETCHES]
+            for start in starts
+        ]
+        if not options:
+            return []
+        residuals = self.fit.residuals([model for some in options for model in some])
+        energies = (residuals**2).sum(axis=1).reshape(len(starts), -1)
+        return [
+            some[int(i)]
+            for some, i in zip(options, energies.argmin(axis=1), strict=True)
+        ]
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
         """The best guesses, and the best place of each effect that comes close."""
@@ -161,19 +220,58 @@ class Search:
         """
         rough = fit_all(self.fit, starts, self.rules.first_steps)
         rough.sort(key=lambda fit: fit.energy)
-        worthy = [fit.model for fit in rough[: self.rules.finished]]
-        fits = fit_all(self.fit, worthy) + rough[self.rules.finished :]
-        energies = self._energies([fit.model for fit in fits])
+        count = self._worthy([fit.energy for fit in rough])
+        worthy = [fit.model for fit in rough[:count]]
+        fits = fit_all(self.fit, worthy) + rough[count:]
+        energies = self.energies([fit.model for fit in fits])
         judged = [
             Judged(fit, energy) for fit, energy in zip(fits, energies, strict=True)
         ]
         return ranked(list(judged), self.floor)
 
-    def _energy(self, model: Model) -> float:
-        return self._energies([model])[0]
+    def _worthy(self, energies: Sequence[float]) -> int:
+        """How many of the best are worth more steps: none that is far behind.
 
-    def _energies(self, models: Sequence[Model]) -> list[float]:
+        Args:
+          energies: on the fitting data, the least first.
+        """
+        if not energies:
+            return 0
+        explained = self._nothing_fit - energies[0]
+        most = energies[0] + max(self.least_gain, self.rules.far * explained)
+        near = sum(energy <= most for energy in energies)
+        return min(near, self.rules.finished)
+
+    def _energy(self, model: Model) -> float:
+        return self.energies([model])[0]
+
+    def energies(self, models: Sequence[Model]) -> list[float]:
+        """Of models on the selection data, with what they gained when all was well."""
         if not models:
             return []
         residuals = self.select.residuals(models)
-        return [0.5 * float(row @ row) for row in residuals]
+        energies = [0.5 * float(row @ row) for row in residuals]
+        before = self._gains_before(models)
+        return [e + gain for e, gain in zip(energies, before, strict=True)]
+
+    def _gains_before(self, models: Sequence[Model]) -> list[float]:
+        """What each model would have gained when all was well, had it been as much."""
+        if not self.well:
+            return [0.0] * len(models)
+        energies = sum(
+            0.5 * np.sum(well.residuals([(), *models]) ** 2, axis=1)
+            for well in self.well
+        )
+        floor = 0.5 * sum(float(well.scored.sum()) for well in self.well)
+        gains = (energies[0] - energies[1:]) * self.floor / floor
+        return [max(float(gain), 0.0) for gain in gains]
+
+
+def _grown(model: Model) -> list[Model]:
+    """The model with one effect exchanged for another that contains it."""
+    return [
+        tuple(grown if other is placed else other for other in model)
+        for placed in model
+        for kind in EFFECTS.values()
+        for grown in kind.grown_from(placed)
+    ]

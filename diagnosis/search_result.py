@@ -19,11 +19,13 @@ class Rules:
       paired: effects that are paired with each other at first order ...
       pairs: ... of which so many are fitted.
       first_steps: of a fit, after which most models are given up ...
-      finished: ... but for so many.
+      finished: ... but for so many ...
+      far: ... that are behind by no more than this share of what the best explains.
       swaps: effects that are tried in the stead of each one of the best model.
       largest: effects in a model.
       suspicious: times the noise's energy: so much is looked at in pairs, even if no
-        effect alone is of use.
+        effect alone is of use; below it a search ends ...
+      promising: ... where no guess gains this part of the least gain.
       least_gain: log-likelihood that an effect must gain on the selection data.
       least_pattern: and as much as a pattern of this rms [noise] would: below it is
         what integrators and clocks do wrong.
@@ -40,13 +42,15 @@ class Rules:
     pairs: int = 6
     first_steps: int = 3
     finished: int = 6
+    far: float = 0.5
     swaps: int = 6
     largest: int = 3
     suspicious: float = 1.5
+    promising: float = 0.5
     least_gain: float = 15.0
     least_pattern: float = 0.15
     least_share: float = 0.3
-    least_of_all: float = 0.01
+    least_of_all: float = 0.002
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +121,10 @@ RARE_NATS = {
     "servo_fade": 1.0,
     "com_offset": 1.0,
     "external_force": 3.0,
+    "uneven_ground": 10.0,
 }
-"""What is seldom the matter must fit better by so much than what often is."""
+"""What is seldom the matter must fit better by so much than what often is. Uneven
+ground lies wherever each sole stood, which are as many values as it was put down."""
 
 VALUE_NATS = 2.0
 """So must what has more values."""

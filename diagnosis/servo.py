@@ -1,5 +1,6 @@
 """What holds each joint of a plant at its command."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +36,10 @@ class Servo:
                 raise BadValueError(f"{name} must have one value for each joint")
             if np.isnan(values).any() or (values < 0).any():
                 raise BadValueError(f"{name} must not be negative: {values}")
+
+    def of(self, columns: Sequence[int]) -> "Servo":
+        """Those of some joints."""
+        return Servo(*(values[list(columns)] for values in vars(self).values()))
 
     @classmethod
     def ideal(cls, joints: int) -> "Servo":

@@ -9,8 +9,13 @@ from diagnosis.trace import Trace
 LEAST_S = 3.0
 """Of each trace at least so much is kept, if it has so much."""
 
+LEAST_FLOATING_S = 1.5
+"""Likewise of a robot on its feet, which is replayed in windows: none is warmed up."""
 
-def shortened(traces: Sequence[Trace], longest_s: float) -> list[Trace]:
+
+def shortened(
+    traces: Sequence[Trace], longest_s: float, least_s: float = LEAST_S
+) -> list[Trace]:
     """The traces, or of each the contiguous part in which the joints move most.
 
     Every trace keeps the same share of its time, as each has a motion of its own.
@@ -18,16 +23,17 @@ def shortened(traces: Sequence[Trace], longest_s: float) -> list[Trace]:
     Args:
       traces: to be cut.
       longest_s: of all together.
+      least_s: of each trace.
     """
     total_s = sum(trace.duration_s for trace in traces)
     if total_s <= longest_s:
         return list(traces)
     share = longest_s / total_s
-    return [_liveliest(trace, share) for trace in traces]
+    return [_liveliest(trace, share, least_s) for trace in traces]
 
 
-def _liveliest(trace: Trace, share: float) -> Trace:
-    length_s = max(share * trace.duration_s, LEAST_S)
+def _liveliest(trace: Trace, share: float, least_s: float) -> Trace:
+    length_s = max(share * trace.duration_s, least_s)
     rows = min(round(length_s / trace.tick_s), trace.ticks)
     moved = np.abs(np.diff(trace.position_rad, axis=0))
     reach = np.nanmax(trace.position_rad, axis=0) - np.nanmin(

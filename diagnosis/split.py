@@ -16,6 +16,8 @@ _SHARE = 0.25
 _GAP_S = 0.2
 _TWICE_S = 20.0
 """Recordings of this length are cut into eight parts instead of four."""
+_STROKE_S = 0.2
+"""Time between positions that say how fast a joint goes."""
 _MANY = 12
 """Up to this many recordings all choices are compared."""
 _LEAST_PART_ROWS = 8
@@ -73,6 +75,20 @@ def _travel(trace: Trace) -> FloatArray:
     return high - low
 
 
+def _motion(trace: Trace) -> FloatArray:
+    """(3 j,) how far each joint travels, and how fast it goes forward and backward.
+
+    Friction is told from a constant force only where a joint went both ways.
+    """
+    apart = max(round(_STROKE_S / trace.tick_s), 1)
+    position = trace.position_rad
+    strokes = np.nan_to_num(position[apart:] - position[:-apart])
+    if not len(strokes):
+        strokes = np.zeros((1, position.shape[1]))
+    ways = [np.quantile(way * strokes, 0.9, axis=0).clip(0.0) for way in (1, -1)]
+    return np.concatenate([_travel(trace), *ways])
+
+
 def _aside(
     travel: FloatArray, seconds: FloatArray, left: list[int], wanted_s: float
 ) -> list[int]:
@@ -124,12 +140,15 @@ def _cut(traces: Sequence[Trace]) -> Split:
     best, chosen = -np.inf, list[tuple[Trace, int]]()
     for order in sorted(set(permutations((FIT, FIT, SELECT, TEST)))):
         parts = [part for trace in traces for part in _parts(trace, order)]
-        travel = [
-            np.stack([_travel(part) for part, use in parts if use == wanted])
+        motion = [
+            np.stack([_motion(part) for part, use in parts if use == wanted])
             for wanted in (FIT, SELECT, TEST)
         ]
-        covered = min(1.0, _covered(travel[TEST], travel[FIT]))
-        covered += min(1.0, _covered(travel[SELECT], travel[FIT]))
+        covered = min(1.0, _covered(motion[TEST], motion[FIT]))
+        covered += min(1.0, _covered(motion[SELECT], motion[FIT]))
+        # and what is fitted should be judged, though that counts less
+        covered += 0.5 * min(1.0, _covered(motion[FIT], motion[SELECT]))
+        covered += 0.5 * min(1.0, _covered(motion[FIT], motion[TEST]))
         if covered > best + 1e-9:
             best, chosen = covered, parts
     return Split(
@@ -142,7 +161,8 @@ def _cut(traces: Sequence[Trace]) -> Split:
 
 def _parts(trace: Trace, order: tuple[int, ...]) -> list[tuple[Trace, int]]:
     """Contiguous parts of equal length, with a gap after each, and their use."""
-    uses = order * (2 if trace.duration_s >= _TWICE_S else 1)
+    # there and back, or a motion that repeats itself would always be used alike
+    uses = order + order[::-1] if trace.duration_s >= _TWICE_S else order
     length_s = (trace.duration_s + _GAP_S) / len(uses)
     parts = []
     for k, use in enumerate(uses):

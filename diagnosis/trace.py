@@ -1,11 +1,18 @@
 """A recording made ready to be held against a plant."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from diagnosis.servo import Servo
 from groundwalk.arrays import FloatArray
+
+JOINT_WISE = (
+    *("position_rad", "velocity_rad_s", "torque_nm", "added_nm"),
+    *("command_rad", "command_torque_nm"),
+)
+"""What a trace has for each joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +32,7 @@ class Trace:
       command_rad: (T, j) position targets.
       command_torque_nm: (T, j) torque targets.
       torque_nm: (T, j) measured.
+      added_nm: (T, j) torques that drive the joints beside their servos.
       gyroscope_rad_s: (T, 3) in the sensor's frame.
       accelerometer_m_s2: (T, 3) in the sensor's frame.
       foot_force_n: (T, feet) vertical, one sum a foot.
@@ -42,6 +50,7 @@ class Trace:
     command_rad: FloatArray | None = None
     command_torque_nm: FloatArray | None = None
     torque_nm: FloatArray | None = None
+    added_nm: FloatArray | None = None
     gyroscope_rad_s: FloatArray | None = None
     accelerometer_m_s2: FloatArray | None = None
     foot_force_n: FloatArray | None = None
@@ -69,6 +78,16 @@ class Trace:
     def unheld(self) -> bool:
         """Whether no servo holds a joint: measured or asked torques drive them."""
         return self.command_rad is None or not self.servo.kp_nm_rad.any()
+
+    def of(self, columns: Sequence[int]) -> "Trace":
+        """What concerns some joints, and what concerns none."""
+        chosen = list(columns)
+        changes = {
+            name: values[:, chosen]
+            for name in JOINT_WISE
+            if (values := getattr(self, name)) is not None
+        }
+        return replace(self, servo=self.servo.of(chosen), **changes)
 
     def part(self, start: int, stop: int) -> "Trace":
         """Rows `start` to `stop - 1`; the name says which."""

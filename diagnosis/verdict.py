@@ -14,6 +14,7 @@ from diagnosis.verdict_parts import (
     Found,
     MismatchCell,
     NextExperiment,
+    Pulse,
     Recordings,
     Unexplained,
     When,
@@ -30,6 +31,7 @@ __all__ = [
     "Found",
     "MismatchCell",
     "NextExperiment",
+    "Pulse",
     "Recordings",
     "Unexplained",
     "Verdict",
@@ -57,6 +59,7 @@ class Verdict:
       unexplained: the shape of an error that no effect explains.
       limits: what these data cannot tell, in plain words.
       mismatch: where and when the nominal sim is off, the worst channel first.
+      pulses: torques that servos did not ask for, in the order of time.
       fit: before and after on recordings that were kept out; None where none could be.
       next_experiment: what to record next, if anything is open.
       recordings: which were used for what.
@@ -70,6 +73,7 @@ class Verdict:
     unexplained: Unexplained | None = None
     limits: tuple[str, ...] = ()
     mismatch: tuple[MismatchCell, ...] = ()
+    pulses: tuple[Pulse, ...] = ()
     fit: Fit | None = None
     next_experiment: NextExperiment | None = None
     recordings: Recordings = field(default_factory=Recordings)
@@ -121,5 +125,6 @@ class Verdict:
             raise BadValueError(
                 f"the verdict's format is {found!r}; only {FORMAT} is known"
             )
+        plain.setdefault("pulses", [])  # the first ones had no such key
         verdict: Verdict = from_plain(cls, plain, "verdict")
         return verdict

@@ -9,6 +9,7 @@ from diagnosis.verdict_json import check_number
 from groundwalk.errors import BadValueError
 
 Course = Literal["always", "burst", "drift"]
+PulseSource = Literal["actuator input", "torque sensor", "position sensor"]
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,46 @@ class MismatchCell:
         for start_s, end_s in self.bursts:
             check_number("start of a burst", start_s, -math.inf)
             check_number("end of a burst", end_s, start_s)
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A torque that a joint's servo did not ask for, for a while.
+
+    Attributes:
+      recording: its name.
+      joint: at which.
+      start_s: in the recording's time.
+      end_s: likewise.
+      torque: measured less what the servo asked for.
+      unit: of the torque; for sliding joints read N for N m.
+      source: where it came in. "actuator input": it was real, the motion obeys it.
+        "torque sensor": the joint never felt it. "position sensor": the measured
+        position jumped, so that the servo seems to be wrong.
+      jumps: at the edges of the joint's pulses, by signal ("torque", "position",
+        "command"), as a share of the pulse.
+      felt: share of the measured torque that the motion obeys; 0 where the pulse is
+        not in the torque.
+    """
+
+    recording: str
+    joint: str
+    start_s: float
+    end_s: float
+    torque: float
+    unit: str
+    source: PulseSource
+    jumps: Mapping[str, float]
+    felt: float
+
+    def __post_init__(self) -> None:
+        """Refuse pulses that run backwards."""
+        check_number("start of a pulse", self.start_s, -math.inf)
+        check_number("end of a pulse", self.end_s, self.start_s)
+        for name in ("torque", "felt"):
+            check_number(name, getattr(self, name), -math.inf)
+        for name, value in self.jumps.items():
+            check_number(f"jump of {name}", value, -math.inf)
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,18 @@ Here whole kinds are added, each at all joints where it explains something.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from diagnosis.effect import Placed
+from diagnosis.fitting import fit_all
+from diagnosis.joint_wise import joint_wise
 from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model
 from diagnosis.screening import Guess, Screen
 from diagnosis.search import Search
-from diagnosis.search_result import Found, Judged
+from diagnosis.search_result import Found, Judged, ranked
 from diagnosis.signatures import signatures
 
 KINDS = tuple(
@@ -23,9 +28,14 @@ KINDS = tuple(
 )
 """What servos have. Stops and fading are single faults."""
 
-MOST_KINDS, TRIED = 6, 6
+MOST_KINDS, TRIED, LEAN = 6, 4, 3
+"""Kinds in a model; those tried each time, and besides those that gain most a value."""
+
 LEAST_SHARE = 0.1
-"""Of the energy above the noise that is left: what a kind must take away."""
+"""Of the energy above the noise that is left: what a kind must take away ..."""
+
+PATIENCE = 2
+"""... or so many kinds together."""
 
 MUCH_BETTER = 0.5
 """Part of what the best small model leaves that must go for so many effects."""
@@ -41,26 +51,74 @@ def widespread(search: Search, found: Found) -> Found:
     best: Judged | None = None
     model: Model = ()
     residual, energy = search.fit.residuals([()])[0], found.nothing
+    waited = 0
     for _ in range(MOST_KINDS):
         signs = signatures(search.fit, model, search.usage, (), KINDS)
         guesses = Screen(search.fit, signs).singles(residual)
         added = _by_kind(guesses, search.least_gain, model)
-        tried = search.judged([(*model, *more) for more in added[:TRIED]])
-        if not tried or energy - tried[0].selected < LEAST_SHARE * (
-            energy - search.floor
-        ):
+        tried = _best(search, [(*model, *more) for more in added])
+        if tried is None:
             break
-        best = tried[0]
-        model, residual, energy = best.model, best.fit.residual, best.selected
+        model, residual = tried.model, tried.fit.residual
+        if energy - tried.selected >= LEAST_SHARE * (energy - search.floor):
+            best, energy, waited = tried, tried.selected, 0
+        else:  # it may take another kind to bring out what this one is good for
+            waited += 1
+        if waited == PATIENCE:
+            break
+    if best is not None:
+        best = _without_idle(search, best)
     left = found.winner.selected if found.winner else found.nothing
     needed = max(MUCH_BETTER * (left - found.floor), search.least_gain)
-    if best is None or left - energy < needed:
+    if best is None or left - best.selected < needed:
         return found
-    return Found(found.nothing, found.floor, {len(model): [best]}, len(model))
+    rests = _rests(best.model)
+    without = [
+        Judged(replace(best.fit, model=rest), energy)
+        for rest, energy in zip(rests, search.energies(rests), strict=True)
+    ]
+    size = len(best.model)
+    sizes = {size - 1: ranked(without, found.floor), size: [best]}
+    return Found(found.nothing, found.floor, sizes, size)
+
+
+def _best(search: Search, starts: Sequence[Model]) -> Judged | None:
+    """The best of some models on the selection data; only that one is fitted well."""
+    if not starts:
+        return None
+    rough = fit_all(search.fit, starts, search.rules.first_steps, nudges_of=joint_wise)
+    energies = search.energies([fit.model for fit in rough])
+    start = rough[int(np.argmin(energies))].model
+    (fit,) = fit_all(search.fit, [start], nudges_of=joint_wise)
+    return Judged(fit, search.energies([fit.model])[0])
+
+
+def _without_idle(search: Search, best: Judged) -> Judged:
+    """The model less what makes no difference to it: a kind need not be everywhere."""
+    energies = search.energies(_rests(best.model))
+    needed = tuple(
+        placed
+        for placed, energy in zip(best.model, energies, strict=True)
+        if energy - best.selected >= search.least_gain
+    )
+    if not needed or len(needed) == len(best.model):
+        return best
+    lean = _best(search, [needed])
+    most = best.selected + LEAST_SHARE * (best.selected - search.floor)
+    return lean if lean is not None and lean.selected <= most else best
+
+
+def _rests(model: Model) -> list[Model]:
+    """The model without each of its effects."""
+    return [tuple(other for other in model if other is not one) for one in model]
 
 
 def _by_kind(guesses: Sequence[Guess], least: float, model: Model) -> list[Model]:
-    """For each kind its guesses at all joints together, the best kinds first."""
+    """Kinds with their guesses at all joints: the best, then the best for their size.
+
+    One late signal may be all that fast motions lack, though friction at all joints
+    explains more of the slow ones.
+    """
     known = {placed.key for placed in model}
     together: dict[str, tuple[float, list[Placed]]] = {}
     for guess in guesses:
@@ -69,5 +127,12 @@ def _by_kind(guesses: Sequence[Guess], least: float, model: Model) -> list[Model
             continue
         gain, every = together.get(placed.effect, (0.0, []))
         together[placed.effect] = gain + guess.gain, [*every, placed]
-    ranked = sorted(together.values(), key=lambda one: -one[0])
-    return [tuple(every) for _, every in ranked]
+    kinds = [(gain, tuple(placed)) for gain, placed in together.values()]
+    most = sorted(kinds, key=lambda kind: -kind[0])[:TRIED]
+    rest = [kind for kind in kinds if kind not in most]
+    lean = sorted(rest, key=lambda kind: -kind[0] / _values(kind[1]))[:LEAN]
+    return [model for _, model in (*most, *lean)]
+
+
+def _values(model: Model) -> int:
+    return sum(len(placed.values) for placed in model)

@@ -33,6 +33,9 @@ VERBS = {
     "diagnose": Verb(
         "diagnose", "Diagnose", "say what physics the sim lacks that recordings show"
     ),
+    "real-robots": Verb(
+        "real_robots", "RealRobots", "diagnose recordings of real robots, and judge it"
+    ),
     "record": Verb(
         "record", "Record", "make a recording, with hidden physics if you like"
     ),

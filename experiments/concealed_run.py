@@ -13,6 +13,7 @@ import numpy as np
 import tyro
 
 from diagnosis.diagnose import diagnose
+from diagnosis.reference_reading import read_reference
 from diagnosis.trace_reading import read_traces
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
@@ -21,7 +22,7 @@ from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text
 
 ANSWERS, CASES, PLANT = "answers", "cases", "plant.json"
-RECORDINGS = "recordings"
+RECORDINGS, REFERENCE = "recordings", "reference"
 
 
 @dataclass(frozen=True)
@@ -93,10 +94,12 @@ def diagnosed(case: Path, seed: int) -> Verdict:
     source = case / spec["robot"]
     robot = source if source.exists() else spec["robot"]
     paths = sorted((case / RECORDINGS).glob("*.parquet"))
+    wells = sorted((case / REFERENCE).glob("*.parquet"))
     own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
     try:
         plant, traces = read_traces(paths, robot)
-        return diagnose(plant, traces, own).verdict
+        reference = read_reference(wells, robot, plant)
+        return diagnose(plant, traces, own, reference=reference).verdict
     except BadRecordingError as error:
         return Verdict(kind="not_identifiable", limits=(str(error),))
 

@@ -4,9 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import Found, Verdict
 from experiments.concealed_score_oracle import Oracle
-from experiments.concealed_score_truth import TrueCase, TrueEffect
+from experiments.concealed_score_truth import TrueCase
 
 NAMED_KINDS = ("single", "pair", "triple")
 """Cases in which something of the library is to be found."""
@@ -109,7 +110,7 @@ def mark(
     )
 
 
-def _at(effect: Found | TrueEffect) -> tuple[str, str]:
+def _at(effect: Found | EffectValues) -> tuple[str, str]:
     return effect.name, effect.place
 
 
@@ -121,12 +122,12 @@ def _considered(verdict: Verdict) -> set[str]:
     return found | others | answers
 
 
-def _main(found: Found, true: TrueEffect) -> list[str]:
+def _main(found: Found, true: EffectValues) -> list[str]:
     names = MAIN.get(true.name, tuple(true.parameters))
     return [name for name in names if name in true.parameters]
 
 
-def _error(found: Found, true: TrueEffect, oracle: Oracle | None) -> float:
+def _error(found: Found, true: EffectValues, oracle: Oracle | None) -> float:
     """Distance of the estimate from the truth, over that of the truth from nothing.
 
     Main parameters together as a vector. Where nothing happens at infinity, as with a
@@ -144,7 +145,7 @@ def _error(found: Found, true: TrueEffect, oracle: Oracle | None) -> float:
     return math.hypot(*wrong) / max(math.hypot(*size), 1e-12)
 
 
-def _covered(found: Found, true: TrueEffect) -> list[bool]:
+def _covered(found: Found, true: EffectValues) -> list[bool]:
     return [
         name in found.parameters
         and found.parameters[name].low

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.channels import channels_of
+from diagnosis.corrected_model import EffectValues
 from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
 from diagnosis.library import EFFECTS, effect
@@ -24,7 +25,7 @@ from diagnosis.trace import Trace
 from diagnosis.trace_reading import read_traces
 from diagnosis.verdict import Found
 from experiments.concealed_case import PLANT_FILE, RECORDINGS
-from experiments.concealed_score_truth import TrueCase, TrueEffect
+from experiments.concealed_score_truth import TrueCase
 from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.errors import RunFolderError
 
@@ -154,7 +155,7 @@ def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -
     return gain
 
 
-def _true(plant: Plant, true: TrueEffect) -> Placed:
+def _true(plant: Plant, true: EffectValues) -> Placed:
     """The hidden effect in the diagnosis' words, within its bounds."""
     values = [
         min(max(true.parameters.get(p.name, p.typical), p.low), p.high)

@@ -6,20 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import Verdict
 from experiments.concealed_make import HASH, SEALED, TRUTH
 from groundwalk.errors import BadValueError, RunFolderError
 
 ANSWERS, BASELINES = "answers", "baselines"
-
-
-@dataclass(frozen=True)
-class TrueEffect:
-    """One hidden effect, with its values by the parameters' names."""
-
-    name: str
-    place: str
-    parameters: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -38,7 +30,7 @@ class TrueCase:
     plant: str
     engine: str
     kind: str
-    effects: tuple[TrueEffect, ...] = ()
+    effects: tuple[EffectValues, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -89,7 +81,7 @@ def _case(name: str, plain: Mapping[str, object]) -> TrueCase:
         str(plain["plant"]),
         str(plain["engine"]),
         str(plain["kind"]),
-        tuple(TrueEffect(e["name"], e["place"], e["parameters"]) for e in effects),
+        tuple(EffectValues(e["name"], e["place"], e["parameters"]) for e in effects),
     )
 
 

@@ -15,7 +15,11 @@ from diagnosis.corrected_mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.corrected_model import CORRECTED_JSON, Correction
 from diagnosis.diagnose import Diagnosis, diagnose
 from diagnosis.predictor import Model, Predictor
+from diagnosis.reference_reading import read_reference
+from diagnosis.search_result import Rules
+from diagnosis.torque_drive import DriveBy
 from diagnosis.trace_reading import read_traces
+from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.diagnosis_console import print_verdict
 from experiments.diagnosis_overlay import write_overlay
@@ -39,10 +43,15 @@ class Diagnose:
 
     Attributes:
       recordings: files of format 1, Parquet or CSV; at least one.
+      reference: recordings of the same robot when all was well; what they show, too, is
+        taken as given: the question is what changed since.
       robot: its name, a model file (.xml or .urdf), or a robot of example-robot-data.
       kp: stiffness of all servos [N m/rad], where recordings do not say.
       kd: damping of all servos [N m s/rad], likewise.
       max_torque: limit of all servos [N m], likewise; no limit by default.
+      drive: what moves the joints of the model where both commands and torques were
+        recorded: its servos, or the measured torques.
+      least_share: of the sim's squared error that an effect must explain to count.
       seed: every random number follows from it.
       threads: of the replays.
       out: the run's folder; a new one under runs/ by default.
@@ -53,9 +62,12 @@ class Diagnose:
         tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RECORDING...")
     ]
     robot: str
+    reference: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="RECORDING...")] = ()
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
+    drive: DriveBy = "servos"
+    least_share: float = Rules.least_of_all
     seed: int = 1
     threads: int = 2
     out: Path | None = None
@@ -71,6 +83,8 @@ class Diagnose:
                 raise BadValueError(f"{name} is {value}; it must not be negative")
         if self.kp is None and (self.kd, self.max_torque) != (None, None):
             raise BadValueError("kd or max_torque is given without kp")
+        if not 0 <= self.least_share < 1:
+            raise BadValueError(f"least_share is {self.least_share}; it must be a part")
         if self.seed < 0 or self.threads < 0:
             raise BadValueError("seed and threads must not be negative")
 
@@ -84,11 +98,22 @@ class Diagnose:
 
 
 def main(config: Diagnose) -> None:
+    """Diagnose, and say what was found."""
+    folder, verdict = run_diagnosis(config)
+    if config.json:
+        print(verdict.to_json(), end="")
+    else:
+        print_verdict(verdict, [folder.path / name for name in (REPORT, OVERLAY)])
+
+
+def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     """Diagnose, and write down the verdict, the report and the overlay."""
     check_free(config.out)
     plant, traces = read_traces(config.recordings, config.robot, config.gains)
     seed = np.random.SeedSequence(config.seed)
-    found = diagnose(plant, traces, seed, threads=config.threads)
+    rules = Rules(least_of_all=config.least_share)
+    wells = read_reference(config.reference, config.robot, plant, config.gains)
+    found = diagnose(plant, traces, seed, rules, config.threads, wells, config.drive)
     folder = RunFolder.create(VERB, config)
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
@@ -99,20 +124,19 @@ def main(config: Diagnose) -> None:
     write_overlay(
         folder.path / OVERLAY, series, found.verdict.fit, _description(config)
     )
-    if config.json:
-        print(found.verdict.to_json(), end="")
-    else:
-        print_verdict(found.verdict, [folder.path / name for name in (REPORT, OVERLAY)])
+    return folder, found.verdict
 
 
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:
     """The sim that is right, if anything was found to be wrong with it."""
     if not found.verdict.effects:
         return
-    servo = found.test.traces[0].servo
-    xml = corrected_mjcf(found.plant, found.model, servo)
+    first = found.test.traces[0]
+    servo = found.plant.servo if first.unheld else first.servo
+    model = (*found.given, *found.model)
+    xml = corrected_mjcf(found.plant, model, servo)
     folder.write_text(CORRECTED_XML, xml)
-    text = Correction.of(found.plant, found.model).to_json()
+    text = Correction.of(found.plant, model).to_json()
     folder.write_text(CORRECTED_JSON, text)
 
 

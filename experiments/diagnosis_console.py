@@ -7,6 +7,7 @@ from pathlib import Path
 from diagnosis.verdict import EffectAt, Fit, Found, Verdict
 from experiments.diagnosis_report_numbers import amount_text, errors_text, percent
 from experiments.diagnosis_report_places import at_words, choice, listing
+from experiments.diagnosis_report_pulses import pulse_sentences
 from experiments.diagnosis_report_text import (
     BADGES,
     doubts,
@@ -16,6 +17,8 @@ from experiments.diagnosis_report_text import (
 )
 
 _SHOWN_AMOUNTS = 3
+_MOST_FOUND = 3
+"""Lines about what was found, pulses among them."""
 
 
 def print_verdict(verdict: Verdict, files: Sequence[Path]) -> None:
@@ -44,12 +47,12 @@ def console_lines(verdict: Verdict, files: Sequence[Path]) -> list[tuple[str, st
     """At most ten lines, each with a word on what it is about.
 
     Args:
-      verdict: of the diagnosis, with three effects at most.
+      verdict: of the diagnosis.
       files: what was written.
     """
     lines = [
         ("verdict", _verdict(verdict)),
-        *(("found", _found(effect)) for effect in verdict.effects),
+        *_all_found(verdict),
         *_errors(verdict),
         ("doubt", _doubt(verdict)),
         ("next", next_step(verdict)),
@@ -75,6 +78,16 @@ def _verdict(verdict: Verdict) -> str:
         ]
         return f"{badge} that would be as large as {listing(amounts, 'or')}"
     return badge
+
+
+def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
+    """What was found, or the first of it and how much more there is."""
+    lines = [*map(_found, verdict.effects), *pulse_sentences(verdict.pulses)]
+    more = len(lines) - _MOST_FOUND
+    for line in lines[:_MOST_FOUND] if more <= 0 else lines[: _MOST_FOUND - 1]:
+        yield "found", line
+    if more > 0:
+        yield "", f"and {more + 1} more: the report has them all"
 
 
 def _found(effect: Found) -> str:

@@ -18,6 +18,7 @@ from experiments.diagnosis_report_places import (
     place_words,
     sentence,
 )
+from experiments.diagnosis_report_pulses import pulse_sentences
 from experiments.diagnosis_report_words import effect_words
 
 BADGES = {
@@ -43,15 +44,16 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
       verdict: of the diagnosis.
       changed: whether the question was what has changed.
     """
+    pulses = [*map(sentence, pulse_sentences(verdict.pulses))]
     if verdict.kind == "none":
-        return _nothing(verdict, changed)
+        return [*_nothing(verdict, changed), *pulses]
     first, before = list[str](), ""
     if verdict.kind == "unknown":
         first, before = _unknown(verdict), "besides, "
     elif verdict.kind == "not_identifiable":
         first, before = _open(verdict), "this much is sure: "
     found = [before + finding(effect, changed) for effect in verdict.effects]
-    return [*first, *map(sentence, found), *_gain(verdict)]
+    return [*first, *map(sentence, found), *pulses, *_gain(verdict)]
 
 
 def finding(effect: Found, changed: bool = False) -> str:

@@ -1,12 +1,12 @@
 """Torques that servos give and that motions take, on smoothed recordings."""
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from diagnosis.inverse_dynamics import inverse_dynamics
 from diagnosis.plant import Plant
 from diagnosis.smoothing import smooth
 from diagnosis.trace import Trace
@@ -115,9 +115,7 @@ class Torques:
 def inverse_nm(
     plant: Plant, model: "mujoco.MjModel", position_rad: FloatArray, motion: Motion
 ) -> FloatArray:
-    """(R, j) torques that a motion takes, by MuJoCo's inverse dynamics.
-
-    Constraints are left out: where joints are tied, they would fight the noise.
+    """(R, j) torques that a motion takes.
 
     Args:
       plant: tells which rows are the joints'.
@@ -125,16 +123,6 @@ def inverse_nm(
       position_rad: (R, j) instead of the motion's own.
       motion: velocities and accelerations.
     """
-    import mujoco
-
-    model = copy.copy(model)
-    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-    data = mujoco.MjData(model)
-    torque = np.zeros_like(position_rad)
-    for row in range(len(position_rad)):
-        data.qpos[plant.qpos] = position_rad[row]
-        data.qvel[plant.dofs] = motion.velocity_rad_s[row]
-        data.qacc[plant.dofs] = motion.acceleration_rad_s2[row]
-        mujoco.mj_inverse(model, data)
-        torque[row] = data.qfrc_inverse[plant.dofs]
-    return torque
+    return inverse_dynamics(
+        plant, model, position_rad, motion.velocity_rad_s, motion.acceleration_rad_s2
+    )

@@ -7,8 +7,8 @@ import numpy as np
 if TYPE_CHECKING:
     from diagnosis.plant import Plant
 
-REFERENCE_SPEED_RAD_S = 5.0
-"""A brisk joint, where nothing better is known."""
+REFERENCE_SPEED_RAD_S, REFERENCE_SPEED_M_S = 5.0, 0.5
+"""A brisk joint, where nothing better is known: a hinge and a slide."""
 
 _SERVO_ERROR_RAD = 0.1
 _ACCELERATION_RAD_S2 = 5.0
@@ -50,7 +50,16 @@ def speed_rad_s(plant: "Plant", joint: str) -> float:
     back_emf = float(plant.servo.back_emf_nm_s_rad[column])
     if back_emf > 0 and np.isfinite(limit):
         return limit / back_emf
-    return REFERENCE_SPEED_RAD_S
+    return brisk_rad_s(plant, joint)
+
+
+def brisk_rad_s(plant: "Plant", joint: str) -> float:
+    """A speed that a joint is used at; of a slide in m/s."""
+    import mujoco
+
+    number = plant.model.joint(joint).id
+    slides = plant.model.jnt_type[number] == mujoco.mjtJoint.mjJNT_SLIDE
+    return REFERENCE_SPEED_M_S if slides else REFERENCE_SPEED_RAD_S
 
 
 def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:

@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 class Backlash(ServoEffect):
     """No torque reaches the joint while motor and joint are within the gap.
 
-    The transmitted torque is a dead zone of the difference x: 0 for |x| < gap / 2, else
-    stiffness times (x - sign(x) gap / 2). Gap is the total play; the encoder sits at
-    the output.
+    The servo closes its loop on the motor's side; the encoder that is recorded sits at
+    the joint. Within the gap the motor follows its command alone, braked by its
+    damping; at the gap's edges it pushes the joint. Gap is the total play. The motion
+    is that of `diagnosis.batch_gaps`.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model.

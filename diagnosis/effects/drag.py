@@ -1,5 +1,6 @@
 """Water, air or a hand that slows a body down."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from diagnosis.effect import Parameter
@@ -9,6 +10,7 @@ from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.plant import Plant
+    from diagnosis.trace import Trace
     from diagnosis.variants import Variants
 
 
@@ -21,6 +23,14 @@ class Drag(BodyEffect):
     name = "drag"
     native = False
 
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """Bodies that move, but for those on one slide.
+
+        There it is the viscous friction of the slide.
+        """
+        every = super().places(plant, traces)
+        return tuple(name for name in every if not _slides(plant, name))
+
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """c; a typical one holds back a tenth of the robot's weight at 1 m/s."""
         scale = weight_n(plant)
@@ -31,3 +41,17 @@ class Drag(BodyEffect):
     ) -> None:
         """Coefficients add."""
         variants.outside.drag_n_s_m[row, variants.body(place)] += values[0]
+
+
+def _slides(plant: "Plant", name: str) -> bool:
+    """Whether all that a body can do is to move along one line."""
+    import mujoco
+
+    model = plant.model
+    body = int(model.body(name).id)
+    joints = []
+    while body > 0:
+        first = int(model.body_jntadr[body])
+        joints += list(model.jnt_type[first : first + int(model.body_jntnum[body])])
+        body = int(model.body_parentid[body])
+    return joints == [mujoco.mjtJoint.mjJNT_SLIDE.value]

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from diagnosis.plant import Plant
     from diagnosis.variants import Variants
 
-_LONGEST_S = 600.0
+_EARLIEST_S, _LONGEST_S = -2.0, 600.0
+"""What began before the recording pushes from its first row on."""
 
 
 class ExternalForce(BodyEffect):
@@ -32,7 +33,7 @@ class ExternalForce(BodyEffect):
         force = (Parameter(a, "N", -weight, weight, 0.0, 0.05 * weight) for a in "xyz")
         return (
             *force,
-            Parameter("start", "s", 0.0, _LONGEST_S, 0.0, 0.2),
+            Parameter("start", "s", _EARLIEST_S, _LONGEST_S, 0.0, 0.2),
             Parameter("duration", "s", 0.0, _LONGEST_S, 0.0, 0.2),
         )
 

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effect import Parameter
+from diagnosis.effect import Parameter, Placed
 from diagnosis.effects._places import JointEffect
 from diagnosis.effects._sizes import torque_nm
 from groundwalk.arrays import FloatArray
@@ -10,6 +10,8 @@ from groundwalk.arrays import FloatArray
 if TYPE_CHECKING:
     from diagnosis.plant import Plant
     from diagnosis.variants import Variants
+
+GROWN_SPEEDS_RAD_S = (0.02, 0.07, 0.25)
 
 
 class StribeckFriction(JointEffect):
@@ -46,3 +48,13 @@ class StribeckFriction(JointEffect):
             joints.stribeck_speed_rad_s[at] *= 1 - share
             joints.stribeck_speed_rad_s[at] += share * speed_rad_s
             joints.stribeck_nm[at] = total_nm
+
+    def grown_from(self, other: Placed) -> tuple[Placed, ...]:
+        """With Coulomb friction it shares all but what happens near standstill."""
+        if other.effect != "coulomb_friction":
+            return ()
+        (torque_nm,) = other.values
+        return tuple(
+            Placed(self.name, other.place, (torque_nm, 0.5 * torque_nm, speed_rad_s))
+            for speed_rad_s in GROWN_SPEEDS_RAD_S
+        )

@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 class UnevenGround(Effect):
     """Heights spread about the plane; 99 % of them within +-height.
 
-    Where each bump is cannot be known; a replay draws them.
+    Where each bump is cannot be known. A replay puts the ground where the recorded
+    soles stood as a window began, no farther from the plane than the height
+    (`diagnosis.conforming_ground`). So the height found is about the largest that was
+    trodden on, bumps of less than 0.6 mm are not seen, and where a foot is put down
+    later the ground is taken to be flat.
 
     Source: ground profiles as random processes, ISO 8608:2016.
     """
@@ -30,8 +34,8 @@ class UnevenGround(Effect):
         return ("world",) if has_ground_contact(plant) else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The height."""
-        return (Parameter("height", "m", 0.0, 0.03, 0.0, 0.005),)
+        """The height; tried first so low that most bumps would be higher."""
+        return (Parameter("height", "m", 0.0, 0.03, 0.0, 0.001),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray

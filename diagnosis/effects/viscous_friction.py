@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from diagnosis.effect import Parameter
 from diagnosis.effects._places import JointEffect
-from diagnosis.effects._sizes import REFERENCE_SPEED_RAD_S, torque_nm
+from diagnosis.effects._sizes import brisk_rad_s, torque_nm
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ class ViscousFriction(JointEffect):
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """b; a typical one costs a tenth of the torque range at a brisk speed."""
-        scale = torque_nm(plant, place) / REFERENCE_SPEED_RAD_S
+        scale = torque_nm(plant, place) / brisk_rad_s(plant, place)
         return (Parameter("coefficient", "N m s/rad", 0.0, scale, 0.0, 0.1 * scale),)
 
     def apply(

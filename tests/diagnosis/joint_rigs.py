@@ -100,7 +100,12 @@ def exact(plant, run, *effects, step_s=1e-3):
     return 2 * fine - coarse
 
 
-def integrated(law, time_s, start):
+def stiffly_integrated(law, time_s, start):
+    """As `integrated`, where some of the states follow at once."""
+    return integrated(law, time_s, start, method="LSODA")
+
+
+def integrated(law, time_s, start, method="RK45"):
     """(T, states) of y' = law(t, y, k), row k by row, as commands change by rows.
 
     k is the row whose command holds.
@@ -108,7 +113,7 @@ def integrated(law, time_s, start):
     states = [np.asarray(start, float)]
     for k, (begin, end) in enumerate(pairwise(time_s)):
         part = solve_ivp(
-            law, (begin, end), states[-1], args=(k,), rtol=1e-8, atol=1e-10
+            law, (begin, end), states[-1], method, args=(k,), rtol=1e-8, atol=1e-10
         )
         states.append(part.y[:, -1])
     return np.array(states)

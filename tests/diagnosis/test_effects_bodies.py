@@ -3,6 +3,8 @@
 import mujoco
 import numpy as np
 import pytest
+from joint_rigs import ARM as LINKS
+from joint_rigs import SLED, WHEEL, plant_of
 
 from diagnosis.library import effect
 from diagnosis.plant import Plant
@@ -212,3 +214,25 @@ def test_a_payload_on_a_body_that_turns_about_its_centre():
     whole = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, whole)
     assert whole[slide.dofs[0], slide.dofs[0]] == pytest.approx(17.0)
+
+
+@pytest.mark.parametrize(
+    ("body", "places"),
+    [
+        pytest.param(SLED, (), id="a slide's own friction"),
+        pytest.param(LINKS, ("upper", "lower"), id="links that turn"),
+    ],
+)
+def test_drag_is_where_it_is_not_the_friction_of_a_slide(body, places):
+    plant = plant_of(body)
+    assert effect("drag").places(plant, ()) == places
+    assert set(effect("external_force").places(plant, ())) >= set(places)
+
+
+def test_viscous_friction_is_measured_by_how_joints_are_used():
+    slide, hinge = (
+        effect("viscous_friction").parameters(plant_of(body, kp=100.0), joint)[0]
+        for body, joint in ((SLED, "slide"), (WHEEL, "hinge"))
+    )
+    # slides are ten times as slow: metres, not radians
+    assert slide.high == pytest.approx(10 * hinge.high)

@@ -12,6 +12,7 @@ from diagnosis.predictor import Channels, Predictor
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
 START_S = 0.004
+ROUNDS = 3
 
 
 def predictor_of(*effects, noise_rad, model=(), **more):
@@ -36,9 +37,13 @@ def predictor_of(*effects, noise_rad, model=(), **more):
     ],
 )
 def test_values_without_noise(name, place, start, truth, tolerance):
-    """Starts near nothing; what is left is of calibration elsewhere."""
+    """Starts near nothing, calibrated there; then once more where that leads to."""
     predictor = predictor_of((name, place, *truth), noise_rad=0.0)
-    (fit,) = fit_all(predictor, [(Placed(name, place, start),)])
+    model = (Placed(name, place, start),)
+    for _ in range(ROUNDS):
+        (fit,) = fit_all(predictor, [model])
+        model = fit.model
+        predictor.calibrate(model)
     (found,) = fit.model
     assert (found.effect, found.place) == (name, place)
     assert found.values == pytest.approx(truth, rel=tolerance)
@@ -129,3 +134,14 @@ def test_coordinates_of_ratios_are_logarithms():
     plant = arm()
     model = (Placed("servo_gain", "elbow", (0.5,)),)
     assert Coordinates(plant, model).of(model) == pytest.approx([np.log(0.5)])
+
+
+def test_values_that_no_data_show_do_not_slow_the_others_down():
+    # a force that begins before the recording: when it began shows nowhere
+    truth = ("viscous_friction", "elbow", 0.3)
+    predictor = predictor_of(truth, noise_rad=0.0)
+    always = Placed("external_force", "lower", (0.0, 0.0, 0.0, -1.0, 30.0))
+    friction = Placed("viscous_friction", "elbow", (0.05,))
+    (found,) = fit_all(predictor, [(friction, always)], steps=4)
+    assert found.model[0].values[0] == pytest.approx(0.3, rel=0.02)
+    assert found.model[1].values[3:] == (-1.0, 30.0)

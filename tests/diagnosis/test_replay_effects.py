@@ -10,6 +10,7 @@ from joint_rigs import (
     integrated,
     plant_of,
     replayed,
+    stiffly_integrated,
     ticks,
 )
 from scipy.optimize import brentq
@@ -57,23 +58,45 @@ def test_within_the_gap_a_joint_coasts():
     assert nominal[-1, 0] < 0.02
 
 
-@pytest.mark.parametrize(("kd", "emf"), [(0.0, 0.0), (KD, EMF)])
-def test_beyond_the_gap_the_servo_feels_the_rest(kd, emf):
-    gap = 0.04
-    plant = plant_of(PENDULUM, kp=KP, kd=kd, emf=emf)
+GAP = 0.04
+
+
+def test_beyond_the_gap_the_servo_feels_the_rest():
+    """A motor that nothing brakes is at its command, or at the gap's edge."""
+    plant = plant_of(PENDULUM, kp=KP)
 
     def law(t, y, k):
         error = COMMAND[k] - y[0]
-        felt = error - np.clip(error, -gap / 2, gap / 2)
-        braked = (kd + emf) * y[1] if felt else 0.0
+        felt = error - np.clip(error, -GAP / 2, GAP / 2)
         weight = PENDULUM_LEVER_NM * np.sin(y[0])
-        return [y[1], (KP * felt - braked - weight) / INERTIA]
+        return [y[1], (KP * felt - weight) / INERTIA]
 
     truth = integrated(law, TIME_S, [0, 0])[:, 0]
-    effect = ("backlash", HINGE, gap)
+    effect = ("backlash", HINGE, GAP)
     found = replayed(plant, commanded(plant), effect, step_s=2e-4)[0][:, 0]
     assert np.abs(found - truth).max() < 4e-4
     assert np.abs(exact(plant, commanded(plant))[:, 0] - truth).max() > 0.01
+
+
+def test_a_motor_takes_its_time_through_the_gap():
+    """It is braked there; the gap's edges are hard, here very stiff springs."""
+    plant, edge = plant_of(PENDULUM, kp=KP, kd=KD, emf=EMF), 3e3
+
+    def law(t, y, k):
+        angle, speed, motor = y
+        twist = motor - angle
+        pushed = edge * (twist - np.clip(twist, -GAP / 2, GAP / 2))
+        weight = PENDULUM_LEVER_NM * np.sin(angle)
+        turning = (KP * (COMMAND[k] - motor) - pushed) / (KD + EMF)
+        return [speed, (pushed - weight) / INERTIA, turning]
+
+    truth = stiffly_integrated(law, TIME_S, [0, 0, 0])[:, 0]
+    run, effect = commanded(plant), ("backlash", HINGE, GAP)
+    found = replayed(plant, run, effect, step_s=2e-4)[0][:, 0]
+    assert np.abs(found - truth).max() < 1e-3
+    without = plant_of(PENDULUM, kp=KP)
+    at_once = replayed(without, commanded(without), effect, step_s=2e-4)[0][:, 0]
+    assert np.abs(at_once - truth).max() > 0.01
 
 
 def test_the_set_point_slews():

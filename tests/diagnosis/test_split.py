@@ -109,3 +109,14 @@ def test_missing_values_do_not_matter():
 def test_too_short_to_be_cut():
     with pytest.raises(BadRecordingError, match="too short"):
         split([trace("short", 0.9)])
+
+
+def test_both_ways_of_a_motion_that_repeats_itself_are_fitted():
+    time_s = np.arange(24 * HZ) / HZ
+    # three seconds forward, three back: as long as two of the eight parts
+    position = np.abs((time_s + 3) % 6 - 3)[:, None]
+    result = split([Trace("there and back", time_s, position, Servo.ideal(1))])
+    for parts in (result.fit, result.select, result.test):
+        ways = [np.sign(np.diff(part.position_rad[:, 0])) for part in parts]
+        forward = np.mean(np.concatenate(ways) > 0)
+        assert 0.3 < forward < 0.7

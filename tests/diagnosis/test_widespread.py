@@ -4,6 +4,7 @@ import pytest
 from known_arms import CHANNELS, LEAN, measured
 from made_up_traces import arm
 
+from diagnosis.belief import probability
 from diagnosis.effect import Placed
 from diagnosis.predictor import Predictor
 from diagnosis.screening import Guess
@@ -38,6 +39,19 @@ def test_what_the_model_has_is_not_added_again():
     assert [placed.key for placed in added[1]] == ["servo_gain@a"]
 
 
+def test_what_gains_most_for_its_size_is_tried_too():
+    joints = "abcde"
+    large = [
+        guess(kind, joint, 100.0)
+        for kind in ("servo_gain", "coulomb_friction", "armature", "load_friction")
+        for joint in joints
+    ]
+    late = guess("command_latency", "commands", 90.0)
+    small = [guess("backlash", joint, 20.0) for joint in joints]
+    added = _by_kind([*large, *small, late], 15.0, ())
+    assert [model[0].effect for model in added[4:]] == ["command_latency", "backlash"]
+
+
 def searched(**truth):
     """A search for a single effect, and what it came to."""
     fit, select = (
@@ -59,6 +73,11 @@ def test_what_both_joints_lack_is_found_at_both():
         "servo_gain@elbow": pytest.approx(0.8, abs=0.01),
     }
     assert wide.closed(wide.winner) > 0.99 > found.closed(found.winner)
+    # what the model would be without each of them says how sure each is
+    assert {judged.keys for judged in wide.best[1]} == {
+        frozenset({key}) for key in values
+    }
+    assert all(0.9 < probability(wide, one) < 1 for one in wide.winner.model)
 
 
 @pytest.mark.slow

@@ -1,13 +1,14 @@
 """Made-up truths, answers and oracles of concealed cases."""
 
+from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import EffectAt, Estimate, Found, Unexplained, Verdict
 from experiments.concealed_score import DIAGNOSIS, score_of
 from experiments.concealed_score_oracle import Oracle
-from experiments.concealed_score_truth import TrueCase, TrueEffect, Truth
+from experiments.concealed_score_truth import TrueCase, Truth
 
 KNEE, HIP = "LKneePitch", "LHipPitch"
-DRY = TrueEffect("coulomb_friction", KNEE, {"torque": 0.2})
-WET = TrueEffect("viscous_friction", HIP, {"coefficient": 0.5})
+DRY = EffectValues("coulomb_friction", KNEE, {"torque": 0.2})
+WET = EffectValues("viscous_friction", HIP, {"coefficient": 0.5})
 
 
 def found(name, place, value=0.2, low=0.1, high=0.3, probability=0.95, others=()):

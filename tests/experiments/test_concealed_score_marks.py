@@ -17,9 +17,9 @@ from made_up_scores import (
     single,
 )
 
+from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import EffectAt, Estimate, Fit, Found, Verdict
 from experiments.concealed_score_oracle import Oracle
-from experiments.concealed_score_truth import TrueEffect
 from experiments.intervals import wilson
 
 # Names
@@ -80,7 +80,7 @@ def test_f1_of_pairs_wants_name_and_place():
     score = scored(
         (*pair, names(RIGHT, found("viscous_friction", HIP, 0.5, 0.4, 0.6)), oracle()),
         (*pair, names(RIGHT, found("viscous_friction", KNEE)), oracle()),
-        ("triple", (DRY, WET, TrueEffect("drag", "x", {})), None, oracle()),
+        ("triple", (DRY, WET, EffectValues("drag", "x", {})), None, oracle()),
         single(names(found("backlash", KNEE))),  # singles do not count
     )
     # 3 hits, 1 extra, 1 + 3 missed
@@ -109,10 +109,10 @@ def test_errors_and_intervals_of_right_effects():
 
 
 def test_vectors_are_compared_as_vectors_and_factors_from_where_they_do_nothing():
-    com = TrueEffect("com_offset", "torso", {"x": 0.03, "y": 0.04, "z": 0.0})
+    com = EffectValues("com_offset", "torso", {"x": 0.03, "y": 0.04, "z": 0.0})
     at = {name: Estimate(value, value, value, "m") for name, value in
           {"x": 0.03, "y": 0.04, "z": 0.01}.items()}  # fmt: skip
-    gain = TrueEffect("servo_gain", KNEE, {"factor": 1.2})
+    gain = EffectValues("servo_gain", KNEE, {"factor": 1.2})
     factor = {"factor": Estimate(1.1, 1.0, 1.3, "1")}
     none_at = {"com_offset@torso": dict.fromkeys("xyz", 0.0)}
     one_at = {f"servo_gain@{KNEE}": {"factor": 1.0}}
@@ -137,7 +137,9 @@ def test_vectors_are_compared_as_vectors_and_factors_from_where_they_do_nothing(
 
 
 def test_a_stiffness_is_measured_against_itself():
-    spring = TrueEffect("joint_elasticity", KNEE, {"stiffness": 100.0, "damping": 1.0})
+    spring = EffectValues(
+        "joint_elasticity", KNEE, {"stiffness": 100.0, "damping": 1.0}
+    )
     values = {
         "stiffness": Estimate(150.0, 90.0, 160.0, "N m/rad"),
         "damping": Estimate(9.0, 8.0, 10.0, "N m s/rad"),  # does not count
@@ -184,7 +186,7 @@ def test_closed_is_relative_to_the_oracle_and_needs_something_to_close():
 
 def test_false_alarms_and_names_for_what_has_none():
     partly = Verdict("unknown", (RIGHT,), unexplained=UNKNOWN.unexplained)
-    strange = TrueEffect("cogging", KNEE, {"torque": 0.1})
+    strange = EffectValues("cogging", KNEE, {"torque": 0.1})
     score = scored(
         ("none", (), NOTHING, None),
         ("none", (), UNKNOWN, None),

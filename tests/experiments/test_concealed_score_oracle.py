@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import Estimate, Found
 from experiments.concealed_score_oracle import (
     Oracle,
@@ -14,7 +15,7 @@ from experiments.concealed_score_oracle import (
     log_score_gain,
     read_case,
 )
-from experiments.concealed_score_truth import TrueCase, TrueEffect
+from experiments.concealed_score_truth import TrueCase
 from groundwalk.errors import RunFolderError
 from worlds import Recording, RecordingMetadata, write_recording
 from worlds.recording_metadata import ServoGains
@@ -25,7 +26,7 @@ XML = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody>
 </worldbody></mujoco>"""
 KP, KD, LIMIT, TRUE = 8.0, 0.2, 4.0, 0.08
 STEP_S, TICK_S = 0.0005, 0.01
-VISCOUS = TrueEffect("viscous_friction", "swing", {"coefficient": TRUE})
+VISCOUS = EffectValues("viscous_friction", "swing", {"coefficient": TRUE})
 
 
 def swing(seed, seconds=3.0):

@@ -45,6 +45,25 @@ def test_a_diagnosis_writes_all_that_it_promises(recording, tmp_path, capsys):
         main(Diagnose((recording,), str(model), out=out))
 
 
+@pytest.mark.slow
+def test_what_was_there_before_is_no_finding(recording, tmp_path, capsys):
+    model = recording.with_name("swing.nominal.xml")
+    out = tmp_path / "run"
+    main(Diagnose((recording,), str(model), reference=(recording,), out=out))
+    verdict = Verdict.from_json((out / "diagnosis.json").read_text())
+    assert verdict.kind == "none"
+    assert "servo_gain at swing" in verdict.limits[-1]
+    assert not (out / "corrected.json").exists()
+
+
+def test_a_reference_of_another_robot_is_refused(recording, tmp_path):
+    other = tmp_path / "arm.parquet"
+    record(Record(robot="so101", motion="steps", duration=1.0, out=other))
+    model = recording.with_name("swing.nominal.xml")
+    with pytest.raises(BadRecordingError, match="joint"):
+        main(Diagnose((recording,), str(model), reference=(other,)))
+
+
 def test_a_recording_of_another_robot_is_refused_and_nothing_is_written(
     recording, tmp_path
 ):

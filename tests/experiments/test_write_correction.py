@@ -27,8 +27,9 @@ def found(effects):
     return SimpleNamespace(
         verdict=SimpleNamespace(effects=effects),
         model=(PLAY, WEAK),
+        given=(),
         plant=plant,
-        test=SimpleNamespace(traces=[SimpleNamespace(servo=plant.servo)]),
+        test=SimpleNamespace(traces=[SimpleNamespace(servo=plant.servo, unheld=False)]),
     )
 
 

@@ -1,0 +1,81 @@
+"""`groundwalk real-robots`: diagnose real recordings, and judge the answer."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+from diagnosis.search_result import Rules
+from experiments.command_line import run_verb
+from experiments.diagnose import Diagnose, run_diagnosis
+from experiments.diagnosis_console import print_verdict
+from experiments.real_robots_cases import ROBOTS, RealRobot
+from experiments.real_robots_page import write_real_page
+from experiments.result_page import PAGE
+from groundwalk.errors import BadValueError
+
+DATA = Path("../shared/data")
+
+
+@dataclass(frozen=True)
+class RealRobots:
+    """Diagnose recordings of a real robot, and hold the answer against what is known.
+
+    Attributes:
+      robot: whose recordings.
+      data: folder with a folder of recordings for each robot.
+      seed: every random number follows from it.
+      threads: of the replays.
+      out: the run's folder; a new one under runs/ by default.
+    """
+
+    robot: Annotated[Literal["so101", "emps", "go2"], tyro.conf.Positional]
+    data: Path = DATA
+    seed: int = 1
+    threads: int = 2
+    out: Path | None = None
+
+    def diagnose(self) -> Diagnose:
+        """The diagnosis that this is.
+
+        Raises:
+          BadValueError: there are no recordings.
+        """
+        case = ROBOTS[self.robot]
+        folder = self.data / case.folder
+        recordings = tuple(sorted(folder.glob("*.parquet")))
+        if not recordings:
+            raise BadValueError(
+                f"{folder} has no recordings; --data says where they are"
+            )
+        gains = case.gains
+        share = case.least_share
+        return Diagnose(
+            recordings,
+            _model(case, folder),
+            kp=None if gains is None else gains.kp,
+            kd=None if gains is None else gains.kd,
+            max_torque=None if gains is None else gains.max_torque,
+            drive=case.drive,
+            least_share=Rules.least_of_all if share is None else share,
+            seed=self.seed,
+            threads=self.threads,
+            out=self.out,
+        )
+
+
+def main(config: RealRobots) -> None:
+    """Diagnose, write the page, and say what was found."""
+    folder, verdict = run_diagnosis(config.diagnose())
+    write_real_page(folder, ROBOTS[config.robot], verdict)
+    print_verdict(verdict, [folder.path / PAGE])
+
+
+def _model(case: RealRobot, folder: Path) -> str:
+    own = folder / case.model
+    return str(own) if own.suffix else case.model
+
+
+if __name__ == "__main__":
+    run_verb(RealRobots, main)

@@ -1,0 +1,73 @@
+"""An effect is new if it gains now, nearly always, what it would not have before."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from diagnosis.proven import proven
+from diagnosis.search_result import Found
+
+FIRST, SECOND = ("first",), ("first", "second")
+
+
+class Known:
+    """A predictor of eight moments, of ten values each, whose gains are given."""
+
+    def __init__(self, **gains):
+        self._gains = {"": np.zeros(8)} | {
+            name: np.array(values, float) for name, values in gains.items()
+        }
+        self.block = np.repeat(np.arange(8), 10)
+        self.scored = np.ones(80, bool)
+
+    def residuals(self, models):
+        """Of one value in each moment; the energy is 1000 without any effect."""
+        found = np.zeros((len(models), 8, 10))
+        for row, model in zip(found, models, strict=True):
+            gain = sum((self._gains[name] for name in model), np.zeros(8))
+            row[:, 0] = np.sqrt(2 * (1000 - gain))
+        return found.reshape(len(models), -1)
+
+
+def chosen(now, before, size=1):
+    best = {1: [SimpleNamespace(model=FIRST)], 2: [SimpleNamespace(model=SECOND)]}
+    search = SimpleNamespace(select=now, well=before)
+    return proven(search, Found(0.0, 0.0, best, size)).chosen
+
+
+STEADY, WILD = [20, 25, 18, 22, 24, 19, 21, 23], [150, -20, 3, -15, 5, -10, 8, 2]
+NONE = [-1, 2, 0, -2, 1, 0, -1, 1]
+
+
+@pytest.mark.parametrize(
+    ("now", "before", "expected"),
+    [
+        (STEADY, NONE, 1),
+        (STEADY, [-50] * 8, 1),
+        (STEADY, STEADY[::-1], 0),
+        (WILD, NONE, 0),
+        (STEADY, WILD, 0),
+    ],
+)
+def test_what_is_new_gains_at_all_moments_and_did_not_before(now, before, expected):
+    assert chosen(Known(first=now), [Known(first=before)]) == expected
+
+
+def test_a_second_effect_must_be_new_by_itself():
+    now = Known(first=STEADY, second=WILD)
+    before = Known(first=NONE, second=NONE)
+    assert chosen(now, [before], size=2) == 1
+    better = Known(first=STEADY, second=STEADY)
+    assert chosen(better, [before], size=2) == 2
+
+
+def test_a_longer_reference_expects_no_more():
+    """What is to be expected grows with the time, whichever the reference has."""
+    before = Known(first=[10] * 8)
+    now = Known(first=[14, 15, 16, 15, 14, 16, 15, 15])
+    assert chosen(now, [before]) == chosen(now, [before, before]) == 1
+
+
+def test_without_a_reference_nothing_is_asked():
+    assert chosen(Known(first=WILD), []) == 1
