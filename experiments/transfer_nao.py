@@ -38,10 +38,10 @@ VERB = "transfer-nao"
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"
 PLAN = (
     (START, 0),
-    (SGAT, 1),
-    (GAT, 1),
     (UNEVEN, 1),
     (UNEVEN, 2),
+    (SGAT, 1),
+    (GAT, 1),
     (SGAT, 2),
     (GAT, 2),
     (ENSEMBLE, 1),
