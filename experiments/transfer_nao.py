@@ -11,6 +11,7 @@ import robots
 import worlds
 from experiments.command_line import run_verb
 from experiments.evaluation import Study, evaluate
+from experiments.grounded_sim import ROBOT, GroundedSim
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.score_table import print_json
@@ -20,13 +21,10 @@ from experiments.transfer_nao_figure import FIGURE, draw_cells
 from experiments.transfer_nao_page import CELLS, HEADINGS, table_of, write_nao_page
 from experiments.walk_data import GaitCloud
 from experiments.walk_groundings import (
-    ENSEMBLE,
     GAT,
     NONE,
-    ROBOT,
     SGAT,
     UNEVEN,
-    GroundedSim,
     action_envelope,
 )
 from experiments.walk_raters import GroundedRater, RandomisedRater, Rater, RealRater
@@ -44,8 +42,6 @@ PLAN = (
     (GAT, 1),
     (SGAT, 2),
     (GAT, 2),
-    (ENSEMBLE, 1),
-    (ENSEMBLE, 2),
     (NONE, 1),
     (RANDOMISED, 1),
     (ANE, 1),

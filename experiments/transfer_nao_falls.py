@@ -9,6 +9,7 @@ import numpy as np
 
 import robots
 from experiments.command_line import run_verb
+from experiments.grounded_sim import ROBOT, walk_in_sim
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, open_run
 from experiments.score_table import print_json
@@ -27,19 +28,13 @@ from experiments.transfer_nao_falls_page import (
     write_falls_page,
 )
 from experiments.trials import Trials
-from experiments.walk_data import WALK, GaitCloud, walk
-from experiments.walk_groundings import (
-    GROUNDINGS,
-    ROBOT,
-    Walked,
-    WalkModels,
-    walk_in_sim,
-)
+from experiments.walk_data import GaitCloud, walk
+from experiments.walk_groundings import GROUNDINGS, WalkModels
+from experiments.walk_records import record_walks
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 
 VERB = "transfer-nao-falls"
-EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
 STAGES = 2 + len(GROUNDINGS)
 
 
@@ -113,10 +108,8 @@ def _stages(
         return
     learned = GaitCloud().draw(start, config.real_walks, _seed(config, 2))
     explored = GaitCloud().draw(start, config.sim_walks, _seed(config, 3))
-    trials, real = walk("real", description, learned, _seed(config, 4))
-    _, sim = walk("sim", description, explored, _seed(config, 5), EXPLORATION_RAD)
-    walked = Walked(learned, trials.fell, WALK)
-    models = WalkModels(real, sim, _seed(config, 6), walked)
+    records = record_walks(learned, explored, _seed(config, 4))
+    models = WalkModels(records, _seed(config, 6))
     if MEASURES not in done:
         _, unseen = walk("real", description, held_out, _seed(config, 8))
         yield MEASURES, measures_of(models, unseen, _seed(config, 9))

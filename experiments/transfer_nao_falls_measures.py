@@ -9,8 +9,9 @@ import numpy as np
 
 import robots
 from experiments.figure_file import write_figure
+from experiments.grounded_sim import ROBOT
 from experiments.walk_data import leg_senses
-from experiments.walk_groundings import ENSEMBLE, ROBOT, SGAT, WalkModels
+from experiments.walk_groundings import ENSEMBLE, SGAT, WalkModels
 from groundwalk.arrays import FloatArray
 from robots import biped
 from sgat.grounding_report import GroundingReport

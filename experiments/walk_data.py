@@ -1,9 +1,9 @@
 """What the models of a grounding learn from: walks in either world."""
 
 import contextlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 
 import numpy as np
 
@@ -16,8 +16,12 @@ from robots import Description, biped
 from sgat.transitions import Transitions
 from sgat.walk_senses import WalkSenses
 from sgat.watched_world import WatchedWorld
+from terrain import Heightfield
 from walk_engine import Gait
 from walk_engine.gait import NAMES, from_unit, to_unit
+from worlds import WorldOptions
+
+MakeGround = Callable[[np.random.SeedSequence], Heightfield]
 
 WALK = TrialRules(limit_s=7.5, start_spread_rad=0.01)
 """A walk of the paper's length, from a start pose that spreads."""
@@ -70,16 +74,20 @@ def walk(
     seed: np.random.SeedSequence,
     exploration_rad: Sequence[float] = (0.0,),
     rules: TrialRules = WALK,
+    ground: MakeGround | None = None,
+    options: WorldOptions | None = None,
 ) -> tuple[Trials, Transitions]:
     """Each gait walks once, on ground of its own; everything is noted.
 
     Args:
-      world_name: "sim" or "real", as they are by default.
+      world_name: "sim" or "real".
       description: the robot.
       vectors: (n, 16) gaits.
       seed: of grounds, noise, start poses and exploration.
       exploration_rad: noise on the commands; the gaits get them in turn.
       rules: when a walk is over.
+      ground: makes one from a seed; by default the world's own kind.
+      options: of the world; its own by default.
     """
     kind = worlds.kind(world_name)
     levels = np.resize(np.asarray(exploration_rad, float), (len(vectors), 1))
@@ -88,11 +96,13 @@ def walk(
     for first in range(0, len(vectors), MOST_AT_ONCE):
         rows = slice(first, first + MOST_AT_ONCE)
         seeds = children[: len(vectors)][rows]
-        grounds = [terrain.make(kind.terrain, child) for child in seeds]
-        if kind.terrain == "flat":
-            grounds = grounds[:1] * len(seeds)
+        if ground is None and kind.terrain == "flat":
+            grounds = [terrain.make("flat", 0)] * len(seeds)
+        else:
+            make = ground or partial(terrain.make, kind.terrain)
+            grounds = [make(child) for child in seeds]
         world = WatchedWorld(
-            worlds.make(world_name, description, grounds, seeds),
+            worlds.make(world_name, description, grounds, seeds, options),
             leg_senses(description),
             levels[rows],
             children[len(vectors) + first],

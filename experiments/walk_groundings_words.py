@@ -3,8 +3,9 @@
 from experiments.walk_groundings import UNEVEN
 
 UNEVEN_MEANS = (
-    f"{UNEVEN}: the sim has lumps of its own, as high as makes the gaits of the real",
-    "walks fall as often there as they did on real ground; and the inverse model was",
-    "fitted to next states as wrong as predicted ones are, so that it does not blow",
-    "errors of a tick up to commands.",
+    f"{UNEVEN}: chance has its place where it arises. The sim has lumps of its own, as",
+    "high as makes the gaits of the real walks fall as often there, and sensors with",
+    "the real ones' noise; commands cannot make a robot trip on flat ground. What is",
+    "left, the joints, is grounded by one network that is fitted as a whole, so that",
+    "after its commands a model of the sim does what the real joints did.",
 )

@@ -9,9 +9,9 @@ import robots
 import terrain
 import worlds
 from experiments.evaluation import MOST_AT_ONCE
+from experiments.grounded_sim import ROBOT, GroundedSim, walk_in_sim
 from experiments.reward import reward_cm_s
 from experiments.trials import TrialRules, Trials, walk_trials
-from experiments.walk_groundings import ROBOT, GroundedSim, walk_in_sim
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield
 from worlds import WorldOptions
@@ -39,15 +39,17 @@ class GroundedRater:
     Attributes:
       sim: that gaits walk in.
       repeats: walks of each gait.
+      rules: of the walks.
     """
 
     sim: GroundedSim
     repeats: int
+    rules: TrialRules = RATED
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
         """See `Rater`."""
-        trials = walk_in_sim(self.sim, vectors, self.repeats, seed, RATED)
-        rewards = _reward_cm_s(trials)
+        trials = walk_in_sim(self.sim, vectors, self.repeats, seed, self.rules)
+        rewards = _reward_cm_s(trials, self.rules)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
 
 
@@ -116,5 +118,5 @@ def _walk(
         world.close()
 
 
-def _reward_cm_s(trials: Trials) -> FloatArray:
-    return reward_cm_s(trials, RATED.limit_s, FALL_PENALTY_WALK_CM_S)
+def _reward_cm_s(trials: Trials, rules: TrialRules = RATED) -> FloatArray:
+    return reward_cm_s(trials, rules.limit_s, FALL_PENALTY_WALK_CM_S)

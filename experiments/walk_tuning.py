@@ -6,25 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-import robots
+from experiments.grounded_sim import SHORT_START_M
 from experiments.search import GaitSearch
 from experiments.search_run import Entry, run_search
-from experiments.walk_data import ON_COURSE, GaitCloud, on_lumps, walk
-from experiments.walk_groundings import (
-    GROUNDINGS,
-    ROBOT,
-    Walked,
-    WalkModels,
-)
-from experiments.walk_raters import GroundedRater, Rater
-from sgat.transitions import Transitions
+from experiments.walk_data import ON_COURSE, GaitCloud
+from experiments.walk_groundings import GROUNDINGS, UNEVEN, WalkModels
+from experiments.walk_raters import RATED, GroundedRater, Rater
+from experiments.walk_records import WalkRecords, record_walks
 from walk_engine import Gait
-
-EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
-"""Noise on the commands of the sim's walks: it shows what an action does."""
-
-RATED_START_M = 0.1
-"""A search's walks are short: they shall not spend half of their time on the flat."""
 
 
 @dataclass(frozen=True)
@@ -89,39 +78,32 @@ class Grounding:
         self._around, self._cloud, self._walks = around, cloud, walks
         self._seeds = [
             np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))
-            for use in range(5)
+            for use in range(4)
         ]
         self._before = before
 
     @cached_property
-    def data(self) -> tuple[Transitions, Transitions, Walked]:
-        """Transitions of the real world and of the sim so far, and who fell."""
-        description = robots.get(ROBOT)
+    def records(self) -> WalkRecords:
+        """All walks so far."""
         of_real, of_sim = (
             self._cloud.draw(self._around, count, seed)
             for count, seed in zip(self._walks, self._seeds, strict=False)
         )
-        trials, real = walk(
-            "real", description, of_real, self._seeds[2], rules=ON_COURSE
-        )
-        real, walked = on_lumps(real), Walked(of_real, trials.fell, ON_COURSE)
-        _, sim = walk("sim", description, of_sim, self._seeds[3], EXPLORATION_RAD)
-        if self._before is None:
-            return real, sim, walked
-        real_before, sim_before, _ = self._before.data
-        return real_before.joined(real), sim_before.joined(sim), walked
+        new = record_walks(of_real, of_sim, self._seeds[2])
+        return new if self._before is None else self._before.records.joined(new)
 
     @cached_property
     def models(self) -> WalkModels:
         """Fitted to all data so far."""
-        real, sim, walked = self.data
-        return WalkModels(real, sim, self._seeds[4], walked)
+        return WalkModels(self.records, self._seeds[3])
 
     def rater(self, grounding: str, repeats: int) -> GroundedRater:
         """The sim behind one of `GROUNDINGS`."""
         assert grounding in GROUNDINGS
-        sim = self.models.grounded(grounding)
-        return GroundedRater(replace(sim, start_m=RATED_START_M), repeats)
+        sim = replace(self.models.grounded(grounding), start_m=SHORT_START_M)
+        # Where lumps make a robot fall, a walk tells the more the longer it is.
+        rules = ON_COURSE if grounding == UNEVEN else RATED
+        return GroundedRater(sim, repeats, rules)
 
 
 def cloud_around(gait: Gait) -> GaitCloud:

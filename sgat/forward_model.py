@@ -1,6 +1,6 @@
 """The real world's dynamics as a distribution over next states."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Self
 
@@ -16,7 +16,8 @@ from sgat.model_file import read_model, write_model
 from sgat.network import Float32Array
 from sgat.noise import NoiseStream
 from sgat.scaled_network import ScaledNetwork
-from sgat.training import Stage, squared_error
+from sgat.scaling import Scaling
+from sgat.training import Stage, raw_outputs, squared_error
 from sgat.transitions import Transitions
 
 _KIND = "forward"
@@ -54,6 +55,11 @@ class ForwardModel:
     def outcomes(self) -> int:
         """Columns of a next state."""
         return len(self._network.targets.mean)
+
+    @property
+    def scalings(self) -> tuple[Scaling, Scaling]:
+        """Units of a state beside an action, and of a next state's change."""
+        return self._network.inputs, self._network.targets
 
     @property
     def outcome_scale(self) -> FloatArray:
@@ -113,6 +119,21 @@ class ForwardModel:
         ]
         units = network.targets.spread[:, None] / self.action_scale(actions)
         return np.asarray(np.mean(slopes, axis=0) * units)
+
+    def scaled_change(self) -> Callable[[Tensor], Tensor]:
+        """The mean change as a function that torch can differentiate.
+
+        It takes (n, s + a) states beside actions and gives (n, p), both scaled.
+        """
+        network = self._network.network
+        layers = zip(network.weights, network.biases, strict=True)
+        parameters = [torch.tensor(array) for layer in layers for array in layer]
+
+        def change(x: Tensor) -> Tensor:
+            means: Tensor = self._head.mean(raw_outputs(parameters, x), torch)
+            return means.mean(dim=0)
+
+        return change
 
     def score(self, transitions: Transitions) -> float:
         """Mean log-likelihood per transition and dimension, in units of the state.

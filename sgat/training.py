@@ -116,7 +116,7 @@ def _first_parameters(
     return parameters
 
 
-def _raw(parameters: list[Tensor], x: Tensor) -> Tensor:
+def raw_outputs(parameters: Sequence[Tensor], x: Tensor) -> Tensor:
     """(members, n, outputs): what `Network` computes, with gradients."""
     values = x.expand(len(parameters[0]), *x.shape)
     for weight, bias in zip(parameters[:-2:2], parameters[1:-2:2], strict=True):
@@ -141,7 +141,9 @@ def _epochs(
         order = torch.randperm(len(examples.x), generator=generator)
         for first in range(0, len(order), config.batch):
             rows = order[first : first + config.batch]
-            losses = stage.loss(_raw(parameters, examples.x[rows]), examples.y[rows])
+            losses = stage.loss(
+                raw_outputs(parameters, examples.x[rows]), examples.y[rows]
+            )
             optimiser.zero_grad()
             mean = (losses * minds[:, rows]).mean(dim=1)
             mean.sum().backward()  # type: ignore[no-untyped-call]
@@ -163,7 +165,7 @@ def _cut_gradients(parameters: list[Tensor]) -> None:
 @torch.no_grad()
 def _means(score: Loss, parameters: list[Tensor], examples: Examples) -> Tensor:
     """(members,) mean score."""
-    return score(_raw(parameters, examples.x), examples.y).mean(dim=1)
+    return score(raw_outputs(parameters, examples.x), examples.y).mean(dim=1)
 
 
 class _BestWeights:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from experiments.walk_groundings import GroundedSim
+from experiments.grounded_sim import GroundedSim
 from experiments.walk_raters import (
     GroundedRater,
     RandomisedRater,
