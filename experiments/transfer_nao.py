@@ -1,6 +1,6 @@
 """`groundwalk transfer nao`: gaits tuned in grounded sims, tried on uneven ground."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -131,20 +131,28 @@ def main(config: TransferNao) -> None:
     """Find every cell's gait and try it; what is done is not done again."""
     folder, config = open_run(VERB, config)
     study = _Study(config, folder)
+    if study.cells:
+        _write(folder, config, study.cells)
     with progress("ways to a gait", len(config.plan), done=len(study.cells)) as bar:
         for method, step in config.plan:
             if study.cell(method, step) is None:
                 study.compute(method, step)
                 bar.advance(f"{method}, step {step} done")
-    result = {CELLS: study.cells}
-    folder.write_json(RESULT, result)
-    draw_cells(study.cells, folder.path / FIGURE)
-    write_nao_page(folder, study.cells)
+                _write(folder, config, study.cells)
     if config.json:
-        print_json(result)
+        print_json({CELLS: study.cells})
     else:
         print_table(HEADINGS, table_of(study.cells))
         print(f"everything else is in {folder.path}")
+
+
+def _write(
+    folder: RunFolder, config: TransferNao, cells: Sequence[Mapping[str, Any]]
+) -> None:
+    """Write down what is known so far: a study takes hours."""
+    folder.write_json(RESULT, {CELLS: cells})
+    draw_cells(cells, folder.path / FIGURE)
+    write_nao_page(folder, cells, len(config.plan))
 
 
 class _Study:
