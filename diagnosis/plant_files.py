@@ -1,8 +1,5 @@
-"""Robots in files: MJCF, URDF, and the URDFs of example-robot-data."""
+"""Robots in files: MJCF and URDF."""
 
-from collections import Counter
-from functools import cache
-from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
@@ -14,31 +11,9 @@ from groundwalk.errors import BadModelError
 if TYPE_CHECKING:
     import mujoco
 
-_COLLECTION = "example-robot-data"
 _COMPILER = {"balanceinertia": "true", "boundmass": "1e-6", "boundinertia": "1e-9"}
 _INERTIA_AXES = ("xx", "yy", "zz", "xy", "xz", "yz")
 _NO_DYNAMICS = ("transmission", "gazebo", "material", "mujoco")
-
-
-@cache
-def example_robots() -> dict[str, Path]:
-    """URDF files of the installed example-robot-data by name.
-
-    The name is the file's stem, such as "go2"; where two files share it, their
-    folder's name stands before it, such as "anymal_b_simple_description/anymal".
-    """
-    try:
-        listed = files(_COLLECTION) or []
-    except PackageNotFoundError:
-        return {}
-    found = [file for file in listed if file.suffix == ".urdf"]
-    times = Counter(file.stem for file in found)
-    return {
-        file.stem if times[file.stem] == 1 else f"{file.parts[-3]}/{file.stem}": Path(
-            str(file.locate())
-        )
-        for file in found
-    }
 
 
 def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":

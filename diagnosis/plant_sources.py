@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from diagnosis.plant import ROOT, Base, Plant
 from diagnosis.plant_base import lock_joints, set_base, standing_bodies
-from diagnosis.plant_files import example_robots, mjcf_spec, urdf_spec
+from diagnosis.plant_files import mjcf_spec, urdf_spec
 from diagnosis.plant_servos import (
     Gains,
     add_servos,
@@ -20,6 +20,7 @@ from groundwalk.errors import BadModelError, BadRecordingError, UnknownNameError
 from robots import Description
 from robots import get as robot
 from robots import names as robot_names
+from robots.package_paths import example_robots
 from worlds.recording_columns import nearest
 
 if TYPE_CHECKING:

@@ -1,6 +1,5 @@
 """Commands that make a robot on its feet show its physics: squat, sway, walk."""
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -9,7 +8,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import UnknownNameError
 from robots import Biped, Description, biped
 from walk_engine import Velocity, WalkEngine, gaits
-from walk_engine.leg_ik import MIRROR, inverse
+from walk_engine.legs import legs_of
 from worlds.hidden_engine import BodySense
 from worlds.world import TICK_S
 
@@ -63,13 +62,16 @@ def _pose(body: Biped, down: FloatArray, aside_m: FloatArray) -> FloatArray:
     rest = np.clip(0.0, low, high)
     command = np.repeat(rest[None], len(down), axis=0)
     none = np.zeros_like(down)
-    for columns, side, mirror in (
-        (body.left_leg, -1.0, np.ones(6)),
-        (body.right_leg, 1.0, np.array(MIRROR)),
-    ):
-        ankle = np.stack([none + hip_x, hip_y + side * aside_m, hip_z - length])
-        angles = inverse(leg, none, ankle, none)
-        command[:, list(columns)] = (mirror[:, None] * angles).T
+    ankle = [
+        np.stack([none + hip_x, hip_y + side * aside_m, hip_z - length])
+        for side in (-1.0, 1.0)
+    ]
+    still = np.zeros((2, len(down)))
+    left, right = legs_of(body).angles(
+        np.stack(ankle, axis=1), still, still, np.stack([still, still])
+    )
+    command[:, list(body.left_leg)] = left.T
+    command[:, list(body.right_leg)] = right.T
     return command
 
 
@@ -84,8 +86,9 @@ def _swing_arms(
         if arm is None:
             continue
         turns = 2 * np.pi * rng.uniform(0.2, 0.6) * time_s + rng.uniform(0, 2 * np.pi)
-        command[:, arm[0]] = math.pi / 2 + _ARM_RAD * start * np.sin(turns)
-        command[:, arm[1]] = side * _ARM_ROLL_RAD
+        hanging = body.hanging_rad[0 if side > 0 else 1]
+        command[:, arm[0]] = hanging + _ARM_RAD * start * np.sin(turns)
+        command[:, list(arm[1:])] = side * _ARM_ROLL_RAD
 
 
 def walking_feed(

@@ -1,4 +1,4 @@
-"""`groundwalk visualize`: recordings in Rerun, and a run's search as a picture."""
+"""`groundwalk visualize`: recordings in Rerun, and a run's search."""
 
 import json
 from collections.abc import Sequence
@@ -13,6 +13,7 @@ from experiments.new_file import check_new
 from experiments.run_folder import RECORDINGS, RunFolder
 from experiments.run_pictures import WALK_RERUN, picture_search
 from experiments.scenes import make_scenes, read_recordings, scene_names
+from experiments.visualize_search import visualize_search
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from worlds import Recording, read_recording
 from worlds.rerun_log import write_rrd
@@ -23,16 +24,17 @@ _HEAD_BYTES = 4096
 
 @dataclass(frozen=True)
 class Visualize:
-    """Show recordings in Rerun: robot and ground, joints, foot forces, support phase.
+    """Show recordings in Rerun: robot, ground, balance, joints, forces, support.
 
     All of them go into one .rrd file, side by side. Of a run, this takes all its
-    recordings, and draws its search if that is not done yet.
+    recordings; its search becomes a file search.rrd of its own, and a picture. See
+    docs/seeing.md.
 
     Attributes:
       paths: run folders, or recordings (.parquet or .csv).
       out: the .rrd file to write; by default walk.rrd in a run folder, the recording's
         name with .rrd beside it, or comparison.rrd beside the first of several.
-      open: open the file in Rerun's viewer.
+      open: open what was written in Rerun's viewer, which only this machine reaches.
       json: print what was written as JSON.
     """
 
@@ -56,27 +58,30 @@ class Visualize:
 
 def main(config: Visualize) -> None:
     """Write the pictures that there is something to draw for, and say where."""
-    pictures = [
-        picture
-        for path in config.paths
-        if path.is_dir() and (picture := picture_search(RunFolder.at(path)))
-    ]
+    runs = [RunFolder.at(path) for path in config.paths if path.is_dir()]
+    pictures = [*filter(None, map(picture_search, runs))]
     recordings = gather(config.paths)
+    if not recordings and (config.out or not pictures):
+        raise RunFolderError(
+            f"{config.paths[0]} holds no recordings: the run did not get there"
+        )
+    files = [*filter(None, map(visualize_search, runs))]
     rerun = None
     if recordings:
         rerun = config.out or default_out(config.paths)
         write_rrd(rerun, make_scenes(recordings))
-    elif config.open or config.out or not pictures:
-        raise RunFolderError(
-            f"{config.paths[0]} holds no recordings: the run did not get there"
-        )
+        files.insert(0, rerun)
     if config.json:
-        written = {"rrd": rerun and str(rerun), "pictures": list(map(str, pictures))}
+        written = {
+            "rrd": rerun and str(rerun),
+            "searches": [str(file) for file in files if file != rerun],
+            "pictures": list(map(str, pictures)),
+        }
         print(json.dumps(written, indent=1))
     else:
-        print(*filter(None, (*pictures, rerun)), sep="\n")
-    if config.open and rerun:
-        open_viewer([rerun])
+        print(*pictures, *files, sep="\n")
+    if config.open:
+        open_viewer(files)
 
 
 def gather(paths: Sequence[Path]) -> dict[str, Recording]:

@@ -1,27 +1,52 @@
-"""The robots that there are, by name."""
+"""The robots that there are: by name, or from files."""
 
+import tomllib
 from functools import cache
 from pathlib import Path
 
-from groundwalk.errors import UnknownNameError
+from groundwalk.errors import BadModelError, UnknownNameError
+from robots.adaptation import Adaptation, read_adaptation
+from robots.adapter import adapted
 from robots.description import Description
 from robots.read_description import read_description
 
 _FOLDER = Path(__file__).parent
+_URDF, _TOML = ".urdf", ".toml"
 
 
 def names() -> list[str]:
     """Every name that `get` knows."""
-    return sorted(path.stem for path in _FOLDER.glob("*.toml"))
+    return sorted(path.stem for path in _FOLDER.glob(f"*{_TOML}"))
 
 
 @cache
 def get(name: str) -> Description:
-    """The robot of that name.
+    """The robot of that name, or of a file.
+
+    Args:
+      name: one of `names`, a URDF (.urdf) of a robot on two legs, or a TOML file
+        (.toml) that says what a URDF leaves open (`Adaptation`).
 
     Raises:
       UnknownNameError: there is none.
+      GroundwalkError: the file holds no robot that walks on two legs; says why.
     """
-    if name not in names():
-        raise UnknownNameError("robot", name, names())
-    return read_description(_FOLDER / f"{name}.toml")
+    path = Path(name)
+    if path.suffix.lower() not in (_URDF, _TOML):
+        if name not in names():
+            raise UnknownNameError("robot", name, names())
+        path = _FOLDER / f"{name}{_TOML}"
+    if not path.is_file():
+        raise BadModelError(f"{path}: no such file")
+    if path.suffix.lower() == _URDF:
+        return adapted(name, Adaptation(urdf=path.name), path.parent)
+    if "urdf" in _keys(path):
+        return adapted(name, read_adaptation(path), path.parent)
+    return read_description(path)
+
+
+def _keys(path: Path) -> set[str]:
+    try:
+        return set(tomllib.loads(path.read_text()))
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise BadModelError(f"{path} is no robot: {error}") from error

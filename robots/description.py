@@ -7,14 +7,17 @@ left, z up; with all joints at zero every joint frame is parallel to the root's.
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray, IntArray
-from groundwalk.errors import BadValueError
+from groundwalk.errors import BadValueError, UnknownNameError
 from robots.rigid_body import Inertial
+from robots.scale import NAO_SIZE, Scale
 
 SENSORS_PER_FOOT = ("front_left", "front_right", "rear_left", "rear_right")
+SHAPE_COLOURS = ("shell", "dark", "accent")
 
 
 @dataclass(frozen=True)
@@ -24,11 +27,35 @@ class Capsule:
     Attributes:
       start_m, end_m: ends of the axis in the joint's frame; equal for a sphere.
       radius_m: the radius.
+      colour: one of SHAPE_COLOURS; "accent" is another colour for each robot in view.
     """
 
     start_m: tuple[float, float, float]
     end_m: tuple[float, float, float]
     radius_m: float
+    colour: str = "shell"
+
+    def __post_init__(self) -> None:
+        """Refuse what is no colour."""
+        if self.colour not in SHAPE_COLOURS:
+            raise UnknownNameError("colour of a shape", self.colour, SHAPE_COLOURS)
+
+
+@dataclass(frozen=True)
+class VisualMesh:
+    """A file that shows a part of a link; like a capsule it never touches anything.
+
+    Attributes:
+      path: STL, OBJ or COLLADA.
+      position_m: of the mesh's frame in the joint's frame.
+      orientation: unit quaternion w, x, y, z from the mesh's frame to the joint's.
+      scale: factors of the mesh's own axes.
+    """
+
+    path: Path
+    position_m: tuple[float, float, float]
+    orientation: tuple[float, float, float, float]
+    scale: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -78,11 +105,13 @@ class Link:
       name: the link's name.
       inertial: in the frame of the link's joint, without any rotor.
       shapes: what it looks like.
+      meshes: the same in more detail, where there are files.
     """
 
     name: str
     inertial: Inertial
     shapes: tuple[Capsule, ...]
+    meshes: tuple[VisualMesh, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +178,11 @@ class Description:
       coupled: pairs of joints that one motor holds at the same angle.
       feet: left and right.
       imu: the inertial sensors.
+      scale: how much larger than the NAO it is.
+      legs: columns of the left and the right leg's yaw, roll, pitch, knee, ankle
+        pitch and ankle roll; None where the axes tell.
+      hanging_rad: left and right shoulder pitch at which the arms hang down.
+      ankles_ahead_m: way from hips to ankles when a gait asks for no offset.
     """
 
     name: str
@@ -157,6 +191,10 @@ class Description:
     coupled: tuple[tuple[int, int], ...]
     feet: tuple[Foot, Foot]
     imu: Imu
+    scale: Scale = NAO_SIZE
+    legs: tuple[tuple[int, ...], tuple[int, ...]] | None = None
+    hanging_rad: tuple[float, float] = (math.pi / 2, math.pi / 2)
+    ankles_ahead_m: float = 0.0
 
     @cached_property
     def joints(self) -> tuple[str, ...]:

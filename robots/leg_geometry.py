@@ -5,11 +5,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.errors import BadValueError
+from robots.scale import NAO_SIZE, Scale
 
 LEG_JOINTS = 6
 FOOT_SENSORS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class LegChain:
+    """One leg whose axes need not meet, joint by joint from the hip to the foot.
+
+    Frames are parallel to the torso's with all joints at zero. Roles are yaw, roll,
+    pitch, knee, ankle pitch and ankle roll. Angles by role are positive about +z, +x
+    and +y, and zero with the leg straight down and the sole level.
+
+    Attributes:
+      origins_m: (6, 3) each joint from the one above, the first from the torso.
+      axes: (6, 3) unit vectors.
+      order: (6,) where in the chain each role is.
+      signs: (6,) by role: -1 where the joint turns the other way.
+      zero_rad: (6,) angles by role with all joints at zero.
+      foot_m: (3,) from the ankle, which is the ankle pitch joint, to the last joint.
+    """
+
+    origins_m: FloatArray
+    axes: FloatArray
+    order: IntArray
+    signs: FloatArray
+    zero_rad: FloatArray
+    foot_m: FloatArray
 
 
 @dataclass(frozen=True)
@@ -63,7 +89,8 @@ class Biped:
       leg: lengths and axes of the left leg.
       left_leg: columns of yaw, roll, pitch, knee, ankle pitch and ankle roll.
       right_leg: the same of the right leg.
-      left_arm: columns of shoulder pitch and shoulder roll, None without arms.
+      left_arm: columns of shoulder pitch and, where it has one, of shoulder roll; None
+        without arms.
       right_arm: the same of the right arm.
       joint_range_rad: (joints, 2) lower and upper end.
       max_speed_rad_s: (joints,) what the motors can do without load.
@@ -74,11 +101,16 @@ class Biped:
     leg: LegGeometry
     left_leg: tuple[int, ...]
     right_leg: tuple[int, ...]
-    left_arm: tuple[int, int] | None
-    right_arm: tuple[int, int] | None
+    left_arm: tuple[int, ...] | None
+    right_arm: tuple[int, ...] | None
     joint_range_rad: FloatArray
     max_speed_rad_s: FloatArray
     foot_sensor_xy_m: FloatArray
+    chains: tuple[LegChain, LegChain] | None = None
+    hanging_rad: tuple[float, float] = (math.pi / 2, math.pi / 2)
+    arm_signs: tuple[float, float] = (1.0, 1.0)
+    scale: Scale = NAO_SIZE
+    ankles_ahead_m: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse shapes and columns that do not belong together."""

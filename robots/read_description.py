@@ -122,7 +122,8 @@ def _inertial(values: Table) -> Inertial:
 
 def _capsule(values: Table, offset: FloatArray) -> Capsule:
     start, end = np.array(values["from"]) + offset, np.array(values["to"]) + offset
-    return Capsule(_place(start), _place(end), float(values["radius"]))
+    colour = values.get("colour", "shell")
+    return Capsule(_place(start), _place(end), float(values["radius"]), colour)
 
 
 def _place(values: Iterable[float]) -> tuple[float, float, float]:

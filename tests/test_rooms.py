@@ -11,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
+RERUN = ("balance", "columns", "layout", "search")
 HEAVY = {"mujoco", "pybullet", "rerun", "cma", "torch", "matplotlib"}
 
 
@@ -29,11 +30,12 @@ def lint_imports(folder):
 @pytest.fixture
 def small_house(tmp_path):
     """Empty rooms under our own contracts, with the imports that are allowed."""
+    inside = "def inside():\n    import rerun"
     files = {
         "terrain/field.py": "import groundwalk",
         "robots/model.py": "def model():\n    import mujoco",
         "worlds/rerun_log.py": "import rerun, terrain",
-        "worlds/rerun_layout.py": "def layout():\n    import rerun",
+        **{f"worlds/rerun_{name}.py": inside for name in RERUN},
         "worlds/real.py": "def real():\n    import pybullet, robots",
         "walk_engine/engine.py": "from robots import model",
         "sgat/forward_model.py": "import torch, worlds",

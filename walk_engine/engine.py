@@ -13,7 +13,7 @@ from walk_engine.balance import feedback_share, low_pass, weight_of_new
 from walk_engine.batch import select
 from walk_engine.engine_config import WALK2014_CONFIG, EngineConfig
 from walk_engine.feet import resting_feet
-from walk_engine.gait import NAMES, Gait, stack
+from walk_engine.gait import PARAMETERS, Gait, stack
 from walk_engine.limits import Limits
 from walk_engine.posture import Posture
 from walk_engine.stepper import Progress, Stepper
@@ -50,7 +50,7 @@ class WalkEngine:
 
         Args:
           biped: the robots' legs and joints.
-          gaits: n gaits, or their vectors as an (n, 16) array.
+          gaits: n gaits, or their vectors as an (n, 16) array, in the NAO's size.
           tick_s: time between two calls of `step`.
           first_swing: the foot that is lifted first.
           config: constants that no gait changes.
@@ -64,7 +64,11 @@ class WalkEngine:
             raise BadValueError(
                 f"first_swing is {first_swing!r}; use 'left' or 'right'"
             )
-        self._gait = dict(zip(NAMES, stack(gaits).T.copy(), strict=True))
+        config = config.scaled(biped.scale)
+        self._gait = {
+            parameter.name: values * biped.scale.of(parameter.unit)
+            for parameter, values in zip(PARAMETERS, stack(gaits).T.copy(), strict=True)
+        }
         self._tick_s = tick_s
         self._left_first = first_swing == "left"
         self._stepper = Stepper(biped, self._gait, tick_s, config)

@@ -1,11 +1,15 @@
 """The constants of the walk engine that no gait changes."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 from groundwalk.errors import BadValueError
+from robots.scale import Scale
 
 STANDARD_GRAVITY_M_S2 = 9.80665
+
+_UNITS = {"_m_s": "m/s", "_rad_s": "rad/s", "_s": "s", "_n": "N"}
+"""Of the constants that a robot's size changes, by the ends of their names."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,15 @@ class EngineConfig:
                 raise BadValueError(
                     f"engine {name} is {getattr(self, name)}; it must not exceed 1"
                 )
+
+    def scaled(self, scale: Scale) -> "EngineConfig":
+        """The same constants for a robot of another size."""
+        changes = {}
+        for field in fields(self):
+            ends = (end for end in _UNITS if field.name.endswith(end))
+            factor = scale.of(_UNITS.get(next(ends, ""), "1"))
+            changes[field.name] = getattr(self, field.name) * factor
+        return replace(self, **changes)
 
 
 WALK2014_CONFIG = EngineConfig()

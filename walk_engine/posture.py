@@ -1,14 +1,12 @@
 """From the feet to joint angles: height, lean, legs and arms."""
 
-import math
-
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from robots.leg_geometry import Biped
 from walk_engine.engine_config import EngineConfig
 from walk_engine.feet import Feet
-from walk_engine.leg_ik import MIRROR, inverse
+from walk_engine.legs import legs_of
 from walk_engine.step_plan import GaitColumns
 
 
@@ -20,14 +18,14 @@ class Posture:
         leg = biped.leg
         self._biped = biped
         self._gait = gait
+        self._legs = legs_of(biped)
         self._shoulder_roll_rad = config.shoulder_roll_rad
+        self._below_hip_m = leg.hip_m[0] + biped.ankles_ahead_m
         self._standing_m = leg.ankle_height_m + config.stretch * (
             leg.thigh_m + leg.tibia_m
         )
         low, high = biped.joint_range_rad.T
         self._rest_rad = np.clip(0.0, low, high)
-        # A positive turn about an axis that points down turns the toes inward.
-        self._outward = math.copysign(1.0, leg.yaw_axis[2])
 
     def targets(
         self, feet: Feet, down: FloatArray, ankle_rad: FloatArray
@@ -43,23 +41,22 @@ class Posture:
         """
         biped = self._biped
         target = np.repeat(self._rest_rad[:, None], len(down), axis=1)
-        left, right = self._legs(feet, down)
-        for columns, angles, added in (
-            (biped.left_leg, left, ankle_rad[:, 0]),
-            (biped.right_leg, right, ankle_rad[:, 1]),
-        ):
-            angles[4:] += added
-            target[list(columns)] = angles
-        for arm, behind_m, roll_rad in (
-            (biped.left_arm, feet.behind_m[0], self._shoulder_roll_rad),
-            (biped.right_arm, feet.behind_m[1], -self._shoulder_roll_rad),
+        left, right = self._leg_angles(feet, down, ankle_rad)
+        target[list(biped.left_leg)] = left
+        target[list(biped.right_leg)] = right
+        for side, arm, roll_rad in (
+            (0, biped.left_arm, self._shoulder_roll_rad),
+            (1, biped.right_arm, -self._shoulder_roll_rad),
         ):
             if arm is not None:
-                target[arm[0]] = math.pi / 2 - self._gait["arm_swing"] * behind_m
-                target[arm[1]] = roll_rad
+                swing = self._gait["arm_swing"] * feet.behind_m[side]
+                target[arm[0]] = biped.hanging_rad[side] - biped.arm_signs[side] * swing
+                target[list(arm[1:])] = roll_rad
         return target
 
-    def _legs(self, feet: Feet, down: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _leg_angles(
+        self, feet: Feet, down: FloatArray, ankle_rad: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
         """Angles (6, n) of the left and of the right leg, the soles level."""
         leg = self._biped.leg
         hip_m = self._standing_m + (self._gait["hip_height"] - self._standing_m) * down
@@ -70,14 +67,12 @@ class Posture:
         cosine, sine = np.cos(tilt), np.sin(tilt)
         ankle_m = np.stack(
             (
-                leg.hip_m[0] + cosine * ahead_m + sine * below_m,
+                self._below_hip_m + cosine * ahead_m + sine * below_m,
                 leg.hip_m[1] + outward_m,
                 leg.hip_m[2] + sine * ahead_m - cosine * below_m,
             )
         )
-        yaw = _pair(self._outward * feet.toe_out_rad)
-        angles = inverse(leg, yaw, ankle_m, tilt)
-        return angles[:, 0], angles[:, 1] * np.reshape(MIRROR, (6, 1))
+        return self._legs.angles(ankle_m, _pair(feet.toe_out_rad), tilt, ankle_rad)
 
 
 def _pair(values: FloatArray) -> FloatArray:

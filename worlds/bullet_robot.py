@@ -16,6 +16,7 @@ from terrain import Heightfield
 from worlds.bullet_gear import couple
 from worlds.bullet_ground import load_ground
 from worlds.servo_twin import ServoTwin
+from worlds.soft_ground import FootSpring, soften_bullet
 from worlds.world import WorldOptions
 
 GRAVITY_M_S2 = 9.81
@@ -105,6 +106,9 @@ class BulletRobot:
             forces=[0] * len(links),
             **client,
         )
+        if self._options.sinkage_m:
+            spring = FootSpring.sinking(self._description, self._options.sinkage_m)
+            soften_bullet(bullet, client, body, self._description, spring)
         for first, second in self._description.coupled:
             couple(bullet, client, body, first, second)
         return body

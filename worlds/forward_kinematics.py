@@ -16,6 +16,24 @@ class LinkPoses(NamedTuple):
     orientation: FloatArray
     """(ticks, 4) unit quaternions w, x, y, z from link to world."""
 
+    def axes(self) -> FloatArray:
+        """(ticks, 3, 3) matrices from link to world; NaN where the pose is."""
+        w, x, y, z = self.orientation.T
+        rows = (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+        )
+        return np.moveaxis(np.array(rows), -1, 0)
+
+    def points(self, points_m: FloatArray) -> FloatArray:
+        """(ticks, points, 3) in the world, of (points, 3) in the link's frame."""
+        return self.position_m[:, np.newaxis] + points_m @ self.axes().mT
+
+    def at(self, tick: int) -> "LinkPoses":
+        """The pose at one tick, as the only one."""
+        return LinkPoses(self.position_m[[tick]], self.orientation[[tick]])
+
 
 def link_poses(
     description: Description, position_rad: FloatArray, base: LinkPoses

@@ -10,6 +10,7 @@ from robots.description import Description
 from robots.mjcf import ROOT_JOINT, mujoco_spec
 from robots.sole import contact_shares
 from terrain import Heightfield
+from worlds.soft_ground import FootSpring, soften_mujoco
 from worlds.world import WorldOptions
 
 if TYPE_CHECKING:
@@ -26,11 +27,15 @@ def mujoco_model(
 
     Args:
       description: the robot.
-      options: time step, friction, fixed base.
+      options: time step, friction, softness, fixed base.
       ground: what it stands on; None for nothing.
     """
     grounds = [] if ground is None else [ground]
-    return world_spec(description, options, grounds).compile()
+    model = world_spec(description, options, grounds).compile()
+    if options.sinkage_m:
+        spring = FootSpring.sinking(description, options.sinkage_m)
+        soften_mujoco(model, description, spring)
+    return model
 
 
 def world_spec(

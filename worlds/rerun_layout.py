@@ -5,12 +5,18 @@ from typing import TYPE_CHECKING
 
 from worlds.recording_columns import SUPPORT
 from worlds.scene import Scene
-from worlds.scene_traces import Curve, Plot, plots
+from worlds.scene_balance import loaded_feet
+from worlds.scene_traces import MEASURED_SUPPORT, Curve, Plot, plots
 
 if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
+MOST_ABREAST = 2
+"""As many scenes stand side by side with all their curves; of more, tabs hold these."""
+
+_ON_GROUND = ("below", "pressure", "zmp", "polygon")
 _PAGE_COLUMNS = 2
+_ROBOT_COLUMNS = 4
 
 
 def blueprint(
@@ -25,10 +31,15 @@ def blueprint(
     """
     import rerun.blueprint as rrb
 
-    view = _robot_view if pages else _scene_views
-    rows = [rrb.Horizontal(*map(view, scenes))] if scenes else []
-    if pages:
-        rows.append(rrb.Tabs(*(_page(*page) for page in pages.items())))
+    tabs: list[rrb.Grid | rrb.Vertical] = [_page(*page) for page in pages.items()]
+    if not pages and len(scenes) > MOST_ABREAST:
+        tabs = [_scene_tab(scene) for scene in scenes]
+    if tabs:
+        robots = rrb.Grid(*map(_robot_view, scenes), grid_columns=_ROBOT_COLUMNS)
+        rows = [robots] if scenes else []
+        rows.append(rrb.Tabs(*tabs))
+    else:
+        rows = [rrb.Horizontal(*map(_scene_views, scenes))]
     return rrb.Blueprint(
         rrb.Vertical(*rows) if len(rows) > 1 else rows[0],
         rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
@@ -56,31 +67,84 @@ def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"
+    size = scene.description.scale.length
     follow = rrb.EyeControls3D(
-        position=(0.7, -0.75, 0.5),
-        look_target=(0.0, 0.0, 0.1),
+        position=(0.7 * size, -0.75 * size, 0.5 * size),
+        look_target=(0.0, 0.0, 0.1 * size),
         tracking_entity=f"{at}/robot/{scene.description.root.name}",
     )
     return rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
+
+
+def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
+    """The soles and what lies on the ground, followed from above; ahead is up."""
+    import rerun.blueprint as rrb
+
+    at = f"/{scene.name}"
+    robot = scene.description
+    feet = [robot.links[foot.joint].link.name for foot in robot.feet]
+    follow = rrb.EyeControls3D(
+        position=(-0.02, 0.0, 0.55 * robot.scale.length),
+        look_target=(0.0, 0.0, 0.0),
+        tracking_entity=f"{at}/balance/below",
+    )
+    return rrb.Spatial3DView(
+        name="from above",
+        origin=at,
+        contents=[
+            f"{at}/ground",
+            *(f"{at}/balance/{part}" for part in _ON_GROUND),
+            f"{at}/fall",
+            *(f"{at}/robot/{foot}/rim" for foot in feet),
+        ],
+        eye_controls=follow,
+    )
 
 
 def _scene_views(scene: Scene) -> "rrb.Vertical":
     """The robot above what it did and felt."""
     import rerun.blueprint as rrb
 
+    rows, shares = _traces(scene)
+    above = rrb.Horizontal(
+        _robot_view(scene), _balance_view(scene), column_shares=[3, 2]
+    )
+    return rrb.Vertical(above, *rows, row_shares=[12, *shares])
+
+
+def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
+    """What a scene did and felt, beside the ground from above."""
+    import rerun.blueprint as rrb
+
+    rows, shares = _traces(scene)
+    views = [_balance_view(scene)]
+    if rows:
+        views.append(rrb.Vertical(*rows, row_shares=shares))
+    return rrb.Horizontal(*views, column_shares=[1, 3][: len(views)], name=scene.name)
+
+
+def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]":
+    """Rows of plots and the lanes of the legs, and how high each shall be."""
+    import rerun.blueprint as rrb
+
     at = f"/{scene.name}"
-    rows = [
+    rows: list[rrb.Horizontal | rrb.View] = [
         rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
     ]
-    views = [_robot_view(scene), *rows]
-    shares = [6, *(2 for _ in rows)]
-    if SUPPORT in scene.recording.columns:
-        lane = f"{at}/{SUPPORT}"
-        views.append(
-            rrb.StateTimelineView(name="support", origin=lane, time_view=_window())
+    shares = [4] * len(rows)
+    lanes = [SUPPORT] if SUPPORT in scene.recording.columns else []
+    lanes += [MEASURED_SUPPORT] if loaded_feet(scene) else []
+    if lanes:
+        contents = [f"{at}/{lane}" for lane in lanes]
+        view = rrb.StateTimelineView(
+            name="support: planned and felt",
+            origin=at,
+            contents=contents,
+            time_view=_window(),
         )
-        shares.append(1)
-    return rrb.Vertical(*views, row_shares=shares)
+        rows.append(view)
+        shares.append(3)
+    return rows, shares
 
 
 def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":

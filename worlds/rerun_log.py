@@ -5,13 +5,14 @@ Each scene has a path prefix of its own, so that scenes stand side by side in on
 | entity | what |
 |---|---|
 | `<scene>/robot/<link>` | shapes; pose of the link in the world |
-| `<scene>/robot/<foot>/{sole,force}` | outline; arrows of 5 mm a newton |
+| `<scene>/robot/<foot>/{sole,rim,force}` | plate; its edge; arrows of 5 mm a newton |
 | `<scene>/ground` | the heightfield's triangles |
 | `<scene>/joints/<joint>/{position,velocity,command,...}` | as recorded |
 | `<scene>/contact/{left,right}` | force on each foot [N] |
 | `<scene>/imu/{gyroscope,accelerometer}` | x, y, z [rad/s, m/s^2] |
 | `<scene>/support` | the leg that the gait stands on: left, right or both |
 | `<scene>/events` | why the rollout ended |
+| `<scene>/{balance,fall}`, `<scene>/contact/support` | see `worlds.rerun_balance` |
 
 Beside scenes, or without any, there may be pages of curves, each at a path of its own.
 
@@ -22,18 +23,19 @@ properties, under the scene's name.
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.files import write_bytes
 from worlds import scene_colours as colours
 from worlds.recording_columns import SUPPORT
+from worlds.rerun_balance import support_look, write_balance
+from worlds.rerun_columns import ColumnLog
 from worlds.rerun_layout import blueprint
 from worlds.scene import SIDES, Scene, check_beside, content_id
-from worlds.scene_shapes import capsules, ground_mesh, sole_mesh
-from worlds.scene_traces import Curve, Trace, support_changes, traces
+from worlds.scene_shapes import capsules, ground_mesh, sole_mesh, sole_rim
+from worlds.scene_traces import Curve, support_changes, traces
 from worlds.world import End
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
 
 ARROW_M_PER_N = 0.005
 """Length of an arrow per force: a NAO's weight is 26 cm long."""
-_ARROW_RADIUS_M = 0.006
+_ARROW_RADIUS_M, _RIM_RADIUS_M = 0.006, 0.0015
 _FAILURES = tuple(End)
 
 
@@ -78,49 +80,11 @@ def write_rrd(
     for index, scene in enumerate(scenes):
         _SceneLog(stream, scene, colours.accent(index)).write()
     for time_s, trace in (curve for page in pages.values() for curve in page):
-        _Log(stream, "", time_s).trace(trace)
+        ColumnLog(stream, "", time_s).trace(trace)
     write_bytes(path, file.drain_as_bytes())
 
 
-class _Log:
-    """Writes what belongs to the same times, below one path."""
-
-    def __init__(
-        self, stream: "rr.RecordingStream", at: str, time_s: FloatArray
-    ) -> None:
-        self._stream, self._at = stream, at
-        # Rounded, because Rerun cuts off what is less than a nanosecond.
-        self._time = np.rint(time_s * 1e9).astype("timedelta64[ns]")
-
-    def log(self, path: str, what: "rr.AsComponents") -> None:
-        """Log what does not change."""
-        self._stream.log(f"{self._at}{path}", what, static=True, strict=True)
-
-    def trace(self, trace: Trace) -> None:
-        import rerun as rr
-
-        self.log(trace.path, rr.SeriesLines(names=trace.names, colors=trace.lines))
-        self.send(trace.path, rr.Scalars, scalars=trace.values)
-
-    def send(self, path: str, kind: Any, **columns: FloatArray) -> None:
-        """Send columns over time, without the rows in which a value is missing."""
-        parts = [values.reshape(self._time.size, -1) for values in columns.values()]
-        rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
-        known = {name: values[rows] for name, values in columns.items()}
-        if rows.size:
-            self.send_rows(path, rows, kind.columns(**known))
-
-    def send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
-        import rerun as rr
-
-        indexes = (
-            rr.TimeColumn("sim_time", duration=self._time[rows]),
-            rr.TimeColumn("tick", sequence=rows),
-        )
-        self._stream.send_columns(f"{self._at}{path}", indexes, columns, strict=True)
-
-
-class _SceneLog(_Log):
+class _SceneLog(ColumnLog):
     """Writes one scene into a stream."""
 
     def __init__(
@@ -143,6 +107,7 @@ class _SceneLog(_Log):
         self._write_states()
         for trace in traces(self._scene):
             self.trace(trace)
+        write_balance(self, self._scene)
 
     def _write_robot(self) -> None:
         import rerun as rr
@@ -169,6 +134,10 @@ class _SceneLog(_Log):
             link = f"robot/{robot.links[foot.joint].link.name}"
             sole = sole_mesh(foot, self._accent)
             self.log(f"{link}/sole", rr.Mesh3D(**sole._asdict()))
+            rim = rr.LineStrips3D(
+                [sole_rim(foot)], radii=_RIM_RADIUS_M, colors=self._accent
+            )
+            self.log(f"{link}/rim", rim)
             forces = self._scene.sensor_forces_n(side)
             if forces is None:
                 continue
@@ -185,9 +154,7 @@ class _SceneLog(_Log):
 
         rows, legs = support_changes(self._scene)
         if legs:
-            lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE}
-            look = rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
-            self.log(SUPPORT, look)
+            self.log(SUPPORT, support_look())
             self.send_rows(SUPPORT, rows, rr.StateChange.columns(state=legs))
         end = self._scene.recording.metadata.end
         if end:

@@ -3,8 +3,14 @@
 Colour = tuple[int, int, int]
 
 SHELL: Colour = (236, 236, 240)
+DARK: Colour = (58, 62, 72)
+SKY: Colour = (246, 248, 251)
 GRASS: tuple[Colour, Colour] = ((88, 122, 82), (76, 108, 72))
 FORCE: Colour = (255, 214, 0)
+MASS: Colour = (150, 96, 220)
+ZMP: Colour = (228, 40, 130)
+SUPPORT_POLYGON: Colour = (40, 200, 235)
+FALL: Colour = (226, 40, 40)
 SIDES: dict[str, Colour] = {"left": (76, 155, 232), "right": (232, 146, 76)}
 NEITHER_SIDE: Colour = (138, 143, 152)
 AXES: tuple[Colour, ...] = ((235, 87, 87), (66, 186, 120), (76, 140, 245))

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Capsule, Foot
 from terrain import Heightfield
-from worlds.scene_colours import GRASS, SHELL, Colour
+from worlds.scene_colours import DARK, GRASS, SHELL, Colour
 
 SQUARE_M = 0.25
 SOLE_THICKNESS_M = 0.012
@@ -35,8 +35,14 @@ class Mesh(NamedTuple):
     vertex_colors: npt.NDArray[np.uint8]
 
 
-def capsules(shapes: Sequence[Capsule], joint_colour: Colour) -> Capsules:
-    """A link's shapes; spheres, as which joints are drawn, in a colour of their own."""
+def shape_colours(shapes: Sequence[Capsule], accent: Colour) -> npt.NDArray[np.uint8]:
+    """(n, 3) colours of a link's shapes; the accent is the colour of this robot."""
+    known = {"shell": SHELL, "dark": DARK, "accent": accent}
+    return np.array([known[shape.colour] for shape in shapes], np.uint8)
+
+
+def capsules(shapes: Sequence[Capsule], accent: Colour) -> Capsules:
+    """A link's shapes; see `shape_colours`."""
     start = np.array([shape.start_m for shape in shapes])
     axis = np.array([shape.end_m for shape in shapes]) - start
     downward = axis[:, 2] < 0
@@ -48,13 +54,12 @@ def capsules(shapes: Sequence[Capsule], joint_colour: Colour) -> Capsules:
     x, y, z = axis.T / np.where(is_sphere, 1, length)
     # From +z to an upward axis a: the turn about z x a by half the sum of both.
     turns = np.stack([-y, x, np.zeros_like(x), 1 + z], axis=1)
-    colours = np.where(is_sphere[:, np.newaxis], joint_colour, SHELL)
     return Capsules(
         lengths=length,
         radii=np.array([shape.radius_m for shape in shapes]),
         translations=start,
         quaternions=turns / np.linalg.norm(turns, axis=1, keepdims=True),
-        colors=colours.astype(np.uint8),
+        colors=shape_colours(shapes, accent),
     )
 
 
@@ -64,13 +69,18 @@ def ground_mesh(ground: Heightfield) -> Mesh:
     slope_y, slope_x = np.gradient(ground.heights_m, ground.spacing_m)
     normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    square = np.floor(vertices_m[:, :2] / SQUARE_M).astype(np.intp).sum(axis=1) % 2
     return Mesh(
         vertex_positions=vertices_m,
         triangle_indices=ground.triangles,
         vertex_normals=normals.reshape(-1, 3),
-        vertex_colors=np.array(GRASS, np.uint8)[square],
+        vertex_colors=chessboard(vertices_m),
     )
+
+
+def chessboard(place_m: FloatArray) -> npt.NDArray[np.uint8]:
+    """(n, 3) colour of the ground at (n, 3) places: squares show the motion."""
+    square = np.floor(place_m[:, :2] / SQUARE_M).astype(np.intp).sum(axis=1) % 2
+    return np.asarray(np.array(GRASS, np.uint8)[square])
 
 
 def sole_mesh(foot: Foot, colour: Colour) -> Mesh:
@@ -101,6 +111,12 @@ def sole_mesh(foot: Foot, colour: Colour) -> Mesh:
         vertex_normals=np.vstack([down, up, outward, outward]),
         vertex_colors=np.tile(np.array(colour, np.uint8), (4 * corners, 1)),
     )
+
+
+def sole_rim(foot: Foot) -> FloatArray:
+    """(corners + 1, 3) once around the sole, in the foot's frame."""
+    rim_m = np.vstack([foot.outline_m, foot.outline_m[:1]])
+    return np.hstack([rim_m, np.full((len(rim_m), 1), foot.sole_height_m)])
 
 
 def _counterclockwise(outline_m: FloatArray) -> FloatArray:

@@ -11,6 +11,9 @@ from worlds.recording_columns import JOINT_QUANTITIES, SUPPORT, VECTORS
 from worlds.scene import SIDES, Scene
 
 _IMU = ("gyroscope", "accelerometer")
+MEASURED_SUPPORT = "contact/support"
+SIDEWAYS = "balance/sideways"
+"""Below this path lie the y of the centre of mass and of the points on the ground."""
 _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
 
 
@@ -88,8 +91,11 @@ def plots(scene: Scene) -> list[list[Plot]]:
     sensors = [
         Plot("foot forces [N]", [f"contact/{side}" for side in SIDES], has_key=True),
         Plot("gyroscope [rad/s]", ["imu/gyroscope"], has_key=True),
+        Plot("balance: y [m]", [f"{SIDEWAYS}/**"], has_key=True),
     ]
     recorded = {trace.path for trace in traces(scene)}
+    if scene.recording.has("base.position"):
+        recorded.add(f"{SIDEWAYS}/**")
     rows = [
         [plot for plot in row if not recorded.isdisjoint(plot.paths)]
         for row in (joints, sensors)

@@ -40,8 +40,13 @@ class ServoTwin:
         self._q = slice(root * ROOT_QPOS, None)
         self._v = slice(root * ROOT_QVEL, None)
         self._has_root = not options.fixed_base
-        # dtau/dv of the motor, saturated or not: back-EMF is all its damping
-        self._damping = np.array([link.motor.kd_nm_s_rad for link in description.links])
+        motors = [link.motor for link in description.links]
+        self._stall = np.array([motor.stall_torque_nm for motor in motors])
+        self._stiffness = np.array([motor.kp_nm_rad for motor in motors])
+        # -dtau/dv of the motor as long as its drive is not saturated, and beyond
+        self._damping = np.array([motor.kd_nm_s_rad for motor in motors])
+        speed = np.array([motor.no_load_speed_rad_s for motor in motors])
+        self._back_emf = self._stall / speed
         self._twin_velocity: FloatArray | None = None
 
     def reset(self) -> None:
@@ -85,5 +90,8 @@ class ServoTwin:
         data.qfrc_applied[:] = contact
         self._mujoco.mj_step(model, data)
         self._twin_velocity = data.qvel.copy()
+        drive = self._stiffness * (command_rad - position_rad)
+        drive -= (self._damping - self._back_emf) * velocity_rad_s
+        damping = np.where(np.abs(drive) < self._stall, self._damping, self._back_emf)
         change_rad_s = data.qvel[self._v] - velocity_rad_s
-        return np.asarray(data.actuator_force - self._damping * change_rad_s)
+        return np.asarray(data.actuator_force - damping * change_rad_s)

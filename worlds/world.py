@@ -34,6 +34,7 @@ class WorldOptions:
       latency_s: time until a command takes effect, a whole number of steps.
       noise: what the sensors add, or None for perfect sensors.
       friction: coefficient between sole and ground.
+      sinkage_m: how deep the robot sinks in, standing on one foot; 0 for hard ground.
       fixed_base: hold the torso in the air where it started.
       threads: of the sim, or processes of the real world; 0 for one per core.
     """
@@ -42,12 +43,13 @@ class WorldOptions:
     latency_s: float = 0.0
     noise: SensorNoise | None = None
     friction: float = FRICTION
+    sinkage_m: float = 0.0
     fixed_base: bool = False
     threads: int = 0
 
     def __post_init__(self) -> None:
         """Refuse steps that do not fit into ticks, and what cannot be."""
-        for name in ("timestep_s", "latency_s", "friction"):
+        for name in ("timestep_s", "latency_s", "friction", "sinkage_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
                 raise BadValueError(f"{name} is {value}; it must not be negative")

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 import robots
-from diagnosis.plant_files import example_robots
 from diagnosis.plant_sources import load_plant
 from diagnosis.trace_reading import read_traces
 from groundwalk.errors import (
@@ -13,6 +12,7 @@ from groundwalk.errors import (
     BadRecordingError,
     UnknownNameError,
 )
+from robots.package_paths import example_robots
 from worlds.recording_metadata import ServoGains
 
 DATA = Path(__file__).parents[3] / "shared" / "data"

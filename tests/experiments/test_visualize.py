@@ -54,7 +54,11 @@ def test_a_recording_is_written_beside_itself(recording, capsys):
 def test_a_run_shows_all_its_recordings_and_its_search(run, capsys):
     main(Visualize((run,), json=True))
     told = json.loads(capsys.readouterr().out)
-    assert told == {"rrd": str(run / "walk.rrd"), "pictures": [str(run / "search.png")]}
+    assert told == {
+        "rrd": str(run / "walk.rrd"),
+        "searches": [str(run / "search.rrd")],
+        "pictures": [str(run / "search.png")],
+    }
     assert (run / "search.png").is_file()
     assert scenes_in(run / "walk.rrd") == {"/sim/tuned", "/real/tuned"}
 
@@ -90,15 +94,35 @@ def test_default_places(run, recording, tmp_path):
 def test_an_unfinished_run_shows_its_search(unfinished, capsys):
     main(Visualize((unfinished,), json=True))
     told = json.loads(capsys.readouterr().out)
-    assert told == {"rrd": None, "pictures": [str(unfinished / "search.png")]}
+    assert told == {
+        "rrd": None,
+        "searches": [str(unfinished / "search.rrd")],
+        "pictures": [str(unfinished / "search.png")],
+    }
 
 
-@pytest.mark.parametrize("wish", ["open", "out"])
-def test_an_unfinished_run_has_nothing_for_the_viewer(unfinished, wish, tmp_path):
-    wishes = {"open": True} if wish == "open" else {"out": tmp_path / "new.rrd"}
+def test_an_unfinished_run_has_no_recordings_to_write(unfinished, tmp_path):
     with pytest.raises(RunFolderError, match="no recordings"):
-        main(Visualize((unfinished,), **wishes))
+        main(Visualize((unfinished,), out=tmp_path / "new.rrd"))
     assert not list(tmp_path.rglob("*.rrd"))
+
+
+def test_the_viewer_gets_walks_and_search(run, monkeypatch):
+    opened = []
+    monkeypatch.setattr(visualize, "open_viewer", opened.extend)
+    main(Visualize((run,), open=True))
+    assert opened == [run / "walk.rrd", run / "search.rrd"]
+
+
+def test_any_run_folder_with_recordings_can_be_shown(tmp_path):
+    """A stress test keeps its worst rollouts; it has no search and no gaits' names."""
+    folder = RunFolder(tmp_path / "stress")
+    folder.write_json("config.json", {"verb": "terrain-stress"})
+    for name in ("real_stairs_worst_1", "bumps"):
+        write_recording(steady(), folder.path / "recordings" / f"{name}.parquet")
+    main(Visualize((folder.path,)))
+    shown = {"/real/stairs_worst_1", "/bumps"}
+    assert scenes_in(folder.path / "walk.rrd") == shown
 
 
 def test_a_run_that_has_nothing_at_all(unfinished):

@@ -8,6 +8,7 @@ import pytest
 from groundwalk.errors import BadValueError
 from robots import biped
 from robots.leg_geometry import LegGeometry
+from robots.scale import NAO_SIZE
 
 SLANT = np.sqrt(0.5)
 LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
@@ -65,11 +66,23 @@ def test_a_leg_that_lacks_a_joint(nao):
         biped(shorter)
 
 
+def test_axes_that_meet_need_no_chain(walker):
+    assert walker.chains is None
+    assert walker.scale == NAO_SIZE
+
+
 @pytest.mark.parametrize("name", ["LHipRoll", "LHipPitch", "LAnkleRoll"])
-def test_axes_that_do_not_meet(nao, name):
+def test_axes_that_do_not_meet_make_chains(nao, name):
     apart = with_joint(nao, name, origin_m=np.array([0.0, 0.001, 0.0]))
-    with pytest.raises(BadValueError, match=name):
-        biped(apart)
+    left, right = biped(apart).chains
+    assert left.origins_m[:, 1].sum() == pytest.approx(0.051)
+    assert right.origins_m[:, 1].sum() == pytest.approx(-0.05)
+
+
+def test_a_knee_that_does_not_bend(nao):
+    twisted = with_joint(nao, "LKneePitch", axis=np.array([0.0, 0.0, 1.0]))
+    with pytest.raises(BadValueError, match="knee's axis"):
+        biped(twisted)
 
 
 @pytest.mark.parametrize(

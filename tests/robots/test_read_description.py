@@ -65,7 +65,8 @@ def test_head_is_part_of_the_torso(nao, table):
         + of_table(joints["HeadPitch"], neck)
     )
     np.testing.assert_allclose(of_link(nao.root.inertial), expected, rtol=1e-12)
-    assert len(nao.root.shapes) == 5 + 1 + 5
+    parts = (table["torso"], joints["HeadYaw"], joints["HeadPitch"])
+    assert len(nao.root.shapes) == sum(len(part["shapes"]) for part in parts)
 
 
 @pytest.mark.parametrize(("side", "hand_z_m"), [("L", -0.01231), ("R", -0.01213)])
@@ -85,6 +86,13 @@ def test_wrist_and_hand_are_part_of_the_forearm(nao, table, side, hand_z_m):
     np.testing.assert_allclose(
         fingers.end_m, wrist + joints[f"{side}WristYaw"]["shapes"][1]["to"]
     )
+
+
+def test_shapes_have_the_shell_s_colour_or_their_own(nao, read):
+    head = nao.root.shapes[-7:]
+    assert [shape.colour for shape in head[:3]] == ["shell", "accent", "accent"]
+    with pytest.raises(UnknownNameError, match="'pink'"):
+        read(('colour = "dark"', 'colour = "pink"'))
 
 
 def test_links_without_anything_fixed_stay_as_they_are(nao, table):

@@ -50,6 +50,19 @@ def test_agrees_with_mujoco_at_random_poses():
             np.testing.assert_allclose(matrices[name][tick], body.xmat, atol=1e-9)
 
 
+def test_points_go_with_their_link():
+    rng = np.random.default_rng(4)
+    base, points_m = random_base(rng, 20), rng.normal(size=(3, 3))
+    matrices = rotation_matrices(base.orientation).reshape(-1, 3, 3)
+    np.testing.assert_allclose(base.axes(), matrices, atol=1e-12)
+    found_m = base.points(points_m)
+    assert found_m.shape == (20, 3, 3)
+    for tick, matrix in enumerate(matrices):
+        expected_m = base.position_m[tick] + points_m @ matrix.T
+        np.testing.assert_allclose(found_m[tick], expected_m, atol=1e-12)
+        np.testing.assert_array_equal(base.at(tick).points(points_m)[0], found_m[tick])
+
+
 def test_straight_legs_end_where_the_lengths_add_up_to():
     poses = link_poses(NAO, np.zeros((2, len(NAO.joints))), still(2))
     ankle = [0.0, 0.05, -(0.085 + 0.1 + 0.1029)]

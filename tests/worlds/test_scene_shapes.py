@@ -5,8 +5,15 @@ from scipy.spatial.transform import Rotation
 import robots
 from robots.description import Capsule, Foot
 from terrain import Heightfield
-from worlds.scene_colours import GRASS, SHELL
-from worlds.scene_shapes import SOLE_THICKNESS_M, capsules, ground_mesh, sole_mesh
+from worlds.scene_colours import DARK, GRASS, SHELL
+from worlds.scene_shapes import (
+    SOLE_THICKNESS_M,
+    capsules,
+    ground_mesh,
+    shape_colours,
+    sole_mesh,
+    sole_rim,
+)
 
 RED = (200, 10, 20)
 
@@ -28,13 +35,29 @@ def test_capsules_reach_from_end_to_end():
     np.testing.assert_allclose(np.linalg.norm(drawn.quaternions, axis=1), 1)
 
 
-def test_spheres_are_capsules_without_length_in_the_colour_of_joints():
-    shapes = [Capsule((1, 2, 3), (1, 2, 3), 0.5), Capsule((0, 0, 0), (0, 1, 0), 0.2)]
+def test_spheres_are_capsules_without_length():
+    shapes = [
+        Capsule((1, 2, 3), (1, 2, 3), 0.5, "accent"),
+        Capsule((0, 0, 0), (0, 1, 0), 0.2),
+    ]
     drawn = capsules(shapes, RED)
     np.testing.assert_array_equal(drawn.lengths, [0, 1])
     np.testing.assert_array_equal(drawn.translations[0], [1, 2, 3])
     np.testing.assert_array_equal(drawn.radii, [0.5, 0.2])
     np.testing.assert_array_equal(drawn.colors, [RED, SHELL])
+
+
+def test_what_is_dark_is_dark_on_every_robot():
+    shape = Capsule((0, 0, 0), (0, 0, 0), 0.1, "dark")
+    np.testing.assert_array_equal(shape_colours([shape], RED), [DARK])
+
+
+def test_the_rim_goes_once_around_the_sole():
+    foot = robots.get("nao").feet[0]
+    rim_m = sole_rim(foot)
+    np.testing.assert_array_equal(rim_m[0], rim_m[-1])
+    np.testing.assert_array_equal(rim_m[:-1, :2], foot.outline_m)
+    assert (rim_m[:, 2] == foot.sole_height_m).all()
 
 
 def test_ground_normals_stand_on_the_slope():

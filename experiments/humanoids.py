@@ -1,0 +1,217 @@
+"""`groundwalk humanoids`: the walk engine's gait on other robots than the NAO."""
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import robots
+from experiments.command_line import run_verb
+from experiments.evaluation import Study, evaluate, keep
+from experiments.humanoids_facts import reach, saturation, sole
+from experiments.humanoids_figure import draw_humanoids
+from experiments.humanoids_page import (
+    PICTURE,
+    folder_name,
+    robot_rows,
+    write_humanoids_page,
+)
+from experiments.reward import reward_cm_s
+from experiments.run_folder import (
+    CHECKPOINT,
+    RECORDINGS,
+    RESULT,
+    RunFolder,
+    open_run,
+)
+from experiments.run_pictures import picture_run
+from experiments.score_table import print_json
+from experiments.search import GaitSearch, check_search
+from experiments.search_run import Entry, run_search
+from experiments.text_table import print_table
+from experiments.trials import TrialRules, walk_trials
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from robots import Description
+from terrain import TerrainSpec, parse
+from walk_engine import Gait, gaits
+from worlds import Recording, read_recording
+
+VERB = "humanoids"
+WALK = TrialRules(limit_s=5.0, start_spread_rad=0.01)
+"""Five seconds, from a start pose that spreads."""
+
+SEARCHED = TrialRules(limit_s=5.0, start_spread_rad=0.02)
+"""A search sees few walks of each gait: they shall be harder than those that count."""
+
+START = gaits.get("start").replace(max_forward=0.12)
+"""Slower than the NAO's start: nobody has ever tuned it for these robots."""
+
+WALKS = 3
+"""Of each gait in a generation, from different poses: one may be luck."""
+
+FALL_PENALTY_CM_S = 60.0
+"""For a robot of the NAO's size. It shall rather walk slowly than fall."""
+
+
+@dataclass(frozen=True)
+class Humanoids:
+    """Tune a gait for each robot in the sim, and count its falls in walks of 5 s.
+
+    Attributes:
+      robots: names or files; `groundwalk list robots` shows the names.
+      population: gaits tried in each generation.
+      generations: of each search.
+      sigma: spread of the first generation, as a part of each parameter's range.
+      trials: walks in the sim that count, each from its own start pose.
+      real_trials: walks in the real world, each on its own lumps.
+      threads: processor threads; 0 for all.
+      seed: every random number follows from it.
+      out: the run's folder; a new one under runs/ by default.
+      resume: continue the run of this folder.
+      json: print the result as JSON.
+    """
+
+    robots: tuple[str, ...] = (
+        "talos", "g1", "romeo", "icub", "simple_humanoid", "simple_humanoid_as_is"
+    )  # fmt: skip
+    population: int = 20
+    generations: int = 10
+    sigma: float = 0.1
+    trials: int = 30
+    real_trials: int = 10
+    threads: int = 0
+    seed: int = 1
+    out: Path | None = None
+    resume: Path | None = None
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        for name in self.robots:
+            robots.get(name)
+        if not self.robots or len({*map(folder_name, self.robots)}) < len(self.robots):
+            raise BadValueError("name at least one robot, and none of them twice")
+        check_search(self.population, self.sigma)
+        for study in self.studies().values():
+            assert study.trials
+        if self.generations < 1:
+            raise BadValueError(
+                f"generations is {self.generations}; it must be positive"
+            )
+        if self.seed < 0:
+            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+
+    def studies(self) -> dict[str, Study]:
+        """How a tuned gait is tried in each world."""
+        return {
+            "sim": Study("sim", "flat", self.trials, WALK, self.threads),
+            "real": Study("real", "lumps", self.real_trials, WALK, self.threads),
+        }
+
+
+def main(config: Humanoids) -> None:
+    """Tune and try robot by robot; one that is done is not computed again."""
+    folder, config = open_run(VERB, config)
+    result: dict[str, Any] = folder.read_json(RESULT) if folder.has(RESULT) else {}
+    for name in config.robots:
+        if name not in result:
+            own = RunFolder(folder.path / folder_name(name))
+            result[name] = _robot(config, own, robots.get(name))
+            folder.write_json(RESULT, result)
+            picture_run(own)
+    walks = {name: _walk(folder, name) for name in config.robots}
+    draw_humanoids(walks, folder.path / PICTURE)
+    write_humanoids_page(folder, result)
+    if config.json:
+        print_json(result)
+    else:
+        print_table(*robot_rows(result))
+
+
+def _walk(folder: RunFolder, name: str) -> Recording:
+    """The tuned gait's first walk in the sim."""
+    path = folder.path / folder_name(name) / RECORDINGS / "sim_tuned.parquet"
+    return read_recording(path)
+
+
+def _robot(
+    config: Humanoids, folder: RunFolder, description: Description
+) -> dict[str, Any]:
+    """What one robot's search and trials came to, as plain values."""
+    # From its name, so that it does not matter which other robots there are.
+    own = [config.seed, *description.name.encode()]
+    of_search, of_trials = np.random.SeedSequence(own).spawn(2)
+    tuned = _search(config, folder, description, of_search)
+    of_world = dict(zip(config.studies(), of_trials.spawn(2), strict=True))
+    scores: dict[str, Any] = {}
+    for world, study in config.studies().items():
+        tried = {"start": START, "tuned": tuned}
+        outcomes = evaluate(study, description, tried, of_world[world])
+        scores[world] = keep(folder, world, outcomes)
+        if world == "sim":
+            limits = saturation(description, outcomes["tuned"].recording)
+    return {
+        "mass_kg": description.mass_kg,
+        "scale": dataclasses.asdict(description.scale),
+        **scores,
+        "sole": sole(description)._asdict(),
+        "reach": reach(description, tuned)._asdict(),
+        "saturation": limits._asdict(),
+        "gait": dict(tuned),
+    }
+
+
+def _search(
+    config: Humanoids,
+    folder: RunFolder,
+    description: Description,
+    seed: np.random.SeedSequence,
+) -> Gait:
+    """The mean gait after a short search on flat ground in the sim."""
+    of_strategy, *of_walks = seed.spawn(1 + config.generations)
+
+    def generation(number: int, search: GaitSearch) -> Entry:
+        tried = np.vstack([search.ask(), search.mean.to_vector()])
+        rewards, fell = _rate(config, description, tried, of_walks[number])
+        search.tell(rewards[:-1])
+        return {
+            "mean_reward": float(rewards[-1]),
+            "mean_fell": float(fell[-1]),
+            "fell": float(fell[:-1].mean()),
+        }
+
+    return run_search(
+        folder.path / CHECKPOINT,
+        lambda: GaitSearch(START, config.population, config.sigma, of_strategy),
+        generation,
+        config.generations,
+    ).mean
+
+
+def _rate(
+    config: Humanoids,
+    description: Description,
+    tried: FloatArray,
+    seed: np.random.SeedSequence,
+) -> tuple[FloatArray, FloatArray]:
+    """Rewards (n,) [cm/s] of n gaits, and the share of their walks that fell."""
+    study = config.studies()["sim"]
+    # The same poses for all gaits: what differs between them is their own.
+    poses = seed.spawn(WALKS) * len(tried)
+    grounds = [TerrainSpec(*parse(study.terrain)).make()] * len(poses)
+    world = study.make_world(description, grounds, poses)
+    trials = walk_trials(world, np.repeat(tried, WALKS, axis=0), SEARCHED, poses)
+    penalty = FALL_PENALTY_CM_S * description.scale.speed
+    rewards = reward_cm_s(trials, SEARCHED.limit_s, penalty)
+    of_gait = (len(tried), WALKS)
+    return (
+        rewards.reshape(of_gait).mean(axis=1),
+        trials.fell.reshape(of_gait).mean(axis=1),
+    )
+
+
+if __name__ == "__main__":
+    run_verb(Humanoids, main)

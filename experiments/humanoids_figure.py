@@ -1,0 +1,31 @@
+"""One picture of several robots' walks, all of one scale."""
+
+import io
+from collections.abc import Mapping
+from pathlib import Path
+
+from experiments.scenes import make_scenes
+from experiments.walk_figure import walk_figure
+from experiments.walk_strip import walk_strip
+from groundwalk.files import write_bytes
+from worlds import Recording
+
+COLUMNS = 3
+DOTS_PER_INCH = 80
+"""Three panels are as wide as a page of text can show."""
+
+
+def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
+    """Draw a walk of each robot into a PNG file, three side by side.
+
+    Args:
+      recordings: by the name of the scene.
+      path: the file.
+    """
+    strips = [walk_strip(scene) for scene in make_scenes(recordings)]
+    figure = walk_figure(
+        {f"{i % COLUMNS}/{i // COLUMNS}": strip for i, strip in enumerate(strips)}
+    )
+    png = io.BytesIO()
+    figure.savefig(png, format="png", dpi=DOTS_PER_INCH)
+    write_bytes(path, png.getvalue())

@@ -1,0 +1,108 @@
+"""`groundwalk render`: pictures and films of walks, without a display."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from experiments.command_line import run_verb
+from experiments.new_file import check_new
+from experiments.render_film import Film, film_bytes, strip_bytes
+from experiments.scenes import make_scenes
+from experiments.visualize import gather
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from groundwalk.files import write_bytes
+
+STRIP, FILMS = ".png", (".gif", ".mp4")
+_BOUNDS = {
+    "duration": (0.1, 60.0),
+    "frames": (1, 50),
+    "rate": (1.0, 50.0),
+    "width": (64, 2000),
+    "height": (64, 2000),
+}
+
+
+@dataclass(frozen=True)
+class Render:
+    """Draw walks: a film strip (.png), or a film (.gif, .mp4 with the program ffmpeg).
+
+    Nothing but the processor is needed, no display and no driver. Several recordings
+    stand side by side in a film, at the same times, and below each other in a strip.
+
+    Attributes:
+      paths: run folders, or recordings (.parquet or .csv).
+      out: the file to write; what it ends with says what is drawn.
+      only: of run folders, recordings whose name holds one of these words.
+      start: first moment [s]; by default so that the film shows the fall, or else the
+        middle of the walk.
+      duration: how much is shown [s].
+      frames: pictures of a strip, at even times.
+      rate: pictures a second of a film.
+      width: of each walk's picture in pixels.
+      height: of the same.
+      balance: show forces at the feet, support polygon, ZMP and centre of mass.
+    """
+
+    paths: Annotated[tuple[Path, ...], tyro.conf.Positional] = ()
+    out: Path = Path("walk.png")
+    only: tuple[str, ...] = ()
+    start: float | None = None
+    duration: float = 3.0
+    frames: int = 6
+    rate: float = 12.5
+    width: int = 320
+    height: int = 320
+    balance: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be drawn, and to overwrite."""
+        if not self.paths:
+            raise BadValueError("no run folder and no recording is given; name some")
+        for path in self.paths:
+            if not path.exists():
+                raise BadRecordingError(
+                    f"{path}: there is no such run folder or recording"
+                )
+        if self.out.suffix not in (STRIP, *FILMS):
+            raise BadValueError(f"{self.out} must end with .png, .gif or .mp4")
+        check_new(self.out)
+        if self.start is not None and not math.isfinite(self.start):
+            raise BadValueError(f"start is {self.start}; it must be a time in seconds")
+        for name, (least, most) in _BOUNDS.items():
+            value = getattr(self, name)
+            if not least <= value <= most:
+                raise BadValueError(f"{name} is {value}; from {least:g} to {most:g}")
+
+
+def main(config: Render) -> None:
+    """Draw, and say where."""
+    recordings = {
+        name: recording
+        for name, recording in gather(config.paths).items()
+        if not config.only or any(word in name for word in config.only)
+    }
+    if not recordings:
+        raise RunFolderError(
+            f"{config.paths[0]} holds no recordings"
+            + (f" with {' or '.join(config.only)} in their name" if config.only else "")
+        )
+    film = Film(
+        make_scenes(recordings),
+        (config.width, config.height),
+        config.start,
+        config.duration,
+        config.balance,
+    )
+    if config.out.suffix == STRIP:
+        content = strip_bytes(film, config.frames)
+    else:
+        content = film_bytes(film, config.rate, config.out.suffix)
+    write_bytes(config.out, content)
+    print(config.out)
+
+
+if __name__ == "__main__":
+    run_verb(Render, main)

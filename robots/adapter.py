@@ -1,0 +1,235 @@
+"""From a URDF to the description of a robot that walks.
+
+Legs, feet, arms and the direction that the robot faces follow from the kinematics
+(`leg_roles`, `shoulders`), soles from what can touch the ground (`foot_shapes`), motors
+from effort and speed (`servo_size`), and the size of its gaits from the legs (`scale`).
+Joints of legs and shoulders have motors; waist, neck, elbows, wrists and fingers are
+held still, and what they carry becomes part of the link that carries them.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadModelError, BadValueError
+from robots.adaptation import Adaptation, urdf_path
+from robots.balance import HIP_PART, ankles_ahead_m, crouch_rad
+from robots.description import Description, Foot, Imu, Joint, Link, Motor, VisualMesh
+from robots.foot_shapes import foot
+from robots.leg_axes import ANKLE, KNEE, ROLES, roles
+from robots.leg_roles import Legs, find_legs
+from robots.package_paths import mesh_path
+from robots.posed_tree import PosedTree
+from robots.round_shapes import round_shapes
+from robots.scale import Scale
+from robots.servo_size import Pendulum, servo
+from robots.shoulders import find_shoulders, hanging_rad
+from robots.urdf_tree import UrdfShape, UrdfTree, read_urdf
+
+
+def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
+    """The robot of a URDF.
+
+    Args:
+      name: what it shall be called.
+      adaptation: its URDF, and what does not follow from it.
+      folder: where a URDF that is a file is seen from.
+
+    Raises:
+      GroundwalkError: the URDF is not that of a robot on two legs; says why.
+    """
+    tree = read_urdf(urdf_path(adaptation.urdf, folder))
+    placed = tree.placements({})
+    legs = find_legs(tree, placed, adaptation)
+    shoulders = find_shoulders(tree, placed, legs, adaptation.held)
+    chosen = {*legs.left, *legs.right, *shoulders, *adaptation.moving}
+    moving = tuple(joint for joint in tree.joints if joint in chosen)
+    posed = PosedTree(tree, legs.turn, moving, _held_pose(tree, chosen, adaptation))
+    return _Adapter(posed, legs, tuple(shoulders), adaptation).description(name)
+
+
+def _held_pose(
+    tree: UrdfTree, moving: set[str], adaptation: Adaptation
+) -> dict[str, float]:
+    """Angles of the joints that are held: as told, or next to zero."""
+    pose = {
+        joint.name: float(np.clip(0.0, *joint.range_rad))
+        for joint in tree.joints.values()
+        if joint.moving and joint.name not in moving
+    }
+    return pose | {
+        name: angle for name, angle in adaptation.pose_rad.items() if name not in moving
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class _Adapter:
+    """Makes the parts of one description."""
+
+    posed: PosedTree
+    legs: Legs
+    shoulders: tuple[str, ...]
+    adaptation: Adaptation
+
+    def description(self, name: str) -> Description:
+        """All parts together."""
+        hanging = [hanging_rad(self.posed, joint) for joint in self.shoulders]
+        left, right = hanging or (0.0, 0.0)
+        return Description(
+            name=name,
+            root=self._link(""),
+            links=tuple(self._joint(joint) for joint in self.posed.moving),
+            coupled=(),
+            feet=self._feet,
+            imu=Imu((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+            scale=self._scale,
+            legs=self._columns,
+            hanging_rad=(left, right),
+            ankles_ahead_m=self._ankles_ahead_m,
+        )
+
+    @cached_property
+    def _index(self) -> dict[str, int]:
+        return {joint: i for i, joint in enumerate(self.posed.moving)}
+
+    @cached_property
+    def _columns(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Each leg's columns in the order of `ROLES`."""
+        given = self.adaptation.left_leg, self.adaptation.right_leg
+        left, right = (
+            tuple(self._index[joint] for joint in named or self._by_role(leg))
+            for named, leg in zip(given, self.legs[:2], strict=True)
+        )
+        return left, right
+
+    def _by_role(self, leg: tuple[str, ...]) -> list[str]:
+        axes = np.array([self.posed.axis(joint) for joint in leg])
+        try:
+            return [leg[k] for k in roles(axes)]
+        except ValueError as error:
+            raise BadModelError(
+                f"{self.posed.tree.path}: of {', '.join(leg)}, {error}: name the joints"
+            ) from error
+
+    @cached_property
+    def _feet(self) -> tuple[Foot, Foot]:
+        left, right = (
+            foot(self.posed, leg[-1], self._index[leg[-1]], self.adaptation.sole, side)
+            for leg, side in ((self.legs.left, 1), (self.legs.right, -1))
+        )
+        return left, right
+
+    @cached_property
+    def _sole_m(self) -> float:
+        """Height of the left sole in the root's frame."""
+        ankle_m = self.posed.origin_m(self.legs.left[-1])
+        return float(ankle_m[2]) + self._feet[0].sole_height_m
+
+    @cached_property
+    def _pendulum(self) -> Pendulum:
+        whole = self.posed.hanging("")
+        return Pendulum(whole.mass_kg, float(whole.com_m[2]) - self._sole_m)
+
+    @cached_property
+    def _scale(self) -> Scale:
+        hip_m = sum(self._bones_m)
+        return Scale.of_robot(hip_m, self._pendulum.height_m, self._pendulum.mass_kg)
+
+    @cached_property
+    def _bones_m(self) -> tuple[float, float, float]:
+        """Thigh and shin, seen from the side, and the ankle above the sole."""
+        pitch, knee, ankle = (
+            self.posed.origin_m(self.posed.moving[self._columns[0][k]])
+            for k in (ROLES.index("pitch"), KNEE, ANKLE)
+        )
+        thigh, shin = ((pitch - knee)[[0, 2]], (knee - ankle)[[0, 2]])
+        above_m = float(ankle[2]) - self._sole_m
+        return float(np.linalg.norm(thigh)), float(np.linalg.norm(shin)), above_m
+
+    @property
+    def _ankles_ahead_m(self) -> float:
+        thigh_m, tibia_m, above_m = self._bones_m
+        hip_m = HIP_PART * (thigh_m + tibia_m + above_m)
+        pitch, knee = crouch_rad(thigh_m, tibia_m, hip_m - above_m)
+        crouch = {joint: hanging_rad(self.posed, joint) for joint in self.shoulders}
+        for leg in self._columns:
+            for role, angle in ((2, pitch), (KNEE, knee), (ANKLE, -pitch - knee)):
+                joint = self.posed.moving[leg[role]]
+                crouch[joint] = math.copysign(angle, angle * self.posed.axis(joint)[1])
+        return ankles_ahead_m(self.posed, crouch, self._feet[0], self._scale.length)
+
+    def _joint(self, name: str) -> Joint:
+        parent = self.posed.parent(name)
+        own = self.posed.tree.joints[name].range_rad
+        low, high = self.adaptation.range_rad.get(name, own)
+        return Joint(
+            name=name,
+            parent=self._index.get(parent, -1),
+            origin_m=self.posed.offset_m(name),
+            axis=self.posed.axis(name),
+            range_rad=(float(low), float(high)),
+            motor=self._motor(name),
+            link=self._link(name),
+        )
+
+    def _motor(self, name: str) -> Motor:
+        joint, told = self.posed.tree.joints[name], self.adaptation
+        effort = told.effort_nm.get(name, joint.effort_nm)
+        speed = told.speed_rad_s.get(name, joint.speed_rad_s)
+        load = None
+        if name not in {*self.legs.left, *self.legs.right}:
+            hanging, axis = self.posed.hanging(name), self.posed.axis(name)
+            arm_m = np.cross(axis, hanging.com_m - self.posed.origin_m(name))
+            load = float(axis @ hanging.inertia_kg_m2 @ axis)
+            load += hanging.mass_kg * float(arm_m @ arm_m)
+        try:
+            return servo(effort or 0.0, speed or 0.0, self._pendulum, load)
+        except BadValueError as error:
+            raise BadModelError(
+                f"{self.posed.tree.path}: joint {name}: {error}"
+            ) from error
+
+    def _link(self, joint: str) -> Link:
+        tree = self.posed.tree
+        return Link(
+            tree.joints[joint].child if joint else tree.root,
+            self.posed.inertial(joint),
+            round_shapes(self.posed, joint, -self._sole_m),
+            self._meshes(joint),
+        )
+
+    def _meshes(self, joint: str) -> tuple[VisualMesh, ...]:
+        """The files that show what moves with a joint, if they are there."""
+        meshes = []
+        for link in self.posed.carried(joint):
+            for shape in link.visual:
+                if shape.kind == "mesh":
+                    at = self.posed.placed[link.name] @ shape.placement
+                    place = at.position_m - self.posed.origin_m(joint)
+                    mesh = _mesh(self.posed.tree.path, shape, place, at.rotation)
+                    if mesh is not None:
+                        meshes.append(mesh)
+        return tuple(meshes)
+
+
+def _mesh(
+    urdf: Path, shape: UrdfShape, place_m: FloatArray, rotation: FloatArray
+) -> VisualMesh | None:
+    try:
+        path = mesh_path(urdf, shape.values["filename"])
+    except BadModelError:
+        return None
+    x, y, z = place_m.tolist()
+    quaternion = Rotation.from_matrix(rotation).as_quat(scalar_first=True)
+    scale = [float(word) for word in shape.values.get("scale", "1 1 1").split()]
+    return VisualMesh(
+        path,
+        (x, y, z),
+        (quaternion[0], quaternion[1], quaternion[2], quaternion[3]),
+        (scale[0], scale[1], scale[2]),
+    )

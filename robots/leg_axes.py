@@ -1,0 +1,39 @@
+"""Which joint of a leg does what, by the axes alone."""
+
+import itertools
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+
+ROLES = ("yaw", "roll", "pitch", "knee", "ankle_pitch", "ankle_roll")
+KNEE, ANKLE = 3, 4
+_X, _Y, _Z = range(3)
+_CLEAR = 0.9
+
+
+def roles(axes: FloatArray) -> tuple[int, ...]:
+    """Where in a leg's chain each of `ROLES` is.
+
+    At the hip, yaw, roll and pitch are the joints whose axes come closest to z, x and
+    y, all three together: on the NAO yaw leans by 45 degrees. Likewise at the ankle.
+
+    Args:
+      axes: (6, 3) unit vectors from the hip to the foot, x forward, y left, z up.
+
+    Raises:
+      ValueError: the knee does not bend the leg about y.
+    """
+    if abs(axes[KNEE, _Y]) < _CLEAR:
+        raise ValueError(f"the knee's axis is {np.round(axes[KNEE], 3)}, not y")
+    hip = _closest(axes[:KNEE], (_Z, _X, _Y))
+    ankle = _closest(axes[ANKLE:], (_Y, _X))
+    return (*hip, KNEE, *(ANKLE + k for k in ankle))
+
+
+def _closest(axes: FloatArray, wanted: tuple[int, ...]) -> tuple[int, ...]:
+    """The order of some axes in which they are closest to those that are wanted."""
+    return max(
+        itertools.permutations(range(len(axes))),
+        key=lambda order: float(np.abs(axes[list(order), list(wanted)]).sum()),
+    )

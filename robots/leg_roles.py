@@ -1,0 +1,134 @@
+"""Which joints of a URDF are the legs, and which way the robot faces.
+
+No name is looked at. The feet are the two lowest ends of the tree of moving joints;
+a leg is what one foot hangs on and the other does not: three joints at the hip, the
+knee, two at the ankle (`leg_axes` tells which is which). Knees bend one way: the robot
+faces where a knee goes when it bends as far as it can.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadModelError, UnknownNameError
+from robots.adaptation import Adaptation
+from robots.leg_axes import KNEE, ROLES
+from robots.placement import Placement
+from robots.urdf_tree import UrdfTree
+
+_FACING = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}
+_CLEAR = 0.9
+
+
+class Legs(NamedTuple):
+    """The legs of a robot.
+
+    Attributes:
+      left, right: joints from the root to the foot.
+      turn: (3, 3) from the root link's frame to x forward, y left, z up.
+    """
+
+    left: tuple[str, ...]
+    right: tuple[str, ...]
+    turn: FloatArray
+
+
+def find_legs(
+    tree: UrdfTree, placed: Mapping[str, Placement], adaptation: Adaptation
+) -> Legs:
+    """The legs, by kinematics unless the adaptation names them.
+
+    Args:
+      tree: the robot, z up.
+      placed: where each link is in the root's frame.
+      adaptation: what the user says.
+
+    Raises:
+      BadModelError: there are no two legs of six joints, or no knee bends one way.
+    """
+    for name in adaptation.joints():
+        if name not in tree.joints:
+            raise UnknownNameError(f"joint of {tree.path.name}", name, tree.joints)
+    if adaptation.left_leg:
+        one, other = (
+            _in_order(tree, leg) for leg in (adaptation.left_leg, adaptation.right_leg)
+        )
+    else:
+        one, other = _legs(tree, placed, adaptation.held)
+    places = [placed[tree.joints[leg[-1]].child].position_m for leg in (one, other)]
+    across = (places[0] - places[1])[:2]
+    if np.linalg.norm(across) < 1e-3:
+        raise BadModelError(f"{tree.path}: the feet are in one place")
+    across = across / np.linalg.norm(across)
+    forward = adaptation.forward or _facing(tree, placed, (one, other), across)
+    x, y = _FACING[forward]
+    turn = np.array([[x, y, 0.0], [-y, x, 0.0], [0.0, 0.0, 1.0]])
+    is_left = float(across @ turn[1, :2]) > 0
+    if adaptation.left_leg and not is_left:
+        raise BadModelError(f"{tree.path}: facing {forward}, the left leg is the right")
+    return Legs(*((one, other) if is_left else (other, one)), turn)
+
+
+def _in_order(tree: UrdfTree, leg: Sequence[str]) -> tuple[str, ...]:
+    """A leg's joints from the root to the foot."""
+    deepest = max(leg, key=lambda name: len(tree.chain(tree.joints[name].child)))
+    chain = tree.chain(tree.joints[deepest].child)
+    if not set(leg) <= set(chain):
+        raise BadModelError(f"{tree.path}: {', '.join(leg)} are not one chain")
+    return tuple(name for name in chain if name in leg)
+
+
+def _legs(
+    tree: UrdfTree, placed: Mapping[str, Placement], held: Sequence[str]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Both chains, whichever is the left one."""
+    free = [one for one in tree.joints.values() if one.moving and one.name not in held]
+    carriers = {name for joint in free for name in tree.chain(joint.parent)}
+    ends = [joint for joint in free if joint.name not in carriers]
+    ends.sort(key=lambda joint: float(placed[joint.child].position_m[2]))
+    if len(ends) < 2:
+        raise BadModelError(f"{tree.path}: a robot that walks needs two feet")
+    chains = [
+        [name for name in tree.chain(joint.child) if name not in held]
+        for joint in ends[:2]
+    ]
+    left, right = (
+        tuple(name for name in chain if name not in other)
+        for chain, other in (chains, chains[::-1])
+    )
+    for leg in (left, right):
+        if len(leg) != len(ROLES):
+            raise BadModelError(
+                f"{tree.path}: a leg has {len(leg)} joints ({', '.join(leg)}); it "
+                f"needs six ({', '.join(ROLES)}): hold the others, or name them"
+            )
+    return left, right
+
+
+def _facing(
+    tree: UrdfTree,
+    placed: Mapping[str, Placement],
+    legs: Sequence[Sequence[str]],
+    across: FloatArray,
+) -> str:
+    """The direction in which the knees go when they bend.
+
+    A knee with the range [a, b] about an axis can bend by a + b more one way than the
+    other. A shin swings backward in a turn about the axis that points left.
+    """
+    bend = np.zeros(3)
+    for leg in legs:
+        joint = tree.joints[leg[KNEE]]
+        bend += sum(joint.range_rad) * (placed[joint.child].rotation @ joint.axis)
+    if abs(float(bend[:2] @ across)) < 0.1:
+        raise BadModelError(
+            f"{tree.path}: the knees bend both ways alike; say which way is forward"
+        )
+    left = across * np.sign(bend[:2] @ across)
+    forward = np.array([left[1], -left[0]])
+    name = max(_FACING, key=lambda known: float(forward @ _FACING[known]))
+    if forward @ _FACING[name] < _CLEAR:
+        raise BadModelError(f"{tree.path}: the robot faces neither along x nor along y")
+    return name

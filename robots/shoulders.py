@@ -1,0 +1,78 @@
+"""Shoulders that swing an arm, and the angle at which it hangs."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from robots.leg_roles import Legs
+from robots.placement import Placement
+from robots.posed_tree import PosedTree
+from robots.urdf_tree import UrdfTree
+
+_ACROSS = math.cos(math.radians(45))
+_ASIDE = 0.1
+"""An arm begins this part of the distance between the feet away from the middle."""
+
+
+def find_shoulders(
+    tree: UrdfTree, placed: Mapping[str, Placement], legs: Legs, held: Sequence[str]
+) -> list[str]:
+    """The joints that swing an arm forth and back: left and right, or none.
+
+    A shoulder is the first moving joint on its way from the root that lies on one
+    side; of several on one side (ears, eyes), the one that moves the most mass. It
+    counts if its axis is within 45 degrees of the y axis: with other axes an arm does
+    not swing.
+    """
+    feet = [placed[tree.joints[leg[-1]].child].position_m for leg in legs[:2]]
+    aside_m = _ASIDE * float(np.linalg.norm(feet[0] - feet[1]))
+    found: dict[int, tuple[float, str]] = {}
+    for joint in tree.joints.values():
+        if not joint.moving or joint.name in {*legs.left, *legs.right, *held}:
+            continue
+        y_m = float(legs.turn[1] @ placed[joint.child].position_m)
+        above = [tree.joints[name] for name in tree.chain(joint.parent)]
+        first = all(
+            abs(legs.turn[1] @ placed[one.child].position_m) < aside_m for one in above
+        )
+        if abs(y_m) < aside_m or not first:
+            continue
+        side = 1 if y_m > 0 else -1
+        found[side] = max(
+            found.get(side, (0.0, "")), (_mass_kg(tree, joint.child), joint.name)
+        )
+    names = [found[side][1] for side in (1, -1) if side in found]
+    if len(names) < 2 or not all(_swings(tree, placed, legs, name) for name in names):
+        return []
+    return names
+
+
+def hanging_rad(posed: PosedTree, joint: str) -> float:
+    """The angle within its range at which what a shoulder carries hangs lowest.
+
+    With the axis a and the centre of mass at c from it, the height is
+    z(q) = (c_a)_z + cos(q) (c - c_a)_z + sin(q) (a x c)_z, c_a being the part of c
+    along a: it is least where cos(q) and sin(q) point against these two numbers.
+    """
+    axis = posed.axis(joint)
+    arm_m = posed.hanging(joint).com_m - posed.origin_m(joint)
+    across_m = arm_m - (arm_m @ axis) * axis
+    lowest = math.atan2(-np.cross(axis, arm_m)[2], -across_m[2])
+    low, high = posed.tree.joints[joint].range_rad
+    return float(np.clip(lowest, low, high))
+
+
+def _swings(
+    tree: UrdfTree, placed: Mapping[str, Placement], legs: Legs, name: str
+) -> bool:
+    joint = tree.joints[name]
+    axis = legs.turn @ placed[joint.child].rotation @ joint.axis
+    return bool(abs(axis[1]) > _ACROSS)
+
+
+def _mass_kg(tree: UrdfTree, link: str) -> float:
+    """The mass of a link with all that hangs on it."""
+    own = tree.links[link].inertial
+    below = (joint.child for joint in tree.joints.values() if joint.parent == link)
+    return (own.mass_kg if own else 0.0) + sum(_mass_kg(tree, name) for name in below)

@@ -1,0 +1,244 @@
+"""A URDF as data: links with their inertials and shapes, and the joints between them.
+
+Nothing is interpreted here: frames, names and signs are those of the file.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadModelError
+from robots.placement import Placement
+from robots.rigid_body import Inertial, inertia_matrix
+
+Element = ElementTree.Element
+MOVING = ("revolute", "continuous")
+_WATER_KG_M3, _THIN = 1000.0, 1e-3
+_AXES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfShape:
+    """A shape of a link.
+
+    Attributes:
+      kind: "box", "cylinder", "sphere" or "mesh".
+      values: its attributes, such as size, radius, length, filename and scale.
+      placement: in the link's frame.
+    """
+
+    kind: str
+    values: Mapping[str, str]
+    placement: Placement
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfLink:
+    """A link; its inertial is in the link's frame, None where it has no mass."""
+
+    name: str
+    inertial: Inertial | None
+    visual: tuple[UrdfShape, ...]
+    collision: tuple[UrdfShape, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfJoint:
+    """A joint.
+
+    Attributes:
+      name: the joint's name.
+      moving: whether it is a hinge.
+      parent, child: names of links.
+      placement: of the child's frame in the parent's, the joint at zero.
+      axis: (3,) unit vector in the child's frame.
+      range_rad: lower and upper end; a whole turn to both sides without any.
+      effort_nm, speed_rad_s: of the motor; None where the file does not say.
+    """
+
+    name: str
+    moving: bool
+    parent: str
+    child: str
+    placement: Placement
+    axis: FloatArray
+    range_rad: tuple[float, float]
+    effort_nm: float | None
+    speed_rad_s: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfTree:
+    """A robot: its links, and its joints in an order in which parents come first."""
+
+    path: Path
+    root: str
+    links: Mapping[str, UrdfLink]
+    joints: Mapping[str, UrdfJoint]
+
+    @cached_property
+    def above(self) -> dict[str, UrdfJoint]:
+        """The joint that carries a link, by the link's name; none for the root."""
+        return {joint.child: joint for joint in self.joints.values()}
+
+    def chain(self, link: str) -> list[str]:
+        """The moving joints from the root to a link."""
+        names: list[str] = []
+        while link != self.root:
+            joint = self.above[link]
+            if joint.moving:
+                names.insert(0, joint.name)
+            link = joint.parent
+        return names
+
+    def placements(self, angles_rad: Mapping[str, float]) -> dict[str, Placement]:
+        """Where every link is in the root's frame, at some angles and else at zero."""
+        placed = {self.root: Placement.none()}
+        for joint in self.joints.values():
+            turn = angles_rad.get(joint.name, 0.0) * joint.axis
+            placed[joint.child] = (
+                placed[joint.parent] @ joint.placement @ Placement.turn(turn)
+            )
+        return placed
+
+
+def read_urdf(path: Path) -> UrdfTree:
+    """The robot of a URDF file.
+
+    Raises:
+      BadModelError: the file is no URDF, or its joints make no tree.
+    """
+    try:
+        robot = ElementTree.parse(path).getroot()
+    except (ElementTree.ParseError, OSError) as error:
+        raise BadModelError(f"{path} cannot be read: {error}") from error
+    if robot.tag != "robot":
+        raise BadModelError(
+            f"{path} is no URDF: its root is <{robot.tag}>, not <robot>"
+        )
+    try:
+        links = [_link(element) for element in robot.findall("link")]
+        joints = [_joint(element) for element in robot.findall("joint")]
+    except (ValueError, KeyError) as error:
+        raise BadModelError(f"{path} is no sound URDF: {error}") from error
+    named = {link.name: link for link in links}
+    children = {joint.child for joint in joints}
+    roots = [name for name in named if name not in children]
+    if len(roots) != 1 or not children <= set(named):
+        raise BadModelError(f"{path}: its links make no tree; roots are {roots}")
+    return UrdfTree(path, roots[0], named, _sorted(roots[0], joints))
+
+
+def _sorted(root: str, joints: list[UrdfJoint]) -> dict[str, UrdfJoint]:
+    """Joints by name, depth first, each after the one that carries it."""
+    below: dict[str, list[UrdfJoint]] = {}
+    for joint in joints:
+        below.setdefault(joint.parent, []).append(joint)
+    ordered: dict[str, UrdfJoint] = {}
+    waiting = below.get(root, [])[::-1]
+    while waiting:
+        joint = waiting.pop()
+        ordered[joint.name] = joint
+        waiting += below.get(joint.child, [])[::-1]
+    return ordered
+
+
+def _link(element: Element) -> UrdfLink:
+    return UrdfLink(
+        element.attrib["name"],
+        _inertial(element.find("inertial")),
+        tuple(_shapes(element, "visual")),
+        tuple(_shapes(element, "collision")),
+    )
+
+
+def _inertial(element: Element | None) -> Inertial | None:
+    """Mass and inertia; an inertia that no body has is made one that has."""
+    mass = 0.0 if element is None else _number(element.find("mass"), "value") or 0.0
+    if element is None or mass <= 0:
+        return None
+    frame = _placement(element)
+    moments = element.find("inertia")
+    given = [_number(moments, axis) or 0.0 for axis in _AXES]
+    own = _possible(inertia_matrix(given), mass)
+    turned = frame.rotation @ own @ frame.rotation.T
+    return Inertial(mass, frame.position_m, turned)
+
+
+def _possible(inertia: FloatArray, mass_kg: float) -> FloatArray:
+    """The matrix if a body of that mass can have it, else one that is close.
+
+    A body with next to no inertia gets that of a ball of water: iCub's right leg is
+    such a one. Principal moments that are not positive become next to nothing; if two
+    of them do not add up to the third, all become their mean, as with MuJoCo's
+    `balanceinertia`.
+    """
+    moments, axes = np.linalg.eigh(inertia)
+    radius_m = (3 * mass_kg / (4 * np.pi * _WATER_KG_M3)) ** (1 / 3)
+    ball = 0.4 * mass_kg * radius_m**2
+    if moments[2] < _THIN * ball:
+        return np.asarray(ball * np.eye(3))
+    if moments[0] > 0 and moments[0] + moments[1] >= moments[2]:
+        return inertia
+    moments = np.maximum(moments, _THIN * moments[2])
+    if moments[0] + moments[1] < moments[2]:
+        moments[:] = moments.mean()
+    return np.asarray(axes @ np.diag(moments) @ axes.T)
+
+
+def _shapes(link: Element, kind: str) -> list[UrdfShape]:
+    shapes = []
+    for element in link.findall(kind):
+        geometry = element.find("geometry")
+        if geometry is not None and len(geometry):
+            form = geometry[0]
+            shapes.append(UrdfShape(form.tag, form.attrib, _placement(element)))
+    return shapes
+
+
+def _joint(element: Element) -> UrdfJoint:
+    parent, child = element.find("parent"), element.find("child")
+    if parent is None or child is None:
+        raise ValueError(f"joint {element.get('name')} lacks a parent or a child")
+    axis = _vector(element.find("axis"), "xyz", "1 0 0")
+    limit = element.find("limit")
+    kind = element.get("type")
+    low, high = _number(limit, "lower"), _number(limit, "upper")
+    if kind == "continuous" or low is None or high is None or not low < high:
+        low, high = -2 * np.pi, 2 * np.pi
+    return UrdfJoint(
+        name=element.attrib["name"],
+        moving=kind in MOVING and element.find("mimic") is None,
+        parent=parent.attrib["link"],
+        child=child.attrib["link"],
+        placement=_placement(element),
+        axis=axis / (np.linalg.norm(axis) or 1.0),
+        range_rad=(low, high),
+        effort_nm=_number(limit, "effort"),
+        speed_rad_s=_number(limit, "velocity"),
+    )
+
+
+def _placement(element: Element) -> Placement:
+    origin = element.find("origin")
+    turn = Rotation.from_euler("xyz", _vector(origin, "rpy", "0 0 0"))
+    return Placement(turn.as_matrix(), _vector(origin, "xyz", "0 0 0"))
+
+
+def _vector(element: Element | None, name: str, default: str) -> FloatArray:
+    text = default if element is None else element.get(name, default)
+    values = np.array(text.split(), float)
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise ValueError(f"{name} is {text!r}; it must be three numbers")
+    return values
+
+
+def _number(element: Element | None, name: str) -> float | None:
+    text = None if element is None else element.get(name)
+    return None if text is None else float(text)

@@ -1,0 +1,65 @@
+"""Points of meshes, from files written here by hand."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from groundwalk.errors import BadModelError
+from robots.mesh_vertices import mesh_vertices
+
+CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 3]])
+DAE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema">
+<asset><unit meter="0.01"/>{up}</asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array count="9">0 0 0 1 0 0 0 2 3</float_array></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene><node><translate>10 0 0</translate>
+<rotate>0 0 1 90</rotate><scale>2 2 2</scale>
+<node><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes>
+</COLLADA>"""
+
+
+def test_binary_stl(tmp_path):
+    facet = struct.pack("<12fH", 0, 0, 1, *CORNERS.ravel(), 0)
+    path = tmp_path / "one.STL"
+    path.write_bytes(b"solid".ljust(80) + struct.pack("<I", 1) + facet)
+    np.testing.assert_allclose(mesh_vertices(path), CORNERS)
+
+
+def test_text_stl_and_obj(tmp_path):
+    rows = [" ".join(map(str, corner)) for corner in CORNERS]
+    stl, obj = tmp_path / "one.stl", tmp_path / "one.obj"
+    stl.write_text("solid\n" + "\n".join(f"  vertex {row}" for row in rows))
+    obj.write_text("\n".join([*(f"v {row}" for row in rows), "vn 0 0 1", "f 1 2 3"]))
+    np.testing.assert_allclose(mesh_vertices(stl), CORNERS)
+    np.testing.assert_allclose(mesh_vertices(obj), CORNERS)
+
+
+def test_collada_with_its_scene(tmp_path):
+    """Twice as large, a quarter turn to the left, 10 units forward, a unit is 1 cm."""
+    path = tmp_path / "one.dae"
+    path.write_text(DAE.format(up="<up_axis>Z_UP</up_axis>"))
+    expected = [[0.1, 0, 0], [0.1, 0.02, 0], [0.06, 0, 0.06]]
+    np.testing.assert_allclose(mesh_vertices(path), expected, atol=1e-12)
+
+
+def test_collada_whose_y_is_up(tmp_path):
+    """(x, y, z) with y up is (x, -z, y) with z up; y is up unless the file says."""
+    path = tmp_path / "one.dae"
+    expected = [[0.1, 0, 0], [0.1, 0, 0.02], [0.06, -0.06, 0]]
+    for up in ("", "<up_axis>Y_UP</up_axis>"):
+        path.write_text(DAE.format(up=up))
+        np.testing.assert_allclose(mesh_vertices(path), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [("a.glb", "x"), ("a.stl", "nothing"), ("a.dae", "<a>"), ("a.obj", "v 1 2 x")],
+)
+def test_what_is_no_mesh(tmp_path, name, content):
+    path = tmp_path / name
+    path.write_text(content)
+    with pytest.raises(BadModelError, match=name):
+        mesh_vertices(path)

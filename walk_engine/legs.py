@@ -1,0 +1,112 @@
+"""Both legs: from where the ankles shall be to the angles of their joints."""
+
+from typing import Protocol
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.leg_geometry import Biped, LegChain, LegGeometry
+from walk_engine.chain_ik import ChainLegs
+from walk_engine.leg_ik import MIRROR, inverse
+
+
+class Legs(Protocol):
+    """What turns poses of the feet into angles."""
+
+    def angles(
+        self,
+        ankle_m: FloatArray,
+        toe_out_rad: FloatArray,
+        tilt_rad: FloatArray,
+        ankle_rad: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Angles (6, n) of the left and of the right leg, the soles level.
+
+        Args:
+          ankle_m: (3, 2, n) both ankles in the torso's frame, the right one mirrored.
+          toe_out_rad: (2, n) how far the hip yaw joints turn the toes outward.
+          tilt_rad: (2, n) how far the torso leans forward.
+          ankle_rad: (2, 2, n) added to pitch and roll of each foot's ankle, which are
+            positive about +y and +x.
+
+        Returns:
+          Yaw, roll, pitch, knee, ankle pitch and ankle roll as the joints count them.
+        """
+
+
+def legs_of(biped: Biped) -> Legs:
+    """The legs of a robot: in closed form where their axes meet."""
+    if biped.chains is None:
+        return MirroredLegs(biped.leg)
+    return TwoChains(biped.leg, biped.chains)
+
+
+class MirroredLegs:
+    """Legs whose axes meet, one the mirror image of the other."""
+
+    def __init__(self, leg: LegGeometry) -> None:
+        """Prepare for the left leg's lengths and axes."""
+        self._leg = leg
+        # A positive turn about an axis that points down turns the toes inward.
+        self._outward = np.copysign(1.0, leg.yaw_axis[2])
+
+    def angles(
+        self,
+        ankle_m: FloatArray,
+        toe_out_rad: FloatArray,
+        tilt_rad: FloatArray,
+        ankle_rad: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Angles (6, n) of the left and of the right leg; see `Legs`."""
+        angles = inverse(self._leg, self._outward * toe_out_rad, ankle_m, tilt_rad)
+        left, right = angles[:, 0], angles[:, 1] * np.reshape(MIRROR, (6, 1))
+        left[4:] += ankle_rad[:, 0]
+        right[4:] += ankle_rad[:, 1]
+        return left, right
+
+
+class TwoChains:
+    """Legs of any six joints each."""
+
+    def __init__(self, leg: LegGeometry, chains: tuple[LegChain, LegChain]) -> None:
+        """Prepare.
+
+        Args:
+          leg: the leg with axes that meet which is most like the left one.
+          chains: the left and the right leg.
+        """
+        self._leg = leg
+        self._solver = ChainLegs(chains, leg.thigh_m + leg.tibia_m)
+        self._signs = [chain.signs[4:, None] for chain in chains]
+
+    def angles(
+        self,
+        ankle_m: FloatArray,
+        toe_out_rad: FloatArray,
+        tilt_rad: FloatArray,
+        ankle_rad: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Angles (6, n) of the left and of the right leg; see `Legs`."""
+        start = inverse(self._leg, toe_out_rad, ankle_m, tilt_rad)
+        start[[0, 1, 5], 1] *= -1.0
+        places = np.moveaxis(ankle_m, 0, -1).copy()
+        places[1, :, 1] *= -1.0
+        turn = toe_out_rad * np.array([[1.0], [-1.0]])
+        found = self._solver.angles(start, places, _foot_rotation(turn, tilt_rad))
+        left, right = found[:, 0], found[:, 1]
+        left[4:] += self._signs[0] * ankle_rad[:, 0]
+        right[4:] += self._signs[1] * ankle_rad[:, 1]
+        return left, right
+
+
+def _foot_rotation(turn_rad: FloatArray, tilt_rad: FloatArray) -> FloatArray:
+    """(2, n, 3, 3) from a level foot, turned to the left, to a torso that leans."""
+    cos_t, sin_t = np.cos(turn_rad), np.sin(turn_rad)
+    cos_p, sin_p = np.cos(tilt_rad), np.sin(tilt_rad)
+    zero = np.zeros_like(cos_t)
+    rows = (
+        (cos_p * cos_t, -cos_p * sin_t, -sin_p),
+        (sin_t, cos_t, zero),
+        (sin_p * cos_t, -sin_p * sin_t, cos_p),
+    )
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1)).copy()
