@@ -1,0 +1,135 @@
+"""What a recording says of feet, weight and balance, tick by tick."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from groundwalk.arrays import BoolArray, FloatArray
+from robots import biped
+from robots.sole import contact_points
+from worlds.forward_kinematics import LinkPoses, link_poses
+from worlds.recording_columns import SUPPORT
+from worlds.scene import Scene
+
+GRAVITY_M_S2 = 9.81
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """Arrays over the ticks of one recording; sides are left, right.
+
+    Attributes:
+      scene: what was recorded.
+      leg_m: length of a straight leg from hip to sole.
+    """
+
+    scene: Scene
+    leg_m: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Signals":
+        """Of a walk whose recording has base, commands, foot forces and support.
+
+        Raises:
+          UnknownNameError: a column is missing.
+        """
+        leg = biped(scene.description).leg
+        return cls(scene, leg.thigh_m + leg.tibia_m + leg.ankle_height_m)
+
+    @cached_property
+    def pendulum_s(self) -> float:
+        """sqrt(leg length / gravity): the time in which a leg tips."""
+        return float(np.sqrt(self.leg_m / GRAVITY_M_S2))
+
+    @cached_property
+    def time_s(self) -> FloatArray:
+        """(ticks,)."""
+        return self.scene.recording.time_s
+
+    @cached_property
+    def tick_s(self) -> float:
+        """Usual time from one tick to the next."""
+        return float(np.median(np.diff(self.time_s)))
+
+    def ticks_in(self, duration_s: float) -> int:
+        """How many ticks a duration is; at least one."""
+        return max(1, round(duration_s / self.tick_s))
+
+    @cached_property
+    def load(self) -> FloatArray:
+        """(ticks, 2) force on each foot as a share of the robot's weight."""
+        weight_n = self.scene.description.mass_kg * GRAVITY_M_S2
+        return self.scene.recording.vector("foot_force") / weight_n
+
+    @cached_property
+    def swings(self) -> BoolArray:
+        """(ticks, 2) whether the engine means a foot to swing."""
+        support = self.scene.recording.columns[SUPPORT]
+        return np.stack([support < 0, support > 0], axis=1)
+
+    @cached_property
+    def soles_m(self) -> FloatArray:
+        """(ticks, 2, points, 3) where the points of both soles are in the world."""
+        return self._soles(self.scene.link_poses())
+
+    @cached_property
+    def commanded_m(self) -> FloatArray:
+        """(ticks, 2, points, 3) where they would be if joints were as commanded."""
+        recording, robot = self.scene.recording, self.scene.description
+        base = LinkPoses(
+            recording.vector("base.position"), recording.vector("base.orientation")
+        )
+        poses = link_poses(robot, recording.commands(robot.joints), base)
+        return self._soles(poses)
+
+    @cached_property
+    def clearance_m(self) -> FloatArray:
+        """(ticks, 2, points) heights of the soles' points above the ground."""
+        return self.soles_m[..., 2] - self.ground_m(self.soles_m[..., :2])
+
+    @cached_property
+    def heading(self) -> FloatArray:
+        """(ticks, 2) where the torso faces: horizontal unit vectors."""
+        ahead = self._torso.apply([1.0, 0.0, 0.0])[:, :2]
+        return np.asarray(ahead / np.linalg.norm(ahead, axis=1, keepdims=True))
+
+    @cached_property
+    def lean(self) -> FloatArray:
+        """(ticks, 2) the torso's up axis, its parts ahead and to the left."""
+        up, heading = self._torso.apply([0.0, 0.0, 1.0]), self.heading
+        left = np.stack([-heading[:, 1], heading[:, 0]], axis=1)
+        return np.stack(
+            [np.sum(up[:, :2] * heading, axis=1), np.sum(up[:, :2] * left, axis=1)],
+            axis=1,
+        )
+
+    @cached_property
+    def tilt_rad(self) -> FloatArray:
+        """(ticks,) angle between the torso's up axis and the vertical."""
+        up_z = self._torso.apply([0.0, 0.0, 1.0])[:, 2]
+        return np.asarray(np.arccos(np.clip(up_z, -1.0, 1.0)))
+
+    def ground_m(self, places_m: FloatArray) -> FloatArray:
+        """(...) height of the ground at (..., 2) places; 0 where it is not known."""
+        ground = self.scene.ground
+        if ground is None:
+            return np.zeros(places_m.shape[:-1])
+        return ground.height_at(places_m[..., 0], places_m[..., 1])
+
+    @cached_property
+    def _torso(self) -> Rotation:
+        orientation = self.scene.recording.vector("base.orientation")
+        return Rotation.from_quat(orientation, scalar_first=True)
+
+    def _soles(self, poses: dict[str, LinkPoses]) -> FloatArray:
+        robot = self.scene.description
+        soles = []
+        for foot in robot.feet:
+            pose = poses[robot.links[foot.joint].link.name]
+            turn = Rotation.from_quat(pose.orientation, scalar_first=True).as_matrix()
+            points = contact_points(foot)
+            flat = np.c_[points, np.full(len(points), foot.sole_height_m)]
+            soles.append(pose.position_m[:, None] + flat @ np.swapaxes(turn, 1, 2))
+        return np.stack(soles, axis=1)

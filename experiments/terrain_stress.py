@@ -1,0 +1,160 @@
+"""`groundwalk terrain-stress`: how rough may the ground be before gaits fall?"""
+
+import dataclasses
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+import robots
+import worlds
+from experiments.command_line import run_verb
+from experiments.gait_files import load_gaits
+from experiments.progress import progress
+from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
+from experiments.score_table import print_json
+from experiments.terrain_stress_curves import curves_of
+from experiments.terrain_stress_families import FAMILIES, FLAT, Place, leg_length_m
+from experiments.terrain_stress_figure import draw_comparison, draw_heat_maps
+from experiments.terrain_stress_page import HALF_HEADINGS, half_rows, write_stress_page
+from experiments.terrain_stress_walks import walk_at
+from experiments.terrain_stress_worst import write_worst
+from experiments.text_table import print_table
+from groundwalk.errors import BadValueError, UnknownNameError
+from walk_engine import Gait
+
+VERB = "terrain-stress"
+SMALLEST = {"trials": 1, "rungs": 2, "worst": 0, "threads": 0, "seed": 0}
+
+
+@dataclass(frozen=True)
+class TerrainStress:
+    """Let gaits climb ladders of ever harder ground: speed, falls and their causes.
+
+    For each family of ground, the severity at which half of the trials fall. A run that
+    was stopped is continued with --resume.
+
+    Attributes:
+      gaits: names, or JSON files with a gait such as a run's result.json.
+      worlds: where; sim, real or both.
+      robots: their names; `groundwalk list robots` shows them.
+      families: of ground; flat, the ground without severity, is always tried.
+      rungs: severities of a family, in equal ratios from mild to hard.
+      trials: of each gait at each severity, each on its own ground.
+      worst: rollouts of each gait and world that go into a Rerun file.
+      threads: processor threads; 0 for all.
+      seed: every random number follows from it.
+      out: the run's folder; a new one under runs/ by default.
+      resume: continue the run of this folder.
+      json: print the result as JSON.
+    """
+
+    gaits: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
+    worlds: tuple[str, ...] = ("sim", "real")
+    robots: tuple[str, ...] = ("nao",)
+    families: tuple[str, ...] = tuple(FAMILIES)
+    rungs: int = 5
+    trials: int = 8
+    worst: int = 3
+    threads: int = 0
+    seed: int = 1
+    out: Path | None = None
+    resume: Path | None = None
+    json: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        if not (self.gaits or self.resume):
+            raise BadValueError("no gait is given; name one, such as start")
+        for name in ("worlds", "robots", "families"):
+            given = getattr(self, name)
+            if not given or len(set(given)) < len(given):
+                raise BadValueError(f"{name} are {given}; each one once, at least one")
+        load_gaits(self.gaits)
+        for world in self.worlds:
+            worlds.kind(world)
+        for robot in self.robots:
+            leg_length_m(robots.get(robot))
+        for family in self.families:
+            if family not in FAMILIES:
+                raise UnknownNameError("family of ground", family, FAMILIES)
+        for name, least in SMALLEST.items():
+            if getattr(self, name) < least:
+                raise BadValueError(
+                    f"{name} is {getattr(self, name)}; give at least {least}"
+                )
+
+    @property
+    def places(self) -> list[Place]:
+        """Where is walked, in the order of the cells."""
+        found = []
+        for robot, world in itertools.product(self.robots, self.worlds):
+            leg_m = leg_length_m(robots.get(robot))
+            found.append(Place(robot, world, FLAT, 0.0))
+            for name in self.families:
+                ladder = FAMILIES[name].ladder(self.rungs, leg_m).tolist()
+                found += [Place(robot, world, name, severity) for severity in ladder]
+        return found
+
+
+def main(config: TerrainStress) -> None:
+    """Walk cell by cell; a cell that is done is not computed again."""
+    folder, config = open_run(VERB, config)
+    gaits = load_gaits(config.gaits)
+    cells = _walk_cells(folder, config, gaits)
+    curves = curves_of(cells)
+    result = {"curves": curves, "worst": write_worst(folder, config, gaits, cells)}
+    folder.write_json(RESULT, result)
+    draw_comparison(curves, folder.path)
+    draw_heat_maps(curves, folder.path)
+    write_stress_page(folder, curves)
+    if config.json:
+        print_json(result)
+    else:
+        print_table(HALF_HEADINGS, half_rows(curves))
+        print(f"everything else is in {folder.path}")
+
+
+def _walk_cells(
+    folder: RunFolder, config: TerrainStress, gaits: Mapping[str, Gait]
+) -> list[dict[str, Any]]:
+    """All cells, those that are done read from the folder.
+
+    A cell is a place with the trials of all gaits. It depends on the seed alone, so
+    that a run that was stopped goes on to the same bits.
+    """
+    state = _state(folder, gaits)
+    cells: list[dict[str, Any]] = state["cells"]
+    rows = [(gait, number) for number in range(config.trials) for gait in gaits]
+    places = config.places
+    with progress("trials", len(places) * len(rows), len(cells) * len(rows)) as bar:
+        for place in places[len(cells) :]:
+            walks = walk_at(
+                place, gaits, rows, config.seed, config.threads, bar.advance
+            )
+            trials = [dataclasses.asdict(walk.trial) for walk in walks]
+            cells.append({**dataclasses.asdict(place), "trials": trials})
+            folder.write_json(HISTORY, state)
+    return cells
+
+
+def _state(folder: RunFolder, gaits: Mapping[str, Gait]) -> dict[str, Any]:
+    """The gaits and the cells that are done; those of a run that begins are none.
+
+    Raises:
+      BadValueError: a gait's file holds another gait now.
+    """
+    now = {name: dict(gait) for name, gait in gaits.items()}
+    state = folder.read_json(HISTORY) if folder.has(HISTORY) else {"gaits": now}
+    if state["gaits"] != now:
+        raise BadValueError(
+            f"a gait of {folder.path} has changed since the run began; begin another"
+        )
+    return {"cells": [], **state}
+
+
+if __name__ == "__main__":
+    run_verb(TerrainStress, main)
