@@ -13,8 +13,9 @@ STUDIES := toy cliff inverted-pendulum half-cheetah nao-falls
 DATA := ../shared/data
 REAL := so101 emps go2
 
-.PHONY: help env walk test lint results results-walk results-nao $(STUDIES:%=results-%) \
-	results-diagnosis $(REAL:%=results-diagnosis-%) bench
+.PHONY: help env walk test lint results results-walk results-pictures results-nao \
+	$(STUDIES:%=results-%) \
+	results-terrain-stress results-humanoids results-diagnosis $(REAL:%=results-diagnosis-%) bench
 
 help:
 	@echo "make walk    tune a gait in simulation and try it in both worlds (into runs/)"
@@ -40,13 +41,27 @@ lint: $(READY)
 	$(VENV)/bin/lint-imports --no-logo
 
 # Writes every number and picture of docs/results from new runs, or those of one of them.
-results: results-walk results-nao $(STUDIES:%=results-%) results-diagnosis
+results: results-walk results-pictures results-nao $(STUDIES:%=results-%) results-terrain-stress \
+	results-humanoids results-diagnosis
 
 results-walk: $(READY)
 	rm -rf $(RESULTS)/walk
 	$(VENV)/bin/groundwalk optimize-gait --seed 1 --out $(RESULTS)/walk
 	mkdir -p docs/results/walk
 	cp $(addprefix $(RESULTS)/walk/,result.md result.json walk.png search.png) docs/results/walk
+
+# The pictures of the README: the gait of docs/results/walk, filmed on a first course.
+results-pictures: $(READY)
+	rm -rf $(RESULTS)/pictures $(RESULTS)/gait
+	mkdir -p $(RESULTS)/gait docs/results/pictures
+	cp docs/results/walk/result.json $(RESULTS)/gait/tuned.json
+	$(VENV)/bin/groundwalk evaluate $(RESULTS)/gait/tuned.json --trials 1 --seed 1 \
+		--out $(RESULTS)/pictures
+	$(VENV)/bin/groundwalk render $(RESULTS)/pictures --width 310 --height 310 \
+		--out $(RESULTS)/pictures/walk.gif
+	$(VENV)/bin/groundwalk render $(RESULTS)/pictures --only real --balance \
+		--duration 2 --frames 4 --width 300 --height 300 --out $(RESULTS)/pictures/fall.png
+	cp $(addprefix $(RESULTS)/pictures/,walk.gif fall.png) docs/results/pictures
 
 $(STUDIES:%=results-%): results-%: $(READY)
 	rm -rf $(RESULTS)/$*
@@ -64,6 +79,26 @@ results-nao: $(READY)
 	cp $(RESULTS)/nao/result.md docs/results/nao.md
 	cp $(RESULTS)/nao/result.json docs/results/nao.json
 	cp $(RESULTS)/nao/transfer_nao.png docs/results
+
+# What was begun is finished.
+results-terrain-stress: $(READY)
+	$(VENV)/bin/groundwalk terrain-stress start docs/results/walk/result.json --seed 1 \
+		$(if $(wildcard $(RESULTS)/terrain-stress/config.json),--resume,--out) \
+		$(RESULTS)/terrain-stress
+	mkdir -p docs/results
+	cp $(RESULTS)/terrain-stress/result.md docs/results/terrain_stress.md
+	cp $(RESULTS)/terrain-stress/result.json docs/results/terrain_stress.json
+	cp $(RESULTS)/terrain-stress/terrain_stress*.png docs/results
+
+# What was begun is finished.
+results-humanoids: $(READY)
+	$(VENV)/bin/groundwalk humanoids --seed 1 \
+		$(if $(wildcard $(RESULTS)/humanoids/config.json),--resume,--out) \
+		$(RESULTS)/humanoids
+	mkdir -p docs/results
+	cp $(RESULTS)/humanoids/result.md docs/results/humanoids.md
+	cp $(RESULTS)/humanoids/result.json docs/results/humanoids.json
+	cp $(RESULTS)/humanoids/humanoids.png docs/results
 
 results-diagnosis: $(REAL:%=results-diagnosis-%)
 

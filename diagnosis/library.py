@@ -1,5 +1,8 @@
 """All effects that a diagnosis can name."""
 
+import contextlib
+from collections.abc import Iterator
+
 from diagnosis.effect import Effect
 from diagnosis.effects.armature import Armature
 from diagnosis.effects.backlash import Backlash
@@ -27,7 +30,7 @@ from diagnosis.effects.stribeck_friction import StribeckFriction
 from diagnosis.effects.torque_limit import TorqueLimit
 from diagnosis.effects.uneven_ground import UnevenGround
 from diagnosis.effects.viscous_friction import ViscousFriction
-from groundwalk.errors import UnknownNameError
+from groundwalk.errors import BadValueError, UnknownNameError
 
 EFFECTS: dict[str, Effect] = {
     one.name: one
@@ -72,3 +75,30 @@ def effect(name: str) -> Effect:
     if name not in EFFECTS:
         raise UnknownNameError("effect", name, EFFECTS)
     return EFFECTS[name]
+
+
+@contextlib.contextmanager
+def also_known(*effects: Effect) -> Iterator[None]:
+    """Let diagnoses within this block name effects of your own, too.
+
+        with also_known(WaterDrag()):
+            found = diagnose(plant, traces, seed)
+
+    They count for the whole process as long as the block lasts, and are told about
+    within it: a verdict that names them needs them for its words.
+
+    Args:
+      *effects: objects of subclasses of `Effect`, or of a base in `diagnosis.effects`.
+
+    Raises:
+      BadValueError: the name is another effect's.
+    """
+    for one in effects:
+        if one.name in EFFECTS:
+            raise BadValueError(f"there is an effect {one.name!r}; choose another name")
+    EFFECTS.update({one.name: one for one in effects})
+    try:
+        yield
+    finally:
+        for one in effects:
+            EFFECTS.pop(one.name, None)

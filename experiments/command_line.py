@@ -29,6 +29,10 @@ VERBS = {
         "optimize_gait", "OptimizeGait", "tune a gait in the sim, try it in both worlds"
     ),
     "evaluate": Verb("evaluate", "Evaluate", "let gaits walk a course of 3 m"),
+    "humanoids": Verb("humanoids", "Humanoids", "tune gaits for other humanoids"),
+    "terrain-stress": Verb(
+        "terrain_stress", "TerrainStress", "how rough may the ground be for a gait?"
+    ),
     "transfer": Verb("transfer", "STUDIES", "repeat an experiment of the SGAT paper"),
     "diagnose": Verb(
         "diagnose", "Diagnose", "say what physics the sim lacks that recordings show"
@@ -42,7 +46,8 @@ VERBS = {
     "concealed": Verb(
         "concealed", "STUDIES", "recordings whose hidden physics must be found"
     ),
-    "visualize": Verb("visualize", "Visualize", "see rollouts in Rerun"),
+    "visualize": Verb("visualize", "Visualize", "see rollouts and searches in Rerun"),
+    "render": Verb("render", "Render", "draw a film strip or a film of walks"),
     "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
     "list": Verb("list", "List", "show the robots, terrains or gaits that there are"),
     "doctor": Verb(

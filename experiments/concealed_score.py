@@ -18,7 +18,7 @@ from experiments.concealed_score_figure import draw_score
 from experiments.concealed_score_marks import NAMED_KINDS, mark
 from experiments.concealed_score_measures import measures
 from experiments.concealed_score_oracle import Oracle, answer_key, consult
-from experiments.concealed_score_page import score_page, score_rows
+from experiments.concealed_score_page import score_report, score_rows
 from experiments.concealed_score_truth import (
     ANSWERS,
     TrueCase,
@@ -28,11 +28,13 @@ from experiments.concealed_score_truth import (
     read_truth,
 )
 from experiments.progress import progress
+from experiments.repeat_command import repeat_command
 from experiments.run_folder import provenance
 from experiments.text_table import print_table
 from groundwalk.errors import BadValueError
 from groundwalk.files import write_text
 
+VERB = "concealed-score"
 FORMAT = 1
 DIAGNOSIS = "diagnosis"
 ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
@@ -45,7 +47,8 @@ class ConcealedScore:
     """Open the sealed truth of a set of cases and score all answers to it.
 
     Attributes:
-      folder: with cases, sealed truth and answers; gets score.json, .md and .png.
+      folder: with cases, sealed truth and answers; gets score.json, .md, .png and
+        report.html.
       threads: processes that fit the true structures; 0 for one per core.
     """
 
@@ -71,10 +74,11 @@ def main(config: ConcealedScore) -> None:
     }
     oracles = consult_all(folder, truth.cases, answers, config.threads)
     score = score_of(truth, answers, oracles)
-    score["provenance"] = provenance()
+    command = {"command": repeat_command(VERB, config)}
+    score["provenance"] = command | provenance()
     write_text(folder / SCORE, json.dumps(score, indent=1) + "\n")
-    write_text(folder / PAGE, score_page(score, FIGURE))
     draw_score(score, folder / FIGURE)
+    score_report(score, FIGURE).write(folder, PAGE)
     print_table(*score_rows(score))
     if score["missing"]:
         print(f"without an answer, counted as wrong: {', '.join(score['missing'])}")

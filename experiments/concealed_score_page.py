@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from experiments.transfer_page import markdown_table
+from experiments.report import Report, markdown_table
+from experiments.report_origin import Origin
 
 TITLE = "Concealed physics: what the diagnosis found, and what it only thought it did"
 NOTES = """
@@ -129,42 +130,52 @@ def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
     return goal.holds(score) if goal.asked else None
 
 
-def score_page(score: Mapping[str, Any], figure: str) -> str:
+def score_report(score: Mapping[str, Any], figure: str) -> Report:
     """All of a score, and where it comes from.
 
     Args:
       score: as score.json has it.
       figure: name of the picture's file.
     """
-    lines = [f"# {TITLE}", "", *_origin(score), ""]
-    lines += markdown_table(*score_rows(score))
-    lines += ["", f"![Accuracy by level, and calibration]({figure})", "", NOTES.strip()]
-    lines += ["", "Verdicts by kind of case:", "", *_verdict_table(score["verdicts"])]
-    return "\n".join(lines) + "\n"
+    body = markdown_table(*score_rows(score))
+    body += ["", f"![Accuracy by level, and calibration]({figure})", "", NOTES.strip()]
+    body += ["", "Verdicts by kind of case:", "", *_verdict_table(score["verdicts"])]
+    settings = {
+        "cases": score["cases"],
+        "drawn from seed": score["seed"],
+        "sha256 of the sealed truth": score["truth_sha256"],
+    }
+    origin = Origin.of(score["provenance"], settings)
+    return Report(TITLE, _answer(score), [*_unanswered(score), *body], origin)
 
 
-def _origin(score: Mapping[str, Any]) -> list[str]:
-    """Command, commit, seed, and what had no answer."""
-    source = score["provenance"]
-    changed = ", with changes that were not committed" if source["changed"] else ""
-    versions = ", ".join(
-        f"{name} {number}" for name, number in source["packages"].items() if number
-    )
-    command = " ".join(["groundwalk", *source["arguments"]])
-    lines = [
-        f"- command: `{command}`",
-        f"- commit: `{source['commit'] or 'unknown'}`{changed}",
-        f"- cases: {score['cases']}, drawn from seed {score['seed']}; sha256 of the "
-        f"sealed truth `{score['truth_sha256']}`",
-        f"- versions: Python {source['python']}, {versions}",
+def _answer(score: Mapping[str, Any]) -> list[str]:
+    """How often the diagnosis was right, and how many goals that meets."""
+    held = [holds for goal in GOALS if (holds := _holds(goal, score)) is not None]
+    right, wrong = score["top1"]["all"]["value"], score["null_false_alarms"]["value"]
+    told = [
+        f"the right effect is named first in {right:.0%} of the cases with one effect"
+        if right is not None
+        else "",
+        f"something is named in {wrong:.0%} of those in which nothing is missing"
+        if wrong is not None
+        else "",
     ]
+    counted = " and ".join(filter(None, told)) or "there was nothing to count"
+    met = f"The diagnosis meets {sum(held)} of the {len(held)} goals that count here."
+    return [f"Of {score['cases']} cases: {counted}. {met}"]
+
+
+def _unanswered(score: Mapping[str, Any]) -> list[str]:
+    """What had no answer."""
     methods = {"diagnosis": score["missing"]}
     methods |= {name: each["missing"] for name, each in score["baselines"].items()}
-    return lines + [
+    lines = [
         f"- without an answer from {name}, counted as wrong: {', '.join(missing)}"
         for name, missing in methods.items()
         if missing
     ]
+    return [*lines, ""] if lines else []
 
 
 def _verdict_table(verdicts: Mapping[str, Mapping[str, int]]) -> Sequence[str]:

@@ -1,6 +1,5 @@
 """`groundwalk diagnose`: what physics does the sim lack that recordings show?"""
 
-import shlex
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,6 +25,7 @@ from experiments.diagnosis_overlay import write_overlay
 from experiments.diagnosis_report import write_report
 from experiments.diagnosis_report_facts import ReportFacts
 from experiments.diagnosis_report_series import ChannelSeries, ReportSeries
+from experiments.report_origin import command_of
 from experiments.run_folder import PROVENANCE, RunFolder, check_free, to_plain
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
@@ -189,7 +189,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
     return ReportFacts(
         robot=config.robot,
         base=found.plant.base,
-        command="groundwalk " + shlex.join(provenance["arguments"]),
+        command=command_of(provenance),
         settings=settings,
         versions={"groundwalk": provenance["groundwalk"], **packages},
         files=files,

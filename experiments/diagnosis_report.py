@@ -32,6 +32,7 @@ from experiments.diagnosis_report_text import (
     question,
 )
 from experiments.diagnosis_report_words import effect_words
+from experiments.report_html import render
 from groundwalk.files import write_text
 
 TEMPLATE = "diagnosis_report.html.jinja"
@@ -57,23 +58,15 @@ def write_report(
     Raises:
       UnknownNameError: the verdict names an effect that has no words.
     """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=StrictUndefined,
-    )
-    page = environment.get_template(TEMPLATE)
-    write_text(path, page.render(**_words(verdict, facts), **_shown(verdict, series)))
+    parts = _words(verdict, facts) | _shown(verdict, series) | _made(verdict, facts)
+    write_text(path, render(TEMPLATE, **parts))
 
 
 def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
     """What the page says in words and small tables."""
-    recordings = vars(verdict.recordings)
     return {
         "verdict": verdict,
-        "facts": facts,
+        "title": f"Diagnosis: {facts.robot}",
         "question": question(facts.robot, facts.changed),
         "badge": BADGES[verdict.kind],
         "answer": answer(verdict, facts.changed),
@@ -86,10 +79,26 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         ],
         "fit_rows": _fit_rows(verdict.fit) if verdict.fit else [],
         "shown_rows": SHOWN_ROWS,
-        "recordings": [
-            (_USES[use], names) for use, names in recordings.items() if names
+    }
+
+
+def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
+    """What the page says of how it was made."""
+    recordings = [
+        (_USES[use], ", ".join(names))
+        for use, names in vars(verdict.recordings).items()
+        if names
+    ]
+    return {
+        "command": facts.command,
+        "made": [
+            ("robot", f"{facts.robot}, {facts.base} base"),
+            *recordings,
+            *facts.settings.items(),
+            *facts.versions.items(),
+            ("took", f"{verdict.seconds:.0f} s"),
         ],
-        "seconds": f"{verdict.seconds:.0f}",
+        "files": facts.files,
     }
 
 

@@ -1,7 +1,10 @@
 """Words for every effect that a diagnosis can name."""
 
+import inspect
 from typing import NamedTuple
 
+from diagnosis.effect import Effect
+from diagnosis.library import EFFECTS
 from groundwalk.errors import UnknownNameError
 
 
@@ -30,9 +33,20 @@ def effect_words(name: str) -> EffectWords:
     Raises:
       UnknownNameError: there is no effect of that name.
     """
-    if name not in WORDS:
-        raise UnknownNameError("effect", name, WORDS)
-    return WORDS[name]
+    if name in WORDS:
+        return WORDS[name]
+    if name in EFFECTS:
+        return _words_of(EFFECTS[name])
+    raise UnknownNameError("effect", name, WORDS)
+
+
+def _words_of(effect: Effect) -> EffectWords:
+    """Words for an effect of somebody else's, made of its name and its docstring."""
+    label = effect.name.replace("_", " ")
+    kind = effect.place_kind
+    where = f"{{{kind}}}" if kind in ("joint", "body") else "the robot"
+    meaning = (inspect.getdoc(effect) or "").partition("\n")[0]
+    return EffectWords(label, f"{where} has {label} {{lacking}}", meaning)
 
 
 WORDS: dict[str, EffectWords] = {

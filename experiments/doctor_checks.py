@@ -26,6 +26,7 @@ IMPORTS = {
     "absl-py": "absl",
     "example-robot-data": "",  # files only
     "mujoco": "mujoco.batch",
+    "markdown-it-py": "markdown_it",
     "pyyaml": "yaml",
     "rerun-sdk": "rerun",
     "sb3-contrib": "sb3_contrib",

@@ -29,7 +29,7 @@ class Evaluate:
       gaits: names, or JSON files with a gait such as a run's result.json.
       worlds: where; sim, real or both.
       terrain: such as "lumps:amplitude_m=0.008"; each world's own by default.
-      robot: its name; `groundwalk list robots` shows them.
+      robot: its name, as `groundwalk list robots` shows them, or a URDF (.urdf).
       trials: of each gait in each world, each on its own ground.
       threads: processor threads; 0 for all.
       seed: every random number follows from it.
@@ -79,7 +79,7 @@ def main(config: Evaluate) -> None:
         result[world] = keep(folder, world, outcomes)
         folder.write_json(RESULT, result)
     picture_run(folder)
-    write_page(folder, "Gaits on a course of 3 m", result)
+    write_page(folder, "How fast and how surely do these gaits walk 3 m?", result)
     if config.json:
         print_json(result)
     else:

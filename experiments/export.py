@@ -20,7 +20,7 @@ class Export:
     """Write a robot's model, without any ground, as MJCF or URDF.
 
     Attributes:
-      robot: its name; `groundwalk list robots` shows them.
+      robot: its name, as `groundwalk list robots` shows them, or a URDF (.urdf).
       format: mjcf for MuJoCo, with motors and sensors; urdf for PyBullet and others.
       out: the file to write; standard output by default.
     """

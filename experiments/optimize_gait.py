@@ -12,7 +12,7 @@ from experiments.corrected_sims import check_correction, make_sim
 from experiments.evaluation import Study, evaluate, keep
 from experiments.gait_files import load_gait
 from experiments.result_page import write_page
-from experiments.reward import reward_cm_s
+from experiments.reward import FALL_PENALTY_CM_S, reward_cm_s
 from experiments.run_folder import (
     CHECKPOINT,
     HISTORY,
@@ -31,7 +31,7 @@ from walk_engine import Gait
 
 VERB = "optimize-gait"
 WORLDS = ("sim", "real")
-TITLE = "A gait tuned in the sim, tried in both worlds"
+TITLE = "How does the gait that was tuned in the sim walk in both worlds?"
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class OptimizeGait:
     """Tune a gait with CMA-ES in the sim, then try it on real uneven ground.
 
     Attributes:
-      robot: its name; `groundwalk list robots` shows them.
+      robot: its name, as `groundwalk list robots` shows them, or a URDF (.urdf).
       start: name or JSON file of the gait that the search starts from.
       terrain: ground of the search in the sim, for example "lumps:amplitude_m=0.005".
       real_terrain: ground of the evaluation in the real world.
@@ -100,7 +100,27 @@ class OptimizeGait:
 
 
 def main(config: OptimizeGait) -> None:
-    """Run the search and the evaluation, and write everything down."""
+    """Run the search and the evaluation, and say what came of it."""
+    folder, _ = tune_gait(config)
+    result = folder.read_json(RESULT)
+    if config.json:
+        print_json(result)
+    else:
+        print_scores({world: result[world] for world in WORLDS}, folder.path)
+
+
+def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
+    """Tune a gait and try it, for Python as for the command line.
+
+    Args:
+      config: what is tuned, and how.
+
+    Returns:
+      The run's folder, with everything in it, and the gait.
+
+    Raises:
+      GroundwalkError: the folder is in the way, or cannot be continued.
+    """
     folder, config = open_run(VERB, config)
     of_search, of_trials = np.random.SeedSequence(config.seed).spawn(2)
     tuned = search(config, folder, of_search)
@@ -109,12 +129,8 @@ def main(config: OptimizeGait) -> None:
         folder.write_json(RESULT, {**table, "gait": dict(tuned)})
     result = folder.read_json(RESULT)
     picture_run(folder)
-    table = {world: result[world] for world in WORLDS}
-    write_page(folder, TITLE, table)
-    if config.json:
-        print_json(result)
-    else:
-        print_scores(table, folder.path)
+    write_page(folder, TITLE, {world: result[world] for world in WORLDS})
+    return folder, Gait.from_mapping(result["gait"])
 
 
 def search(
@@ -150,7 +166,8 @@ def _generation(
     description = robots.get(config.robot)
     world = make_sim(description, [ground] * n, nobody, options, config.sim)
     trials = walk_trials(world, tried, SEARCH_TRIAL)
-    rewards = reward_cm_s(trials, SEARCH_TRIAL.limit_s)
+    penalty_cm_s = FALL_PENALTY_CM_S * description.scale.speed
+    rewards = reward_cm_s(trials, SEARCH_TRIAL.limit_s, penalty_cm_s)
     strategy.tell(rewards[:-1])
     return {
         "rewards": rewards[:-1].tolist(),
@@ -158,6 +175,7 @@ def _generation(
         "mean_reward": float(rewards[-1]),
         "mean_fell": bool(trials.fell[-1]),
         "mean_gait": dict(mean),
+        "best_gait": dict(Gait.from_vector(tried[int(rewards[:-1].argmax())])),
         "spread": strategy.spread.tolist(),
         "sigma": strategy.sigma,
     }

@@ -12,7 +12,7 @@ from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_console import print_verdict
 from experiments.real_robots_cases import ROBOTS, RealRobot
 from experiments.real_robots_page import write_real_page
-from experiments.result_page import PAGE
+from experiments.report import PAGE
 from groundwalk.errors import BadValueError
 
 DATA = Path("../shared/data")

@@ -4,11 +4,15 @@ from collections.abc import Sequence
 
 from diagnosis.verdict import Found, Verdict
 from experiments.diagnosis_report_numbers import estimate_text, percent
-from experiments.diagnosis_report_text import BADGES, next_step
+from experiments.diagnosis_report_text import BADGES, answer, next_step
 from experiments.real_robots_cases import RealRobot
 from experiments.real_robots_claims import claims_of, sane_bounds
+from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
-from experiments.transfer_page import markdown_table, write_transfer_page
+from experiments.transfer_page import write_transfer_page
+
+JUDGED = "result.html"
+"""`report.html` is the diagnosis' own."""
 
 MUCH = 2.0
 """Times the noise: what is left above it is told."""
@@ -22,7 +26,7 @@ sliding joints read N for N m and m for rad.
 
 
 def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> None:
-    """Write `result.md` into the run's folder.
+    """Write `result.md` and `result.html` into the run's folder.
 
     Args:
       folder: of the diagnosis.
@@ -34,7 +38,8 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
     body += ["", "## Real less sim, kept out of the fit", "", *_fit(verdict)]
     body += _pulses(verdict)
     body += ["", "## What was used for what", "", *_recordings(verdict), NOTES.rstrip()]
-    write_transfer_page(folder, robot.title, claims_of(robot, verdict), body)
+    claims = claims_of(robot, verdict)
+    write_transfer_page(folder, robot.title, claims, body, answer(verdict), JUDGED)
 
 
 def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:

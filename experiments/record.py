@@ -17,6 +17,7 @@ from experiments.excitation_standing import (
 from experiments.new_file import check_new
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
+from groundwalk.files import write_text
 from worlds.hidden_clock import Clock
 from worlds.hidden_effects import Hidden
 from worlds.hidden_plant import HiddenPlant, hidden_plant
@@ -116,7 +117,7 @@ def main(config: Record) -> None:
     model = config.robot
     if plant.file is not None:
         model = f"{config.out.stem}.{plant.file[0]}"
-        config.out.with_name(model).write_text(plant.file[1])
+        write_text(config.out.with_name(model), plant.file[1])
     metadata = RecordingMetadata(
         robot=model,
         base="floating" if plant.floating else "fixed",

@@ -10,6 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args
 
+from experiments.repeat_command import repeat_command
 from groundwalk import __version__
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_bytes, write_text
@@ -64,7 +65,8 @@ class RunFolder:
         check_free(path)
         folder = cls(path)
         folder.write_json(CONFIG, {"verb": verb, **to_plain(config)})
-        folder.write_json(PROVENANCE, provenance())
+        command = {"command": repeat_command(verb, config)}
+        folder.write_json(PROVENANCE, command | provenance())
         return folder
 
     @classmethod

@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 
+from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
 from experiments.transfer_cliff_figure import FIGURE
 from experiments.transfer_cliff_study import METHODS, SAMPLES, CliffStudy, Row
-from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.transfer_page import Claim, write_transfer_page
 from sgat.tabular_rollouts import STEP_LIMIT
 
 TITLE = "Cliff walking: what policies return in a real world of random moves"

@@ -2,11 +2,12 @@
 
 from typing import Any
 
+from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
 from experiments.transfer_gym_grounding import REAL_EXPLORATION, SIM_EXPLORATION
 from experiments.transfer_gym_rows import WAYS, measures_table, returns_table
 from experiments.transfer_gym_study import GymStudy
-from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.transfer_page import Claim, write_transfer_page
 
 NOTES = """
 The sim is {environment} as it is. Real is a sim whose actions are noisy; in the setting

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from experiments.intervals import NORMAL_95
+from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
 from experiments.transfer_nao_falls_figure import FIGURE
 from experiments.transfer_nao_falls_measures import (
@@ -13,7 +14,7 @@ from experiments.transfer_nao_falls_measures import (
     MEASURES_FIGURE,
     measure_rows,
 )
-from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.transfer_page import Claim, write_transfer_page
 from experiments.walk_groundings import ENSEMBLE, GROUNDINGS, SGAT, UNEVEN
 from experiments.walk_groundings_words import UNEVEN_MEANS
 from groundwalk.arrays import FloatArray
@@ -136,7 +137,13 @@ def write_falls_page(
         *markdown_table(MEASURE_HEADINGS, measure_rows(state[MEASURES])),
     ]
     title = "Does the grounded sim know which gaits fall?"
-    write_transfer_page(folder, title, claims, body)
+    know = "Yes" if by_name[best] >= GOAL else "Not well enough"
+    answer = (
+        f"{know}: of {len(by_name)} sims, {best} predicts best how often a gait falls "
+        f"on real ground, with a correlation of {by_name[best]:.2f} "
+        f"(95 % interval {low:.2f} to {high:.2f}); {GOAL} is asked for."
+    )
+    write_transfer_page(folder, title, claims, body, [answer])
 
 
 def _number(value: float | None) -> str:

@@ -1,12 +1,13 @@
-"""What the pages of all transfer studies share: claims and tables in Markdown."""
+"""What the pages of all transfer studies share: claims, and how they are written."""
 
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from experiments.result_page import PAGE, origin
-from experiments.run_folder import CONFIG, PROVENANCE, RunFolder
+from experiments.report import REPORT, Report
+from experiments.report_origin import Origin
+from experiments.run_folder import RunFolder
 
 
 @dataclass(frozen=True)
@@ -29,20 +30,38 @@ class Claim:
 
 
 def write_transfer_page(
-    folder: RunFolder, title: str, claims: Sequence[Claim], body: Sequence[str]
+    folder: RunFolder,
+    title: str,
+    claims: Sequence[Claim],
+    body: Sequence[str],
+    answer: Sequence[str] = (),
+    report: str = REPORT,
 ) -> None:
-    """Write `result.md`: where it comes from, the claims, and the rest.
+    """Write `result.md` and the HTML: the answer, the claims, and the rest.
 
     Args:
-      folder: the run.
+      folder: the run, which has its pictures already.
       title: what was asked, as a heading.
       claims: what is to be shown.
       body: lines of Markdown.
+      answer: in plain words; how many claims hold where there are none.
+      report: name of the HTML file.
     """
-    lines = [f"# {title}", ""]
-    lines += origin(folder.read_json(PROVENANCE), folder.read_json(CONFIG))
-    lines += ["", *claim_lines(claims), "", *body]
-    folder.write_text(PAGE, "\n".join(lines) + "\n")
+    lines = [*claim_lines(claims), "", *body]
+    answer = answer or claims_answer(claims)
+    Report(title, answer, lines, Origin.of_run(folder)).write(
+        folder.path, report=report
+    )
+
+
+def claims_answer(claims: Sequence[Claim]) -> list[str]:
+    """How many claims hold."""
+    if not claims:
+        return []
+    every, held = len(claims), sum(claim.holds for claim in claims)
+    if every == held:
+        return ["All that is claimed below came out so."]
+    return [f"Of the {every} claims below, {held or 'none'} came out so."]
 
 
 def claim_lines(claims: Sequence[Claim]) -> list[str]:
@@ -52,14 +71,3 @@ def claim_lines(claims: Sequence[Claim]) -> list[str]:
         f"{claim.found}"
         for claim in claims
     ]
-
-
-def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table.
-
-    Args:
-      columns: their headings.
-      rows: of as many texts each.
-    """
-    ruler = ["---"] * len(columns)
-    return ["| " + " | ".join(row) + " |" for row in (columns, ruler, *rows)]

@@ -1,5 +1,6 @@
 """`groundwalk transfer toy`: the paper's toy worlds, solved exactly."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,10 +9,11 @@ import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.progress import progress
+from experiments.report import markdown_table
 from experiments.run_folder import RESULT, open_run
 from experiments.score_table import print_json
 from experiments.text_table import print_table
-from experiments.transfer_page import Claim, markdown_table, write_transfer_page
+from experiments.transfer_page import Claim, write_transfer_page
 from experiments.transfer_toy_mdps import TOYS, Toy
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
@@ -22,7 +24,7 @@ from sgat.tabular_planning import action_values, policy_iteration
 from sgat.tabular_rollouts import roll_out
 
 VERB = "transfer-toy"
-TITLE = "Toy worlds: the best action in each grounded simulator"
+TITLE = "Toy worlds: does planning in a grounded sim find what is best on real?"
 COLUMNS = (
     "real world", "planned in", "values of a1, a2, ...", "best", "in the paper",
     "from counts", "worth on real",
@@ -79,12 +81,27 @@ def main(config: TransferToy) -> None:
     ]
     notes = [line.format(episodes=config.episodes) for line in NOTES]
     body = [*markdown_table(COLUMNS, rows), "", *notes]
-    write_transfer_page(folder, TITLE, claims, body)
+    write_transfer_page(folder, TITLE, claims, body, [_answer(result["toys"])])
     if config.json:
         print_json(result)
     else:
         print_table(COLUMNS, rows)
         print(f"everything else is in {folder.path}")
+
+
+def _answer(toys: Mapping[str, Any]) -> str:
+    """In how many worlds planning in each sim finds the real world's best action."""
+    found = dict.fromkeys(("sim", "GAT", "SGAT"), 0)
+    for toy in toys.values():
+        best = {row["world"]: row["best"] for row in toy["planned"]}
+        for world in found:
+            found[world] += best[world] == best["real"]
+    said = [f"in {count} when grounded by {name}" for name, count in found.items()]
+    said[0] = f"in {found['sim']} as it is"
+    return (
+        f"In {len(toys)} toy worlds, planning in the sim finds the action that is best "
+        f"in the real world: {', '.join(said)}."
+    )
 
 
 def _solve_all(config: TransferToy) -> dict[str, Any]:

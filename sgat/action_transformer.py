@@ -71,6 +71,17 @@ class ActionTransformer:
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
         self._stream: NoiseStream | None = None
 
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """(a,) least and largest action."""
+        return self._low, self._high
+
+    @property
+    def inverse_columns(self) -> int | None:
+        """How many columns of a state the inverse model sees; None for all."""
+        columns: int | None = self._columns.stop
+        return columns
+
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode of n robots, each with noise from its own seed."""
         if self.noise is not None:

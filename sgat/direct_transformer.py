@@ -87,6 +87,11 @@ class DirectTransformer:
         self._fitted = ScaledNetwork(inputs, outputs, network)
         return self
 
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """(a,) least and largest action."""
+        return self._low, self._high
+
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode; nothing here is random."""
 

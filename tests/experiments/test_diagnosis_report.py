@@ -18,7 +18,7 @@ from diagnosis.verdict import (
 from experiments.diagnosis_report import write_report
 from groundwalk.errors import UnknownNameError
 
-VOID = {"meta", "br"}
+VOID = {"meta", "br", "img"}
 
 
 class Page(HTMLParser):

@@ -15,7 +15,9 @@ def rows_of(kind):
 
 
 def test_robots():
-    (nao,) = rows_of("robots")
+    rows = {row["robot"]: row for row in rows_of("robots")}
+    assert {"talos", "g1", "romeo", "icub", "simple_humanoid"} < set(rows)
+    nao = rows["nao"]
     # Facts of the maker: 5.305 kg; 100 + 102.9 + 45.11 mm from hip to sole.
     assert nao == {
         "robot": "nao",

@@ -76,6 +76,7 @@ def check_run_folder(folder: Path, result):
         "checkpoint.pkl",
         "result.json",
         "result.md",
+        "report.html",
         "search.png",
         "walk.png",
         "walk.rrd",

@@ -1,0 +1,83 @@
+"""Physics of your own: the diagnosis looks for it beside the effects that it knows.
+
+    python examples/custom_effect.py --folder runs/water
+
+A pendulum swings in water, which brakes with the square of the speed. No effect of the
+library does that; the class below says it.
+"""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import tyro
+
+from diagnosis.diagnose import diagnose
+from diagnosis.effect import Effect, Parameter
+from diagnosis.library import also_known
+from diagnosis.trace_reading import read_traces
+from diagnosis.verdict import Verdict
+from experiments.diagnosis_console import print_verdict
+from worlds import Recording, RecordingMetadata, ServoGains, write_recording
+
+PENDULUM = """<mujoco><option timestep="0.001"/><worldbody><body name="rod">
+<joint name="swing" axis="0 1 0" damping="0 {water}"/>
+<geom type="capsule" fromto="0 0 0 0 0 -0.5" size="0.02" mass="1"/></body></worldbody>
+<actuator><position joint="swing" kp="20" kv="0.5"/></actuator></mujoco>"""
+
+
+class WaterDrag(Effect):
+    """A torque -c v|v| at a joint, as water brakes a paddle."""
+
+    name, place_kind, native = "water_drag", "joint", True
+
+    def places(self, plant, traces):
+        """Any joint."""
+        return plant.joints
+
+    def parameters(self, plant, place):
+        """c: from nothing to much, and what is worth trying first."""
+        return (Parameter("coefficient", "N m s^2/rad^2", 0.0, 5.0, 0.0, 0.1),)
+
+    def apply(self, variants, row, place, values):
+        """In MuJoCo it is the second coefficient of the damping."""
+        variants.field("dof_dampingpoly")[row, variants.dof(place), 0] += values[0]
+
+
+def swing(path: Path, duration: float, seed: int) -> None:
+    """Record a pendulum that follows random commands in water."""
+    model = mujoco.MjModel.from_xml_string(PENDULUM.format(water=0.3))
+    data, rng, rows = mujoco.MjData(model), np.random.default_rng(seed), []
+    pace = rng.uniform(3, 9, 3)
+    for time_s in np.arange(0, duration, 0.01):
+        data.ctrl[0] = 0.5 * np.sin(pace * time_s).sum()
+        measured = data.qpos[0] + 1e-4 * rng.standard_normal()
+        rows.append((time_s, measured, data.ctrl[0]))
+        mujoco.mj_step(model, data, 10)
+    names = ("time", "position.swing", "command.swing")
+    servo = {"swing": ServoGains(kp=20, kd=0.5, max_torque=100)}
+    metadata = RecordingMetadata("pendulum.xml", "fixed", "in water", servo)
+    columns = dict(zip(names, np.array(rows).T, strict=True))
+    write_recording(Recording(columns, metadata), path)
+
+
+def main(folder: Path, duration: float = 6.0) -> Verdict:
+    """Record twice in water, and diagnose with a model that knows of none.
+
+    Args:
+      folder: gets the model and the recordings.
+      duration: of a recording [s].
+    """
+    paths = [folder / f"swing{seed}.parquet" for seed in (1, 2)]
+    for seed, path in enumerate(paths):
+        swing(path, duration, seed)
+    (folder / "pendulum.xml").write_text(PENDULUM.format(water=0))
+    plant, traces = read_traces(paths, folder / "pendulum.xml")
+    with also_known(WaterDrag()):
+        verdict = diagnose(plant, traces, np.random.SeedSequence(1)).verdict
+        print_verdict(verdict, [])
+    return verdict
+
+
+if __name__ == "__main__":
+    tyro.cli(main)

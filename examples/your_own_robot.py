@@ -1,0 +1,42 @@
+"""Walk with a robot of your own: a URDF, or a TOML file as robots/nao.toml.
+
+python examples/your_own_robot.py --robot path/to/robot.urdf
+"""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import tyro
+
+import robots
+import terrain
+import worlds
+from experiments.trials import TrialRules, Trials, walk_trials
+from walk_engine import gaits
+
+
+def main(robot: Path | None = None, limit_s: float = 7.5) -> Trials:
+    """Walk straight ahead on flat ground in the sim.
+
+    Args:
+      robot: its file; a NAO with a torso of twice the mass where there is none.
+      limit_s: time limit.
+    """
+    if robot is None:
+        nao = Path(robots.__file__).with_name("nao.toml").read_text()
+        robot = Path(tempfile.mkdtemp(), "heavy.toml")
+        robot.write_text(nao.replace("mass = 1.04956", "mass = 2.09912"))
+    description = robots.get(str(robot))
+    ground, seed = terrain.make("flat", seed=0), np.random.SeedSequence(1)
+    world = worlds.make("sim", description, [ground], [seed])
+    trials = walk_trials(world, [gaits.get("start")], TrialRules(limit_s))
+    print(
+        f"{description.mass_kg:.2f} kg, {trials.speed_cm_s[0]:.1f} cm/s, "
+        f"{trials.ended[0] or 'still walking'}"
+    )
+    return trials
+
+
+if __name__ == "__main__":
+    tyro.cli(main)

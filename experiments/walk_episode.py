@@ -1,0 +1,98 @@
+"""One robot that walks tick by tick, with something added to the engine's commands."""
+
+import numpy as np
+
+from experiments.trials import TrialRules, Trials
+from groundwalk.arrays import FloatArray
+from robots import biped
+from walk_engine import Gait, Velocity, WalkEngine
+from worlds import TICK_S, End, Observation, World
+
+
+class WalkEpisode:
+    """A trial of `experiments.trials.walk_trials`, one tick at a time.
+
+    Where nothing is added to the commands it is that trial, to the bit.
+
+    Attributes:
+      command_rad: (joints,) what the engine asks for at the next tick.
+      observation: of the last tick.
+    """
+
+    def __init__(
+        self, world: World, gait: Gait, rules: TrialRules, seed: np.random.SeedSequence
+    ) -> None:
+        """Put the robot on its ground, ready to walk.
+
+        Args:
+          world: with one robot.
+          gait: that it walks.
+          rules: when the trial is over.
+          seed: of the pose at the start, if that shall spread.
+        """
+        self._world, self._rules = world, rules
+        self._engine = WalkEngine(biped(world.description), [gait], TICK_S)
+        pose_rad = self._engine.start_pose()
+        if rules.start_spread_rad > 0:
+            generator = np.random.default_rng(seed)
+            spread = generator.standard_normal(pose_rad.shape[1])
+            pose_rad = pose_rad + rules.start_spread_rad * spread
+        self.observation: Observation = world.reset(pose_rad)
+        self._start_m = world.truth().base_position_m[:, 0]
+        self.ticks = 0
+        self.distance_m = 0.0
+        self._ask()
+
+    def step(self, added_rad: FloatArray) -> None:
+        """Walk for one tick.
+
+        Args:
+          added_rad: (joints,) added to the engine's command, which does not know of it;
+            the sum is held within the joints' ranges.
+        """
+        low, high = self._world.description.joint_range_rad.T
+        # the engine's own commands may be past a range's end by the last bit
+        moved_rad = np.clip(self.command_rad + added_rad, low, high)
+        given_rad = np.where(added_rad == 0, self.command_rad, moved_rad)
+        self.observation = self._world.step(given_rad[None])
+        self.ticks += 1
+        here_m = self._world.truth().base_position_m[:, 0]
+        self.distance_m = float((here_m - self._start_m)[0])
+        course_m = self._rules.course_m
+        if course_m is not None and self.distance_m >= course_m:
+            self._world.stop(np.ones(1, bool))
+        if not self.is_over:
+            self._ask()
+
+    @property
+    def ended(self) -> End:
+        """Why the rollout ended; `End.NONE` if time is up or it goes on."""
+        return self._world.ended[0]
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the trial is."""
+        out_of_time = self.ticks >= round(self._rules.limit_s / TICK_S)
+        return out_of_time or not self._world.active[0]
+
+    @property
+    def support(self) -> float:
+        """The foot that supports: 1 left, -1 right, 0 both."""
+        return float(self._engine.support[0])
+
+    @property
+    def step_time_s(self) -> float:
+        """Time since the current step began."""
+        return float(self._engine.step_time_s[0])
+
+    def trials(self) -> Trials:
+        """How it went so far."""
+        time_s = np.array([self.ticks * TICK_S])
+        return Trials(np.array([self.distance_m]), time_s, (self.ended,))
+
+    def _ask(self) -> None:
+        """What the engine commands after what was measured."""
+        seen = self.observation
+        self.command_rad: FloatArray = self._engine.step(
+            Velocity.forward(), seen.gyroscope_rad_s, seen.foot_force_n
+        )[0]
