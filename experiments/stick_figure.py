@@ -4,12 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from groundwalk.arrays import FloatArray
 from robots.description import Capsule, Description, Foot
 from worlds.forward_kinematics import LinkPoses
 from worlds.scene import SIDES, Scene
+
+NAO_HEAD_M = 0.056
+"""Radius of the NAO's head."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ def stick_figure(scene: Scene) -> StickFigure:
     feet = dict(zip(SIDES, robot.feet, strict=True))
     legs = {side: _leg(robot, poses, foot) for side, foot in feet.items()}
     arms = [_arm(robot, poses, tip) for tip in _other_tips(robot)]
-    head = max(robot.root.shapes, key=_top_m)
+    head = _head(robot)
     root = poses[robot.root.name]
     hips = np.mean([leg[:, 0] for leg in legs.values()], axis=0)
     head_m = _point(root, _middle_m(head))
@@ -83,8 +85,15 @@ def _joints(
 
 def _point(pose: LinkPoses, place_m: Sequence[float]) -> FloatArray:
     """(ticks, 3) a point that a link carries, given in the link's frame."""
-    turn = Rotation.from_quat(pose.orientation, scalar_first=True)
-    return np.asarray(pose.position_m + turn.apply(place_m))
+    return pose.points(np.array([place_m]))[:, 0]
+
+
+def _head(robot: Description) -> Capsule:
+    """The root's highest shape; without any, a head where the root's mass is."""
+    x_m, y_m, z_m = robot.root.inertial.com_m.tolist()
+    centre_m = (x_m, y_m, z_m)
+    stand_in = Capsule(centre_m, centre_m, NAO_HEAD_M * robot.scale.length)
+    return max(robot.root.shapes, key=_top_m, default=stand_in)
 
 
 def _middle_m(shape: Capsule) -> tuple[float, ...]:

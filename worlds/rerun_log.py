@@ -4,7 +4,7 @@ Each scene has a path prefix of its own, so that scenes stand side by side in on
 
 | entity | what |
 |---|---|
-| `<scene>/robot/<link>` | shapes; pose of the link in the world |
+| `<scene>/robot/<link>` | mesh, else capsules; pose of the link in the world |
 | `<scene>/robot/<foot>/{sole,rim,force}` | plate; its edge; arrows of 5 mm a newton |
 | `<scene>/ground` | the heightfield's triangles |
 | `<scene>/joints/<joint>/{position,velocity,command,...}` | as recorded |
@@ -28,7 +28,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from groundwalk.files import write_bytes
+from robots.description import Link
 from worlds import scene_colours as colours
+from worlds.link_meshes import link_mesh
 from worlds.recording_columns import SUPPORT
 from worlds.rerun_balance import support_look, write_balance
 from worlds.rerun_columns import ColumnLog
@@ -114,10 +116,7 @@ class _SceneLog(ColumnLog):
 
         robot = self._scene.description
         for link in (robot.root, *(joint.link for joint in robot.links)):
-            if link.shapes:
-                arrays = capsules(link.shapes, self._accent)._asdict()
-                shapes = rr.Capsules3D(**arrays, fill_mode="solid")
-                self.log(f"robot/{link.name}", shapes)
+            self._write_look(link)
         for name, pose in self._scene.link_poses().items():
             self.send(
                 f"robot/{name}",
@@ -125,6 +124,17 @@ class _SceneLog(ColumnLog):
                 translation=pose.position_m,
                 quaternion=np.roll(pose.orientation, -1, axis=1),
             )
+
+    def _write_look(self, link: Link) -> None:
+        import rerun as rr
+
+        entity = f"robot/{link.name}"
+        mesh = link_mesh(link, colours.pale(self._accent))
+        if mesh is not None:
+            self.log(entity, rr.Mesh3D(**mesh._asdict()))
+        elif link.shapes:
+            arrays = capsules(link.shapes, self._accent)._asdict()
+            self.log(entity, rr.Capsules3D(**arrays, fill_mode="solid"))
 
     def _write_feet(self) -> None:
         import rerun as rr

@@ -1,10 +1,13 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from made_up_runs import STANDING_M, glide, steady
+from made_up_runs import NAO, STANDING_M, glide, steady
 
 from experiments.scenes import make_scenes
-from experiments.stick_figure import stick_figure
+from experiments.stick_figure import NAO_HEAD_M, stick_figure
 from worlds import Recording
+from worlds.scene import Scene
 
 
 def figure_of(recording):
@@ -52,3 +55,25 @@ def test_a_leg_turns_with_its_joints_and_the_feet_with_the_torso():
     np.testing.assert_allclose(ankle - knee, [0, -0.1029, 0], atol=1e-12)
     *_, ankle, _heel, toe, _ = figure.legs["right"][0]
     np.testing.assert_allclose(toe - ankle, [0, 0.0994, -0.04511], atol=1e-12)
+
+
+def test_what_is_missing_at_a_tick_is_nan_there_and_nowhere_else():
+    columns = dict(glide([0.0, 1.0, 2.0]).columns)
+    columns["position.LKneePitch"] = np.array([0.0, np.nan, 0.0])
+    columns["base.orientation.w"] = np.array([1.0, 1.0, np.nan])
+    figure = figure_of(Recording(columns, steady().metadata))
+    left, right = figure.legs["left"], figure.legs["right"]
+    for whole in (left[0], right[:2], figure.torso[:2], figure.arms[0][:2]):
+        assert np.isfinite(whole).all()
+    assert np.isfinite(left[1, :3]).all()
+    for missing in (left[1, -3:-1], left[2, 1:], figure.torso[2], figure.arms[0][2]):
+        assert np.isnan(missing).all()
+
+
+def test_a_root_without_shapes_has_a_head_where_its_mass_is():
+    bare = replace(NAO, root=replace(NAO.root, shapes=()))
+    figure = stick_figure(Scene("sim", glide([0.3]), bare))
+    com_m = NAO.root.inertial.com_m
+    np.testing.assert_allclose(figure.torso[0, -1] - (0.3, 0, STANDING_M), com_m)
+    assert figure.head_radius_m == NAO_HEAD_M
+    assert figure_of(glide([0.3])).torso[0, -1, 2] > figure.torso[0, -1, 2]

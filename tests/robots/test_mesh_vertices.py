@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadModelError
-from robots.mesh_vertices import mesh_vertices
+from robots.mesh_vertices import mesh_surface, mesh_vertices
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 3]])
 DAE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema">
@@ -52,6 +52,49 @@ def test_collada_whose_y_is_up(tmp_path):
     for up in ("", "<up_axis>Y_UP</up_axis>"):
         path.write_text(DAE.format(up=up))
         np.testing.assert_allclose(mesh_vertices(path), expected, atol=1e-12)
+
+
+FACES = {
+    "polylist": "<vcount>3 4</vcount><p>0 9 1 9 2 9 2 9 1 9 0 9 2 9</p>",
+    "triangles": "<p>0 9 1 9 2 9 2 9 1 9 0 9 2 9 0 9 2 9</p>",
+    "polygons": "<p>0 9 1 9 2 9</p><p>2 9 1 9 0 9 2 9</p>",
+}
+
+
+@pytest.mark.parametrize("kind", FACES)
+def test_faces_of_collada(tmp_path, kind):
+    """Behind each corner stands its normal, 9; a face of four becomes two."""
+    inputs = '<input semantic="VERTEX" offset="0"/><input semantic="N" offset="1"/>'
+    faces = f"<{kind}>{inputs}{FACES[kind]}</{kind}></mesh>"
+    path = tmp_path / "one.dae"
+    path.write_text(DAE.format(up="").replace("</mesh>", faces))
+    expected = [[0, 1, 2], [2, 1, 0], [2, 0, 2]]
+    np.testing.assert_array_equal(mesh_surface(path).triangles, expected)
+    path.write_text(path.read_text().replace("<p>0", "<p>3"))
+    with pytest.raises(BadModelError, match="lacks"):
+        mesh_surface(path)
+
+
+def test_a_mirror_in_the_scene_turns_faces_round(tmp_path):
+    faces = '<triangles><input semantic="VERTEX"/><p>0 1 2</p></triangles></mesh>'
+    path = tmp_path / "one.dae"
+    text = DAE.format(up="").replace("</mesh>", faces)
+    path.write_text(text.replace("<scale>2 2 2", "<scale>2 2 -2"))
+    np.testing.assert_array_equal(mesh_surface(path).triangles, [[2, 1, 0]])
+
+
+def test_faces_of_obj_and_stl(tmp_path):
+    """Counted from 1, or backward from the last point before the face."""
+    obj, stl = tmp_path / "one.obj", tmp_path / "one.stl"
+    points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    obj.write_text(points + "f 1/7/8 2/7/8 3 4\nf -1 -2 -3\nv 1 1 1\n")
+    expected = [[0, 1, 2], [0, 2, 3], [3, 2, 1]]
+    np.testing.assert_array_equal(mesh_surface(obj).triangles, expected)
+    stl.write_text("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n")
+    np.testing.assert_array_equal(mesh_surface(stl).triangles, [[0, 1, 2]])
+    obj.write_text(points + "f 1 2 5\n")
+    with pytest.raises(BadModelError, match="lacks"):
+        mesh_surface(obj)
 
 
 @pytest.mark.parametrize(
