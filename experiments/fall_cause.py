@@ -47,8 +47,7 @@ class FallCause:
     Attributes:
       cause: what.
       time_s: when it was first seen, in the recording's time; of a tip, when balance
-        was
-        lost; None if unknown.
+        was lost; None if unknown.
     """
 
     cause: Cause

@@ -11,8 +11,8 @@ from experiments.command_line import run_verb
 from experiments.new_file import check_new
 from experiments.render_film import Film, film_bytes, strip_bytes
 from experiments.scenes import make_scenes
-from experiments.visualize import gather
-from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from experiments.visualize import check_paths, gather
+from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_bytes
 
 STRIP, FILMS = ".png", (".gif", ".mp4")
@@ -59,13 +59,7 @@ class Render:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be drawn, and to overwrite."""
-        if not self.paths:
-            raise BadValueError("no run folder and no recording is given; name some")
-        for path in self.paths:
-            if not path.exists():
-                raise BadRecordingError(
-                    f"{path}: there is no such run folder or recording"
-                )
+        check_paths(self.paths)
         if self.out.suffix not in (STRIP, *FILMS):
             raise BadValueError(f"{self.out} must end with .png, .gif or .mp4")
         check_new(self.out)

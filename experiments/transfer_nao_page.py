@@ -12,6 +12,7 @@ from experiments.walk_data import ON_COURSE
 from experiments.walk_groundings import GAT, NONE, SGAT, UNEVEN
 from experiments.walk_groundings_words import UNEVEN_MEANS
 from experiments.walk_raters import FALL_PENALTY_WALK_CM_S, RATED
+from experiments.walk_tuning import LUMPS_MARGIN
 from terrain import Lumps
 
 CELLS = "cells"
@@ -111,6 +112,9 @@ def write_nao_page(folder: RunFolder, cells: Sequence[Cell], planned: int) -> No
         "",
         f"{SGAT}'s noise is white, as in the paper.",
         *UNEVEN_MEANS,
+        f"A search's lumps are {LUMPS_MARGIN:g} times as high as that, for a margin.",
+        "All groundings learn from the same real walks, half of them with noise on the",
+        "commands.",
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
         f"{RATED.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the sim has lumps.",
         "*real walks*: what the method has seen of the real world before its trials.",

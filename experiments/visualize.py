@@ -45,13 +45,7 @@ class Visualize:
 
     def __post_init__(self) -> None:
         """Refuse to show nothing, and to overwrite."""
-        if not self.paths:
-            raise BadValueError("no run folder and no recording is given; name some")
-        for path in self.paths:
-            if not path.exists():
-                raise BadRecordingError(
-                    f"{path}: there is no such run folder or recording"
-                )
+        check_paths(self.paths)
         if self.out is not None:
             check_new(self.out, ".rrd")
 
@@ -82,6 +76,20 @@ def main(config: Visualize) -> None:
         print(*pictures, *files, sep="\n")
     if config.open:
         open_viewer(files)
+
+
+def check_paths(paths: Sequence[Path]) -> None:
+    """Refuse to look at nothing.
+
+    Raises:
+      BadValueError: there is no path.
+      BadRecordingError: nothing is there.
+    """
+    if not paths:
+        raise BadValueError("no run folder and no recording is given; name some")
+    for path in paths:
+        if not path.exists():
+            raise BadRecordingError(f"{path}: there is no such run folder or recording")
 
 
 def gather(paths: Sequence[Path]) -> dict[str, Recording]:

@@ -27,6 +27,6 @@ def register_envs() -> None:
         if name not in gymnasium.registry:
             gymnasium.register(
                 name,
-                entry_point="experiments.walk_env:WalkEnv",
+                entry_point=ENTRY_POINT,
                 kwargs={"world": world},
             )
