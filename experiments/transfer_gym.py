@@ -20,7 +20,6 @@ from experiments.transfer_gym_sizes import Size, SizeName
 from experiments.transfer_gym_study import METHODS, Cell, GymStudy, Job, do_job
 from experiments.transfer_page import claim_lines
 from groundwalk.errors import BadValueError
-from sgat.forward_config import HeadName
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,6 @@ class TransferGym:
       methods: to compare.
       timesteps: of each training.
       episodes: on real, of each policy that was found.
-      head: of the forward model.
       seed: every random number follows from it.
       threads: trainings at a time, each in a process of its own.
       out: the run's folder; a new one under runs/ by default.
@@ -56,7 +54,6 @@ class TransferGym:
     methods: tuple[str, ...] = METHODS
     timesteps: int | None = None
     episodes: int | None = None
-    head: HeadName = "gaussian"
     seed: int = 1
     threads: int = 2
     out: Path | None = None
@@ -81,7 +78,7 @@ class TransferGym:
             size.timesteps if self.timesteps is None else self.timesteps,
             size.episodes if self.episodes is None else self.episodes,
             size.trpo,
-            GroundingConfig(size.real_steps, size.sim_steps, self.head),
+            GroundingConfig(size.real_steps, size.sim_steps),
             size.envelopes,
             size.search_episodes,
             self.seed,

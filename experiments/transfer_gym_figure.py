@@ -6,14 +6,21 @@ from typing import TYPE_CHECKING
 
 from experiments.figure_file import write_figure
 from experiments.transfer_gym_rows import Row
-from experiments.transfer_gym_study import ANE, GAT, NONE, REAL, SGAT
+from experiments.transfer_gym_study import ANE, GAT, NONE, REAL, SGAT, SGAT_FULL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = {NONE: "#7f8894", GAT: "#d55e00", SGAT: "#0072b2", ANE: "#e69f00"}
+COLOURS = {
+    NONE: "#7f8894",
+    GAT: "#d55e00",
+    SGAT: "#56b4e9",
+    SGAT_FULL: "#0072b2",
+    ANE: "#e69f00",
+}
 """Colours that colour-blind people tell apart (Okabe and Ito)."""
+OTHER_COLOUR = "#009e73"
 LINE_COLOUR = "#b2182b"
 GROUP_WIDTH = 0.8
 
@@ -52,7 +59,7 @@ def _draw(axes: "Axes", rows: Sequence[Row]) -> None:
             [score["mean"] for score in found],
             width,
             yerr=[score["standard_error"] for score in found],
-            color=COLOURS[name],
+            color=COLOURS.get(name, OTHER_COLOUR),
             capsize=3,
             label=name,
         )

@@ -30,17 +30,15 @@ STRETCH = 50
 
 @dataclass(frozen=True)
 class GroundingConfig:
-    """How much data, and which forward model.
+    """How much data.
 
     Attributes:
       real_steps: transitions of the real world.
       sim_steps: transitions of the sim.
-      head: of the forward model; the paper's is "gaussian".
     """
 
     real_steps: int
     sim_steps: int
-    head: HeadName = "gaussian"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +60,7 @@ def ground(
     domain: Domain,
     real: tuple[str, float],
     config: GroundingConfig,
-    stochastic: bool,
+    head: HeadName | None,
     seed: np.random.SeedSequence,
 ) -> Grounding:
     """Collect data in both worlds with a policy, and fit the models.
@@ -72,7 +70,8 @@ def ground(
       domain: the environment.
       real: setting and noise of the real world.
       config: of the grounding.
-      stochastic: SGAT samples the next state, GAT takes its mean.
+      head: the distribution from which SGAT samples the next state; None for GAT,
+        which takes the mean of the Gaussian one.
       seed: of everything, but for the policy's own luck.
     """
     low, high = domain.bounds()
@@ -83,9 +82,9 @@ def ground(
     tried, spare = _collect(
         model, domain.sim(), config.sim_steps, SIM_EXPLORATION, of_sim
     )
-    forward = ForwardModel(ForwardConfig(head=config.head)).fit(seen, of_forward)
+    forward = ForwardModel(ForwardConfig(head=head or "gaussian")).fit(seen, of_forward)
     inverse = InverseModel().fit(tried, of_inverse)
-    noise = WhiteNoise(forward.outcomes) if stochastic else None
+    noise = WhiteNoise(forward.outcomes) if head else None
 
     def transformer() -> ActionTransformer:
         return ActionTransformer(forward, inverse, low, high, noise)
@@ -95,6 +94,8 @@ def ground(
         "inverse_r_squared": float(inverse.score(spare).mean()),
         **_actions(transformer(), held_out, of_look),
     }
+    if head:
+        measures["noise_ratio"] = noise_ratio(transformer(), inverse, held_out, of_look)
     return Grounding(transformer, measures)
 
 
@@ -132,3 +133,34 @@ def _actions(
     asked = real.action[:n]
     less = transformer(real.state[:n], asked) - asked
     return {"action_bias": float(less.mean()), "action_spread": float(less.std())}
+
+
+def noise_ratio(
+    transformer: ActionTransformer,
+    inverse: InverseModel,
+    real: Transitions,
+    seed: np.random.SeedSequence,
+) -> float:
+    """Noise on a transformer's actions over the noise that real data show, both rms.
+
+    Real's noise is seen as the sim's actions: the one that would have led to what real
+    did, less the one for the mean of it. Below 1 the grounded sim is calmer than real.
+    A distribution with independent dimensions comes below 1 where one noise moves
+    several of them: what they disagree on, the inverse model averages away.
+
+    Args:
+      transformer: with noise.
+      inverse: its inverse model.
+      real: data that the models have not seen.
+      seed: of the noise.
+    """
+    n = min(LOOKED_AT, real.n)
+    state, asked = real.state[:n], real.action[:n]
+    transformer.reset(seed.spawn(n))
+    meant = transformer.forward.predict(state, asked)
+    calm, did = (
+        np.clip(inverse.predict(state, there), *transformer.bounds)
+        for there in (meant, real.next_state[:n])
+    )
+    noise = transformer(state, asked) - calm
+    return float(np.linalg.norm(noise) / np.linalg.norm(did - calm))

@@ -22,9 +22,14 @@ in the sim grounded by one step of the mean or of a sampled next state, "ane" in
 with noise on actions, "real" in the real world. The last is an upper line only where
 that many steps are enough; the claims on it say where they are not: a policy that falls
 at once learns little from each step.
+The paper's "sgat" samples every dimension of the next state by itself, "sgat-full" all
+of them with their covariance. The noise ratio tells what that is for: noise on actions
+in the grounded sim over that of the sim's actions that would do what real did on data
+that were held out. One noisy force moves several dimensions together; where the samples
+lack that, the inverse model averages the noise away: the grounded sim is too calm.
 Grounding takes {real_steps} transitions of real and {sim_steps} of the sim, by the
-stochastic policy with {real_exploration:.0%} and {sim_exploration:.0%} random actions;
-the forward model's head is {head}. ANE trains at the levels {envelopes} and takes the
+stochastic policy with {real_exploration:.0%} and {sim_exploration:.0%} random actions.
+ANE trains at the levels {envelopes} and takes the
 one that returns most in {search_episodes} episodes on real; what those cost is in the
 table. Each policy is tried for {episodes} episodes on real, with its mean action
 (deterministic) and with random ones (stochastic). Versions 5 of these environments pay
@@ -79,7 +84,6 @@ def _notes(study: GymStudy) -> str:
         sim_steps=study.grounding.sim_steps,
         real_exploration=REAL_EXPLORATION,
         sim_exploration=SIM_EXPLORATION,
-        head=study.grounding.head,
         envelopes=", ".join(f"{level:g}" for level in study.envelopes),
         search_episodes=study.search_episodes,
         episodes=study.episodes,

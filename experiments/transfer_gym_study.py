@@ -1,6 +1,7 @@
 """The grid of a Gymnasium study: its policies, its cells, and how each is computed."""
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -19,10 +20,22 @@ from experiments.transfer_gym_training import (
     train,
 )
 from groundwalk.errors import BadValueError, UnknownNameError
+from sgat.forward_config import HeadName
 from sgat.training import one_thread
 
-NONE, GAT, SGAT, ANE, REAL = METHODS = ("none", "gat", "sgat", "ane", "real")
-"""No grounding, both groundings, action noise envelope, training on real."""
+NONE, GAT, SGAT, SGAT_FULL, ANE, REAL = METHODS = (
+    "none", "gat", "sgat", "sgat-full", "ane", "real"
+)  # fmt: skip
+"""No grounding, the groundings, action noise envelope, training on real."""
+GROUNDINGS: Mapping[str, HeadName | None] = {
+    GAT: None,
+    SGAT: "gaussian",
+    SGAT_FULL: "full",
+    "sgat-low-rank": "low-rank",
+    "sgat-mixture": "mixture",
+}
+"""From which distribution each grounding samples; GAT takes the mean."""
+KNOWN = tuple(dict.fromkeys((*METHODS, *GROUNDINGS)))
 
 OF_SIM, OF_DATA, OF_TRAINING, OF_TRIALS, OF_SEARCH = range(5)
 """Streams of random numbers; methods share them: what differs is what they do."""
@@ -77,7 +90,7 @@ class GymStudy:
         if not self.noises or not all(0 <= noise < np.inf for noise in self.noises):
             raise BadValueError(f"noises is {self.noises}; give values from 0 up")
         for kind, given, known in (
-            ("method", self.methods, METHODS),
+            ("method", self.methods, KNOWN),
             ("setting", self.settings, self.domain.settings),
         ):
             for name in given:
@@ -191,7 +204,7 @@ def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, flo
         study.domain,
         (job.setting, job.noise),
         study.grounding,
-        job.method == SGAT,
+        GROUNDINGS[job.method],
         study.seed_of(job.k, OF_DATA),
     )
     model = train(

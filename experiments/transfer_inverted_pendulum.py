@@ -30,9 +30,9 @@ SIZES = {
         trpo=TRPO,
     ),
     "reduced": Size(
-        seeds=3,
+        seeds=6,
         noises=(0.0, 0.25, 0.5),
-        timesteps=50_000,
+        timesteps=100_000,
         episodes=20,
         real_steps=5000,
         sim_steps=10_000,
