@@ -18,6 +18,7 @@ import worlds
 from benchmarks.stopwatch import seconds
 from experiments.trials import TrialRules, walk_trials
 from experiments.walk_data import GaitCloud, leg_senses, walk
+from experiments.walk_places import SimPlace
 from sgat.action_transformer import ActionTransformer
 from sgat.block_noise import BlockNoise
 from sgat.forward_config import ForwardConfig
@@ -70,7 +71,9 @@ def _transformer() -> ActionTransformer:
     description = robots.get("nao")
     senses = leg_senses(description)
     vectors = GaitCloud().draw(gaits.get("start"), 8, np.random.SeedSequence(2))
-    _, noted = walk("sim", description, vectors, np.random.SeedSequence(3), (0.02,))
+    _, noted = walk(
+        SimPlace(), description, vectors, np.random.SeedSequence(3), (0.02,)
+    )
     seen = dataclasses.replace(noted, state=noted.state[:, : senses.sim_columns])
     seed = np.random.SeedSequence(4)
     forward = ForwardModel(ForwardConfig(epochs=3, members=MEMBERS)).fit(noted, seed)

@@ -27,6 +27,7 @@ from worlds import (
     WorldOptions,
     write_recording,
 )
+from worlds.hidden_effects import Hidden
 
 MOST_AT_ONCE = 60
 """Robots walking side by side: in the real world each needs 70 MB."""
@@ -60,6 +61,7 @@ class Study:
       rules: when a trial is over.
       threads: of the sim, or processes of the real world; 0 for one per core.
       correction: folder or file of a diagnosis, for the sim.
+      hidden: physics of the real world that the sim's model lacks.
     """
 
     world: str
@@ -68,6 +70,7 @@ class Study:
     rules: TrialRules = COURSE_TRIAL
     threads: int = 0
     correction: Path | None = None
+    hidden: tuple[Hidden, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse unknown worlds and terrains, and no trials."""
@@ -79,6 +82,8 @@ class Study:
             raise BadValueError(f"threads is {self.threads}; it must not be negative")
         if self.correction is not None and self.world != "sim":
             raise BadValueError(f"only the sim can be corrected, not {self.world!r}")
+        if self.hidden and self.world != "real":
+            raise BadValueError(f"only real hides physics, not {self.world!r}")
 
     def make_world(
         self,
@@ -96,7 +101,7 @@ class Study:
     def options(self) -> WorldOptions:
         """The world's own options, on these threads."""
         return dataclasses.replace(
-            worlds.kind(self.world).options, threads=self.threads
+            worlds.kind(self.world).options, hidden=self.hidden, threads=self.threads
         )
 
 

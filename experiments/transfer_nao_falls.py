@@ -30,7 +30,8 @@ from experiments.transfer_nao_falls_page import (
 from experiments.trials import Trials
 from experiments.walk_data import GaitCloud, walk
 from experiments.walk_groundings import GROUNDINGS, WalkModels
-from experiments.walk_records import record_walks
+from experiments.walk_places import Places, RealCourse
+from experiments.walk_records import record_real, record_walks
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 
@@ -102,16 +103,17 @@ def _stages(
     held_out = GaitCloud().draw(start, config.gaits, _seed(config, 0))
     if "real" not in done:
         vectors = np.repeat(held_out, config.trials, axis=0)
-        trials, _ = walk("real", description, vectors, _seed(config, 1))
+        trials, _ = walk(RealCourse(), description, vectors, _seed(config, 1))
         yield "real", _per_gait(trials, config.gaits)
     if MEASURES in done and all(name in done for name in GROUNDINGS):
         return
     learned = GaitCloud().draw(start, config.real_walks, _seed(config, 2))
     explored = GaitCloud().draw(start, config.sim_walks, _seed(config, 3))
-    records = record_walks(learned, explored, _seed(config, 4))
+    real = record_real(learned, _seed(config, 4), RealCourse())
+    records = record_walks(real, explored, _seed(config, 4), Places())
     models = WalkModels(records, _seed(config, 6))
     if MEASURES not in done:
-        _, unseen = walk("real", description, held_out, _seed(config, 8))
+        _, unseen = walk(RealCourse(), description, held_out, _seed(config, 8))
         yield MEASURES, measures_of(models, unseen, _seed(config, 9))
     for name in GROUNDINGS:
         if name not in done:

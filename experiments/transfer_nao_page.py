@@ -11,11 +11,14 @@ from experiments.transfer_page import Claim, write_transfer_page
 from experiments.walk_data import ON_COURSE
 from experiments.walk_groundings import GAT, NONE, SGAT, UNEVEN
 from experiments.walk_groundings_words import UNEVEN_MEANS
+from experiments.walk_places import RealCourse
 from experiments.walk_raters import FALL_PENALTY_WALK_CM_S, RATED
 from experiments.walk_tuning import LUMPS_MARGIN
-from terrain import Lumps
+from terrain import Lumps, configuration, parse
 
 CELLS = "cells"
+DIAGNOSED = "diagnosed"
+DIAGNOSED_SIM = f"{DIAGNOSED} sim"
 HEADINGS = ("method", "step", "speed [cm/s]", "falls", "95 % interval", "real walks")
 GOAL_SPEED_CM_S, GOAL_FALLS, SIGNIFICANT = 18.0, 0.1, 0.05
 
@@ -59,6 +62,8 @@ def claims_of(cells: Sequence[Cell]) -> list[Claim]:
     There are none if a method that is spoken of was not tried.
     """
     at = {(cell["method"], cell["step"]): cell for cell in cells}
+    if all((name, 1) in at for name in (NONE, DIAGNOSED_SIM)):
+        return [_better_than_nominal(at[DIAGNOSED_SIM, 1], at[NONE, 1])]
     if not all((name, 2) in at for name in (GAT, SGAT, UNEVEN)):
         return []
     gat, sgat, best = (at[name, 2] for name in (GAT, SGAT, UNEVEN))
@@ -88,23 +93,37 @@ def claims_of(cells: Sequence[Cell]) -> list[Claim]:
     ]
 
 
-def write_nao_page(folder: RunFolder, cells: Sequence[Cell], planned: int) -> None:
+def _better_than_nominal(diagnosed: Cell, nominal: Cell) -> Claim:
+    p = more_falls_p(nominal, diagnosed)
+    return Claim(
+        "the gait tuned on the diagnosed sim walks better than the one tuned on the "
+        "nominal sim",
+        _earned(diagnosed) > _earned(nominal),
+        f"{_walked(diagnosed)} against {_walked(nominal)}; Fisher's exact test of the "
+        f"falls, one-sided: p = {p:.2g}",
+    )
+
+
+def write_nao_page(
+    folder: RunFolder, cells: Sequence[Cell], planned: int, course: RealCourse
+) -> None:
     """Write `result.md`.
 
     Args:
       folder: the run.
       cells: what is known so far.
       planned: how many cells there shall be.
+      course: on which gaits were tried.
     """
-    trials, lumps = cells[0]["trials"], Lumps()
+    trials = cells[0]["trials"]
     missing = planned - len(cells)
     body = [
         *([f"Not finished: {missing} of {planned} rows are to come."] * (missing > 0)),
-        "Every gait walked the same grounds, courses of 3 m on lumps of",
-        f"{1000 * lumps.amplitude_m:.0f} mm that are {100 * lumps.wavelength_m:.0f} cm",
-        f"long, {trials} trials. Speed is forward, until the fall where the robot",
+        f"Every gait walked the same grounds, courses of 3 m {_ground(course)},",
+        f"{trials} trials. Speed is forward, until the fall where the robot",
         "fell; its spread is the standard deviation over trials. Intervals are",
         "Wilson's.",
+        *_hidden(course, cells),
         "",
         f"![Speed and falls of every gait]({FIGURE})",
         "",
@@ -121,6 +140,31 @@ def write_nao_page(folder: RunFolder, cells: Sequence[Cell], planned: int) -> No
     ]
     title = "Do gaits from grounded sims hold on uneven real ground?"
     write_transfer_page(folder, title, claims_of(cells), body, answer_of(cells))
+
+
+def _ground(course: RealCourse) -> str:
+    name, parameters = parse(course.terrain)
+    lumps = configuration(name, **parameters)
+    if not isinstance(lumps, Lumps):
+        return f"of `{course.terrain}`"
+    return (
+        f"on lumps of {1000 * lumps.amplitude_m:.0f} mm that are "
+        f"{100 * lumps.wavelength_m:.0f} cm long"
+    )
+
+
+def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
+    """What the real world has that the model lacks, and what a diagnosis does to it."""
+    if not course.hidden:
+        return []
+    found = any(DIAGNOSED in cell["method"] for cell in cells)
+    return [
+        "",
+        "Besides its latency, real has physics that the model lacks: "
+        + "; ".join(effect.to_text() for effect in course.hidden)
+        + ".",
+        *(["A *diagnosed* sim has what a diagnosis of recordings found."] * found),
+    ]
 
 
 def answer_of(cells: Sequence[Cell]) -> list[str]:

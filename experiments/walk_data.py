@@ -1,27 +1,22 @@
 """What the models of a grounding learn from: walks in either world."""
 
 import contextlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial, reduce
+from functools import reduce
 
 import numpy as np
 
-import terrain
-import worlds
 from experiments.evaluation import MOST_AT_ONCE
 from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walk_places import Place
 from groundwalk.arrays import FloatArray
 from robots import Description, biped
 from sgat.transitions import Transitions
 from sgat.walk_senses import WalkSenses
 from sgat.watched_world import WatchedWorld
-from terrain import Heightfield
 from walk_engine import Gait
 from walk_engine.gait import NAMES, from_unit, to_unit
-from worlds import WorldOptions
-
-MakeGround = Callable[[np.random.SeedSequence], Heightfield]
 
 WALK = TrialRules(limit_s=7.5, start_spread_rad=0.01)
 """A walk of the paper's length, from a start pose that spreads."""
@@ -68,41 +63,31 @@ and a grounding that averages over both falls too seldom."""
 
 
 def walk(
-    world_name: str,
+    place: Place,
     description: Description,
     vectors: FloatArray,
     seed: np.random.SeedSequence,
     exploration_rad: Sequence[float] = (0.0,),
     rules: TrialRules = WALK,
-    ground: MakeGround | None = None,
-    options: WorldOptions | None = None,
 ) -> tuple[Trials, Transitions]:
     """Each gait walks once, on ground of its own; everything is noted.
 
     Args:
-      world_name: "sim" or "real".
+      place: the world and its grounds.
       description: the robot.
       vectors: (n, 16) gaits.
       seed: of grounds, noise, start poses and exploration.
       exploration_rad: noise on the commands; the gaits get them in turn.
       rules: when a walk is over.
-      ground: makes one from a seed; by default the world's own kind.
-      options: of the world; its own by default.
     """
-    kind = worlds.kind(world_name)
     levels = np.resize(np.asarray(exploration_rad, float), (len(vectors), 1))
     trials, noted = [], []
     children = seed.spawn(2 * len(vectors))
     for first in range(0, len(vectors), MOST_AT_ONCE):
         rows = slice(first, first + MOST_AT_ONCE)
         seeds = children[: len(vectors)][rows]
-        if ground is None and kind.terrain == "flat":
-            grounds = [terrain.make("flat", 0)] * len(seeds)
-        else:
-            make = ground or partial(terrain.make, kind.terrain)
-            grounds = [make(child) for child in seeds]
         world = WatchedWorld(
-            worlds.make(world_name, description, grounds, seeds, options),
+            place.world(description, place.grounds(seeds), seeds),
             leg_senses(description),
             levels[rows],
             children[len(vectors) + first],

@@ -1,13 +1,14 @@
 """The groundings of the walking robot that are compared."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 import robots
-from experiments.grounded_sim import LUMPS_M, ROBOT, GroundedSim, walk_in_sim
+from experiments.grounded_sim import ROBOT, GroundedSim, walk_in_sim
 from experiments.walk_data import ON_COURSE, leg_senses
+from experiments.walk_places import LUMPS_M, START_M, Places
 from experiments.walk_records import WalkRecords
 from groundwalk.arrays import FloatArray
 from sgat.action_noise import ActionNoise
@@ -44,10 +45,12 @@ class WalkModels:
     Attributes:
       records: what they learn from.
       seed: of the trainings.
+      places: where the walks were walked.
     """
 
     records: WalkRecords
     seed: np.random.SeedSequence
+    places: Places = field(default_factory=Places)
 
     @cached_property
     def inverse(self) -> InverseModel:
@@ -76,7 +79,7 @@ class WalkModels:
         fell = self.records.fell[-LOOKED_AT:]
         shares = []
         for lumps_m in LUMPS_M:
-            sim = GroundedSim(self.direct, lumps_m)
+            sim = GroundedSim(self.direct, self.places.sim(lumps_m, START_M))
             trials = walk_in_sim(sim, vectors, 1, self._seed(5), ON_COURSE, True)
             shares.append(trials.fell.mean())
         rising = np.maximum.accumulate(shares)
@@ -103,9 +106,9 @@ class WalkModels:
         sim has lumps of its own: commands on flat ground cannot make a robot trip.
         """
         if name == NONE:
-            return GroundedSim()
+            return GroundedSim(None, self.places.sim())
         if name == UNEVEN:
-            return GroundedSim(self.direct, self.lumps_m)
+            return GroundedSim(self.direct, self.places.sim(self.lumps_m, START_M))
         noise: NoiseLaw | None = None
         forward = self.ensemble if name == ENSEMBLE else self.forward
         if name == ENSEMBLE:
@@ -113,7 +116,8 @@ class WalkModels:
             noise = BlockNoise(forward.residuals(real), real.episode, BLOCK_TICKS)
         elif name == SGAT:
             noise = WhiteNoise(forward.outcomes)
-        return GroundedSim(_transformer(forward, self.inverse, noise))
+        transformer = _transformer(forward, self.inverse, noise)
+        return GroundedSim(transformer, self.places.sim())
 
     def _seed(self, use: int) -> np.random.SeedSequence:
         key = (*self.seed.spawn_key, use)

@@ -12,6 +12,7 @@ from experiments.evaluation import MOST_AT_ONCE
 from experiments.grounded_sim import ROBOT, GroundedSim, walk_in_sim
 from experiments.reward import reward_cm_s
 from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walk_places import RealCourse
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield
 from worlds import WorldOptions
@@ -87,18 +88,24 @@ class RandomisedRater:
         )
 
 
+@dataclass(frozen=True)
 class RealRater:
-    """The real world on its uneven ground, one walk of each gait: the upper line."""
+    """The real world on its ground, one walk of each gait: the upper line.
+
+    Attributes:
+      course: the ground, and what is hidden.
+    """
+
+    course: RealCourse
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
         """See `Rater`."""
-        kind = worlds.kind("real")
-        grounds = [terrain.make(kind.terrain, s) for s in seed.spawn(REAL_GROUNDS)]
+        grounds = self.course.grounds(seed.spawn(REAL_GROUNDS))
         trials = []
         for first in range(0, len(vectors), MOST_AT_ONCE):
             some = vectors[first : first + MOST_AT_ONCE]
             under = [grounds[i % REAL_GROUNDS] for i in range(len(some))]
-            trials.append(_walk("real", some, under, seed, kind.options))
+            trials.append(_walk("real", some, under, seed, self.course.options))
         return _reward_cm_s(Trials.joined(trials))
 
 

@@ -1,12 +1,14 @@
 """The walks of both worlds that a grounding learns from."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 import robots
-from experiments.grounded_sim import ROBOT, any_lumps, noisy_sim
+from experiments.grounded_sim import ROBOT
 from experiments.walk_data import ON_COURSE, on_lumps, walk
+from experiments.walk_places import LUMPS_M, Places, RealCourse
 from groundwalk.arrays import BoolArray, FloatArray
 from sgat.transitions import Transitions
 
@@ -16,6 +18,14 @@ EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
 REAL_EXPLORATION_RAD = (0.0, 0.03)
 """Noise on every second real walk. Commands that all change smoothly do not tell which
 of them acts: without it the roll joints' latency came out at half its length."""
+
+
+class RealWalks(NamedTuple):
+    """Walks of the real world; see `WalkRecords`."""
+
+    noted: Transitions
+    vectors: FloatArray
+    fell: BoolArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,28 +57,33 @@ class WalkRecords:
         )
 
 
-def record_walks(
-    of_real: FloatArray, of_sim: FloatArray, seed: np.random.SeedSequence
-) -> WalkRecords:
-    """Let some gaits (n, 16) walk in the real world, and others in the sim, twice."""
-    robot = robots.get(ROBOT)
-    in_real, in_sim, on_uneven = (
-        np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))
-        for use in range(3)
-    )
-    exploration = REAL_EXPLORATION_RAD
-    trials, real = walk("real", robot, of_real, in_real, exploration, ON_COURSE)
-    _, sim = walk("sim", robot, of_sim, in_sim, EXPLORATION_RAD)
-    _, uneven = walk(
-        "sim",
-        robot,
-        of_sim,
-        on_uneven,
-        EXPLORATION_RAD,
-        ground=any_lumps,
-        options=noisy_sim(),
+def record_real(
+    vectors: FloatArray, seed: np.random.SeedSequence, course: RealCourse
+) -> RealWalks:
+    """Let gaits (n, 16) walk in the real world."""
+    exploration, robot = REAL_EXPLORATION_RAD, robots.get(ROBOT)
+    trials, real = walk(
+        course, robot, vectors, child_of(seed, 0), exploration, ON_COURSE
     )
     as_it_is = slice(None, None, len(exploration))
-    return WalkRecords(
-        on_lumps(real), sim, uneven, of_real[as_it_is], trials.fell[as_it_is]
+    return RealWalks(on_lumps(real), vectors[as_it_is], trials.fell[as_it_is])
+
+
+def record_walks(
+    real: RealWalks,
+    of_sim: FloatArray,
+    seed: np.random.SeedSequence,
+    places: Places,
+) -> WalkRecords:
+    """Let gaits (n, 16) walk in the sim, twice, and put real's walks beside them."""
+    robot, in_sim, on_uneven = robots.get(ROBOT), child_of(seed, 1), child_of(seed, 2)
+    flat, uneven = (
+        walk(place, robot, of_sim, child, EXPLORATION_RAD)[1]
+        for place, child in ((places.sim(), in_sim), (places.sim(LUMPS_M), on_uneven))
     )
+    return WalkRecords(real.noted, flat, uneven, real.vectors, real.fell)
+
+
+def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
+    """The random numbers of one use, the same however often they are asked for."""
+    return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))

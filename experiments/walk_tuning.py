@@ -6,13 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.grounded_sim import SHORT_START_M
 from experiments.search import GaitSearch
 from experiments.search_run import Entry, run_search
 from experiments.walk_data import ON_COURSE, GaitCloud
 from experiments.walk_groundings import GROUNDINGS, UNEVEN, WalkModels
+from experiments.walk_places import SHORT_START_M, Places
 from experiments.walk_raters import RATED, GroundedRater, Rater
-from experiments.walk_records import WalkRecords, record_walks
+from experiments.walk_records import (
+    RealWalks,
+    WalkRecords,
+    child_of,
+    record_real,
+    record_walks,
+)
 from walk_engine import Gait
 
 LUMPS_MARGIN = 1.2
@@ -69,6 +75,8 @@ class Grounding:
         walks: tuple[int, int],
         seed: np.random.SeedSequence,
         before: "Grounding | None" = None,
+        places: Places | None = None,
+        beside: "Grounding | None" = None,
     ) -> None:
         """Say what shall be walked.
 
@@ -78,35 +86,41 @@ class Grounding:
           walks: in the real world and in the sim.
           seed: of gaits, walks and trainings.
           before: the step before, whose data count as well.
+          places: the two worlds; the plain ones where None.
+          beside: a step from the same gait and seed, whose real walks are these, too.
         """
         self._around, self._cloud, self._walks = around, cloud, walks
-        self._seeds = [
-            np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))
-            for use in range(4)
-        ]
-        self._before = before
+        self._seeds = [child_of(seed, use) for use in range(4)]
+        self._before, self._beside = before, beside
+        self._places = places or Places()
+
+    @cached_property
+    def real(self) -> RealWalks:
+        """This step's walks of the real world."""
+        if self._beside is not None:
+            return self._beside.real
+        vectors = self._cloud.draw(self._around, self._walks[0], self._seeds[0])
+        return record_real(vectors, self._seeds[2], self._places.real)
 
     @cached_property
     def records(self) -> WalkRecords:
         """All walks so far."""
-        of_real, of_sim = (
-            self._cloud.draw(self._around, count, seed)
-            for count, seed in zip(self._walks, self._seeds, strict=False)
-        )
-        new = record_walks(of_real, of_sim, self._seeds[2])
+        of_sim = self._cloud.draw(self._around, self._walks[1], self._seeds[1])
+        new = record_walks(self.real, of_sim, self._seeds[2], self._places)
         return new if self._before is None else self._before.records.joined(new)
 
     @cached_property
     def models(self) -> WalkModels:
         """Fitted to all data so far."""
-        return WalkModels(self.records, self._seeds[3])
+        return WalkModels(self.records, self._seeds[3], self._places)
 
     def rater(self, grounding: str, repeats: int) -> GroundedRater:
         """The sim behind one of `GROUNDINGS`."""
         assert grounding in GROUNDINGS
         sim = self.models.grounded(grounding)
-        lumps_m = LUMPS_MARGIN * sim.lumps_m
-        sim = replace(sim, lumps_m=lumps_m, start_m=SHORT_START_M)
+        if grounding == UNEVEN:
+            lumps_m = LUMPS_MARGIN * self.models.lumps_m
+            sim = replace(sim, place=self._places.sim(lumps_m, SHORT_START_M))
         # Where lumps make a robot fall, a walk tells the more the longer it is.
         rules = ON_COURSE if grounding == UNEVEN else RATED
         return GroundedRater(sim, repeats, rules)

@@ -31,6 +31,7 @@ class BulletState:
       base_pose: (7,) torso position [m] and quaternion w, x, y, z.
       base_velocity: (6,) linear [m/s] in the world, angular [rad/s] in the torso frame.
       position_rad, velocity_rad_s: (joints,).
+      gyroscope_rad_s: (3,) torso frame.
       accelerometer_m_s2: (3,) torso frame, over the last physics step.
       foot_force_n: (8,) over the last physics step.
     """
@@ -39,6 +40,7 @@ class BulletState:
     base_velocity: FloatArray
     position_rad: FloatArray
     velocity_rad_s: FloatArray
+    gyroscope_rad_s: FloatArray
     accelerometer_m_s2: FloatArray
     foot_force_n: FloatArray
 
@@ -200,6 +202,7 @@ class BulletRobot:
             base_velocity=self._velocity,
             position_rad=self._angles,
             velocity_rad_s=self._speeds,
+            gyroscope_rad_s=self._velocity[3:],
             accelerometer_m_s2=self._specific_force(before),
             foot_force_n=self._foot_forces(),
         )

@@ -8,10 +8,12 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from worlds.bullet_robot import BulletRobot, BulletState
+from worlds.hidden_robot import HiddenRobot
 
 STATE_FIELDS = (
     ("base_pose", 7),
     ("base_velocity", 6),
+    ("gyroscope_rad_s", 3),
     ("accelerometer_m_s2", 3),
     ("foot_force_n", 8),
     ("position_rad", None),
@@ -40,7 +42,8 @@ def serve(connection: Connection) -> None:
     """
     _import_bullet_in_silence()
     description, grounds, options = connection.recv()
-    robots = [BulletRobot(description, ground, options) for ground in grounds]
+    kind = HiddenRobot if options.hidden else BulletRobot
+    robots = [kind(description, ground, options) for ground in grounds]
     rows: list[FloatArray] = []
     while True:
         message = connection.recv()

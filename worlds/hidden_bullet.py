@@ -72,6 +72,7 @@ class HiddenBullet:
             bullet.resetBasePositionAndOrientation(
                 self._body, place, self._principal, **client
             )
+            bullet.resetBaseVelocity(self._body, [0] * 3, [0] * 3, **client)
         for link, angle in zip(self._links, pose_rad.tolist(), strict=True):
             bullet.resetJointState(self._body, link, angle, 0.0, **client)
         self._read()

@@ -2,8 +2,8 @@
 
 The words are those of the diagnosis, the physics behind them is written here a second
 time (`worlds.hidden_joints`, `worlds.hidden_friction`, `worlds.hidden_transmission`,
-`worlds.hidden_model`, `worlds.hidden_forces`, `worlds.hidden_run`), so that whoever
-looks for it does not look into a mirror.
+`worlds.hidden_model`, `worlds.hidden_drive`), so that whoever looks for it does not
+look into a mirror.
 """
 
 import math
@@ -120,6 +120,11 @@ class Hidden:
         if parameter in self.parameters:
             return float(self.parameters[parameter])
         return KINDS[self.name].optional[parameter]
+
+    def to_text(self) -> str:
+        """`name@place:parameter=value,...`, which `parse` reads."""
+        values = ",".join(f"{key}={value:g}" for key, value in self.parameters.items())
+        return f"{self.name}@{self.place}:{values}"
 
     @classmethod
     def parse(cls, text: str) -> "Hidden":

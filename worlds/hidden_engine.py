@@ -82,17 +82,26 @@ def hidden_engine(
     from worlds.hidden_bullet import HiddenBullet
     from worlds.hidden_mujoco import HiddenMujoco
 
+    check_engine(name, effects)
     model = hidden_model(plant, effects, step_s, ground)
-    names = {effect.name for effect in effects}
     if name == "mujoco":
-        if "contact_compliance" in names:
-            raise BadValueError("contact_compliance is hidden in bullet only")
         return HiddenMujoco(plant, model)
-    if name != "bullet":
-        raise BadValueError(f"engine is {name!r}; it must be bullet or mujoco")
-    if "armature" in names:
-        raise BadValueError("armature is hidden in mujoco only; Bullet has none")
     return HiddenBullet(plant, model, effects, ground)
+
+
+def check_engine(name: str, effects: Sequence[Hidden]) -> None:
+    """Refuse what an engine does not know.
+
+    Raises:
+      BadValueError: it is no engine, or has not one of the effects.
+    """
+    names = {effect.name for effect in effects}
+    if name not in ("bullet", "mujoco"):
+        raise BadValueError(f"engine is {name!r}; it must be bullet or mujoco")
+    if name == "mujoco" and "contact_compliance" in names:
+        raise BadValueError("contact_compliance is hidden in bullet only")
+    if name == "bullet" and "armature" in names:
+        raise BadValueError("armature is hidden in mujoco only; Bullet has none")
 
 
 def least_inertia_kg_m2(

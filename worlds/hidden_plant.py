@@ -118,7 +118,7 @@ def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
         if floating:
             raise BadValueError(f"{name} stands on a fixed base")
         return _pendulum() if name == "pendulum" else _so101()
-    return _described(robots.get(name), floating)
+    return described_hidden_plant(robots.get(name), floating)
 
 
 def _pendulum() -> HiddenPlant:
@@ -184,7 +184,9 @@ def so101_urdf() -> str:
     return model_urdf(spec.compile(), "so101", SO101_ROTOR_KG_M2, SO101_TORQUE_NM)
 
 
-def _described(description: Description, floating: bool) -> HiddenPlant:
+def described_hidden_plant(description: Description, floating: bool) -> HiddenPlant:
+    """The nominal robot of a description."""
+
     def make() -> "mujoco.MjSpec":
         spec = mujoco_spec(description)
         for actuator in list(spec.actuators):

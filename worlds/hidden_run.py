@@ -6,16 +6,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from worlds.hidden_clock import Clock, CommandLine
+from worlds.hidden_clock import Clock
+from worlds.hidden_drive import HiddenDrive
 from worlds.hidden_effects import Hidden
-from worlds.hidden_engine import (
-    WATCH_STEPS,
-    BodySense,
-    HiddenEngine,
-    hidden_engine,
-    least_inertia_kg_m2,
-)
-from worlds.hidden_joints import HiddenJoints
+from worlds.hidden_engine import BodySense, HiddenEngine, hidden_engine
 from worlds.hidden_model import hidden_ground, tilt
 from worlds.hidden_plant import HiddenPlant
 from worlds.standing import Standing
@@ -73,8 +67,6 @@ def run_hidden(
     """
     ground = hidden_ground(effects, seed) if plant.floating else None
     world = hidden_engine(engine, plant, effects, clock.step_s, ground)
-    inertia = least_inertia_kg_m2(plant, [start_rad])
-    joints = HiddenJoints(plant, effects, clock.step_s, inertia)
     height_m = 0.0
     if plant.description is not None and ground is not None:
         height_m = float(
@@ -82,91 +74,45 @@ def run_hidden(
         )
     world.reset(start_rad, height_m)
     try:
-        return _Rollout(world, joints, effects, clock, start_rad).run(feed)
+        drive = HiddenDrive(plant, effects, world, clock.step_s, start_rad)
+        return _recorded(world, drive, effects, clock, feed)
     finally:
         world.close()
 
 
-class _Rollout:
-    """A run while it goes on."""
-
-    def __init__(
-        self,
-        world: HiddenEngine,
-        joints: HiddenJoints,
-        effects: Sequence[Hidden],
-        clock: Clock,
-        start_rad: FloatArray,
-    ) -> None:
-        self._world, self._joints, self._clock = world, joints, clock
-        self._effects = effects
-        self._line = CommandLine(start_rad, self._delay_steps("command_latency"))
-        self._forces = [e for e in effects if e.name in ("external_force", "drag")]
-        self._history = np.empty((int(clock.ticks[-1]) + 1, len(start_rad)))
-        self._history[0] = start_rad
-
-    def _delay_steps(self, name: str) -> float:
-        delay_s = sum(e["delay"] for e in self._effects if e.name == name)
-        return delay_s / self._clock.step_s
-
-    def run(self, feed: Feed) -> Run:
-        """All ticks, or up to the first at which the physics has blown up."""
-        world, ticks = self._world, self._clock.ticks
-        commands, positions, senses = [], [], []
-        ok = True
-        for row, tick in enumerate(ticks):
-            sense = world.sense()
-            senses.append(sense)
-            positions.append(world.position_rad.copy())
-            ok = ok and bool(np.isfinite(positions[-1]).all())
-            commands.append(feed(row, sense) if ok else positions[0])
-            if ok and row + 1 < len(ticks):
-                self._line.send(int(tick), commands[-1])
-                self._advance(int(tick), int(ticks[row + 1]))
-        felt = {
-            field.name: np.stack([getattr(sense, field.name) for sense in senses])
-            for field in fields(BodySense)
-        }
-        ok = ok and _stands(felt)
-        return Run(
-            clock=self._clock,
-            command_rad=np.stack(commands),
-            encoder_rad=self._encoders(),
-            position_rad=np.stack(positions),
-            sense=_upright(felt, tilt(self._effects)),
-            ok=ok,
-        )
-
-    def _advance(self, start: int, end: int) -> None:
-        world, joints = self._world, self._joints
-        zero = int(self._clock.ticks[self._clock.first])
-        for step in range(start, end):
-            time_s = (step - zero) * self._clock.step_s
-            if self._forces:
-                self._push(time_s)
-            torque = joints.torque(
-                time_s, world.position_rad, world.velocity_rad_s, self._line.over(step)
-            )
-            world.step(torque)
-            self._history[step + 1] = joints.encoders(world.position_rad)
-            if step >= end - WATCH_STEPS:
-                world.watch()
-
-    def _push(self, time_s: float) -> None:
-        for effect in self._forces:
-            if effect.name == "drag":
-                speed = self._world.body_velocity(effect.place)
-                self._world.push(effect.place, -effect["coefficient"] * speed)
-            elif 0 <= time_s - effect["start"] < effect["duration"]:
-                force_n = np.array([effect["x"], effect["y"], effect["z"]])
-                self._world.push(effect.place, force_n)
-
-    def _encoders(self) -> FloatArray:
-        """(rows, j) read between fine steps where they are late."""
-        late = self._clock.ticks - self._delay_steps("sensor_delay")
-        steps = np.arange(len(self._history))
-        columns = [np.interp(late, steps, angles) for angles in self._history.T]
-        return np.stack(columns, axis=1) + self._joints.offset_rad
+def _recorded(
+    world: HiddenEngine,
+    drive: HiddenDrive,
+    effects: Sequence[Hidden],
+    clock: Clock,
+    feed: Feed,
+) -> Run:
+    """All ticks; commands stop where the physics has blown up."""
+    ticks, zero = clock.ticks, int(clock.ticks[clock.first])
+    commands, encoders, positions, senses = [], [], [], []
+    ok = True
+    for row, steps in enumerate(np.diff(ticks, append=ticks[-1])):
+        sense = world.sense()
+        senses.append(sense)
+        positions.append(world.position_rad.copy())
+        encoders.append(drive.encoders())
+        ok = ok and bool(np.isfinite(positions[-1]).all())
+        commands.append(feed(row, sense) if ok else positions[0])
+        if ok and steps:
+            drive.send(commands[-1])
+            drive.advance(int(steps), zero)
+    felt = {
+        field.name: np.stack([getattr(sense, field.name) for sense in senses])
+        for field in fields(BodySense)
+    }
+    return Run(
+        clock=clock,
+        command_rad=np.stack(commands),
+        encoder_rad=np.stack(encoders),
+        position_rad=np.stack(positions),
+        sense=_upright(felt, tilt(effects)),
+        ok=ok and _stands(felt),
+    )
 
 
 def _stands(felt: dict[str, FloatArray]) -> bool:

@@ -12,6 +12,7 @@ from groundwalk.errors import GroundwalkError
 from robots.description import Description
 from terrain import Heightfield
 from worlds.bullet_worker import serve, state_columns
+from worlds.hidden_robot import check_hidden
 from worlds.observation import Observation, Truth
 from worlds.rollouts import RolloutWorld, Schedule
 from worlds.standing import Standing
@@ -23,8 +24,8 @@ _PATIENCE_S = 5.0
 class RealWorld(RolloutWorld):
     """n robots in PyBullet, each with a client of its own, spread over processes.
 
-    The motors are the sim's (`ServoTwin`). Robot i's rollout has the same bits
-    whatever n is and however many processes run.
+    The motors are the sim's (`ServoTwin`), unless the options hide physics. Robot i's
+    rollout has the same bits whatever n is and however many processes run.
     """
 
     def __init__(
@@ -35,6 +36,7 @@ class RealWorld(RolloutWorld):
         options: WorldOptions,
     ) -> None:
         """Start the processes and load every robot's ground."""
+        check_hidden(description, options)
         super().__init__(description, grounds, seeds, options)
         workers = min(options.threads or os.cpu_count() or 1, self.n)
         self._shares = np.array_split(np.arange(self.n), workers)
@@ -122,7 +124,7 @@ class RealWorld(RolloutWorld):
             time_s=self._ticks * TICK_S,
             position_rad=part["position_rad"],
             velocity_rad_s=part["velocity_rad_s"],
-            gyroscope_rad_s=part["base_velocity"][:, 3:].copy(),
+            gyroscope_rad_s=part["gyroscope_rad_s"],
             accelerometer_m_s2=part["accelerometer_m_s2"],
             foot_force_n=part["foot_force_n"],
         )

@@ -5,7 +5,7 @@ Each scene has a path prefix of its own, so that scenes stand side by side in on
 | entity | what |
 |---|---|
 | `<scene>/robot/<link>` | mesh, else capsules; pose of the link in the world |
-| `<scene>/robot/<foot>/{sole,rim,force}` | plate; its edge; arrows of 5 mm a newton |
+| `<scene>/robot/<foot>/{sole,rim,force}` | plate; its edge; arrows |
 | `<scene>/ground` | the heightfield's triangles |
 | `<scene>/joints/<joint>/{position,velocity,command,...}` | as recorded |
 | `<scene>/contact/{left,right}` | force on each foot [N] |
@@ -43,8 +43,6 @@ from worlds.world import End
 if TYPE_CHECKING:
     import rerun as rr
 
-ARROW_M_PER_N = 0.005
-"""Length of an arrow per force: a NAO's weight is 26 cm long."""
 _ARROW_RADIUS_M, _RIM_RADIUS_M = 0.006, 0.0015
 _FAILURES = tuple(End)
 
@@ -152,7 +150,11 @@ class _SceneLog(ColumnLog):
             if forces is None:
                 continue
             points_m, forces_n = forces
-            arrows_m = forces_n[:, :, np.newaxis] * (0.0, 0.0, ARROW_M_PER_N)
+            arrows_m = forces_n[:, :, np.newaxis] * (
+                0.0,
+                0.0,
+                self._scene.arrow_m_per_n,
+            )
             look = rr.Arrows3D.from_fields(
                 origins=points_m, radii=_ARROW_RADIUS_M, colors=colours.FORCE
             )

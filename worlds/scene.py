@@ -18,6 +18,7 @@ from worlds.recording import Recording
 from worlds.recording_columns import ORIENTATION, nearest
 
 SIDES = ("left", "right")
+_NAO_ARROW_M_PER_N = 0.005
 _NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)*", re.ASCII)
 
 
@@ -56,6 +57,12 @@ class Scene:
                     f"{self.name}: the recording has the joint {joint!r}, which robot "
                     f"{self.description.name} has not{nearest(joint, known)}"
                 )
+
+    @property
+    def arrow_m_per_n(self) -> float:
+        """Length of a force's arrow: the robot's weight is as long as its legs."""
+        scale = self.description.scale
+        return _NAO_ARROW_M_PER_N * scale.length / scale.weight
 
     def link_poses(self) -> dict[str, LinkPoses]:
         """Pose of every link, by name, NaN where a value is missing.

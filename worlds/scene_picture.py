@@ -13,7 +13,6 @@ from worlds.scene import SIDES, Scene
 from worlds.scene_balance import Balance, balance
 from worlds.scene_shapes import shape_colours, sole_rim
 
-ARROW_M_PER_N = 0.004
 _EYE_M = (1.25, -1.55, 0.62)
 """From the point that is looked at: ahead of the robot, on its right, and above."""
 
@@ -117,7 +116,7 @@ class SceneCamera:
         pose = self._poses[robot.links[foot.joint].link.name]
         pressing = forces_n[tick] > 0
         start_m = points_m[pressing]
-        length_m = ARROW_M_PER_N * forces_n[tick, pressing]
+        length_m = self._scene.arrow_m_per_n * forces_n[tick, pressing]
         end_m = start_m + length_m[:, np.newaxis] * (0.0, 0.0, 1.0)
         start_m, end_m = (pose.at(tick).points(ends)[0] for ends in (start_m, end_m))
         return [_glowing(start_m, end_m, _ARROW_M, colours.FORCE)]

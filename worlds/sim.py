@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
 from robots.description import Description
 from terrain import Heightfield
 from worlds.mujoco_model import (
@@ -37,6 +38,8 @@ class SimWorld(RolloutWorld):
         options: WorldOptions,
     ) -> None:
         """Compile a model for each distinct ground, and make the batch."""
+        if options.hidden:
+            raise BadValueError("a sim has no hidden physics; see the real world")
         super().__init__(description, grounds, seeds, options)
         self._batch = self._made_batch()
         self._qpos = self._batch.bind("qpos")

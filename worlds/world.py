@@ -9,6 +9,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots.description import Description
 from robots.sole import FRICTION
+from worlds.hidden_effects import Hidden
 from worlds.observation import Observation, Truth
 from worlds.sensor_noise import SensorNoise
 
@@ -36,6 +37,7 @@ class WorldOptions:
       friction: coefficient between sole and ground.
       sinkage_m: how deep the robot sinks in, standing on one foot; 0 for hard ground.
       fixed_base: hold the torso in the air where it started.
+      hidden: physics that the real world has and the sim's model lacks.
       threads: of the sim, or processes of the real world; 0 for one per core.
     """
 
@@ -45,6 +47,7 @@ class WorldOptions:
     friction: float = FRICTION
     sinkage_m: float = 0.0
     fixed_base: bool = False
+    hidden: tuple[Hidden, ...] = ()
     threads: int = 0
 
     def __post_init__(self) -> None:
@@ -65,6 +68,10 @@ class WorldOptions:
                 f"latency_s is {self.latency_s}: it must be a whole number of steps "
                 f"of {self.timestep_s} s"
             )
+        if self.hidden and self.sinkage_m:
+            raise BadValueError("of sinkage_m and hidden physics give only one")
+        if any(effect.name == "uneven_ground" for effect in self.hidden):
+            raise BadValueError("uneven_ground: give the world an uneven ground")
         if self.threads < 0:
             raise BadValueError(f"threads is {self.threads}; it must not be negative")
 

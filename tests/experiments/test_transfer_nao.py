@@ -1,16 +1,30 @@
+import json
 import math
 
 import numpy as np
 import pytest
 
+import robots
+from diagnosis.corrected_sim import CorrectedSim
 from experiments.run_folder import HISTORY, RunFolder
 from experiments.transfer_nao import TransferNao, main
 from experiments.transfer_nao_figure import cells_figure
-from experiments.transfer_nao_page import claims_of, more_falls_p, table_of
-from experiments.walk_data import FLAT_TICKS, on_lumps
-from experiments.walk_groundings import GAT, SGAT, UNEVEN
+from experiments.transfer_nao_page import (
+    DIAGNOSED_SIM,
+    claims_of,
+    more_falls_p,
+    table_of,
+)
+from experiments.transfer_nao_study import START
+from experiments.walk_data import FLAT_TICKS, GaitCloud, on_lumps
+from experiments.walk_groundings import GAT, NONE, SGAT, UNEVEN
+from experiments.walk_places import LUMPS_M, Places, RealCourse, SimPlace
+from experiments.walk_records import RealWalks
+from experiments.walk_tuning import Grounding
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transitions import Transitions
+from walk_engine import gaits
+from worlds.sim import SimWorld
 
 SMOKE = {
     "methods": (SGAT,), "trials": 2, "population": 4, "generations": 1, "repeats": 1,
@@ -101,3 +115,80 @@ def test_what_is_noted_on_the_flat_start_does_not_count():
         [0, FLAT_TICKS + 1],
         [2, FLAT_TICKS],
     ]
+
+
+def late(folder):
+    """What a diagnosis leaves behind that found latency."""
+    effect = {
+        "name": "command_latency",
+        "place": "commands",
+        "parameters": {"delay": 0.04},
+    }
+    model = {"format": 1, "robot": "nao", "base": "fixed", "native": [effect]}
+    folder.mkdir()
+    (folder / "corrected.json").write_text(json.dumps({**model, "per_tick": []}))
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("diagnosed", "kind"), [(True, CorrectedSim), (False, SimWorld)]
+)
+def test_a_diagnosis_corrects_every_sim_of_a_grounding(tmp_path, diagnosed, kind):
+    places = Places(correction=late(tmp_path / "found") if diagnosed else None)
+    for place in (places.sim(), places.sim(0.005), places.sim(LUMPS_M)):
+        seeds = np.random.SeedSequence(1).spawn(2)
+        world = place.world(robots.get("nao"), place.grounds(seeds), seeds)
+        assert type(world) is kind
+        assert (world.options.noise is None) == (place.lumps_m == 0)
+
+
+def test_grounds_are_drawn_unless_they_are_flat():
+    seeds = np.random.SeedSequence(1).spawn(2)
+    for place in (RealCourse("flat"), SimPlace()):
+        first, second = place.grounds(seeds)
+        assert first is second
+    for place in (RealCourse("lumps:amplitude_m=0.004"), SimPlace((0.004, 0.004))):
+        first, second = place.grounds(seeds)
+        assert np.ptp(first.heights_m) == pytest.approx(0.008, rel=0.5)
+        assert not np.array_equal(first.heights_m, second.heights_m)
+
+
+def test_groundings_of_one_gait_share_their_real_walks():
+    seed, start = np.random.SeedSequence(1), gaits.get("start")
+    plain = Grounding(start, GaitCloud(), (2, 2), seed)
+    walked = RealWalks(None, np.zeros((2, 16)), np.zeros(2, bool))
+    plain.__dict__["real"] = walked  # as if it had been walked
+    assert Grounding(start, GaitCloud(), (2, 2), seed, beside=plain).real is walked
+
+
+@pytest.mark.slow
+def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
+    config = TransferNao(
+        **SMOKE | {"methods": (NONE, DIAGNOSED_SIM)},
+        terrain="flat",
+        hidden=("speed_limit@LKneePitch:speed=2",),
+        sim=late(tmp_path / "found"),
+        out=tmp_path / "run",
+    )
+    main(config)
+    cells = RunFolder(config.out).read_json("result.json")["cells"]
+    methods = [cell["method"] for cell in cells]
+    assert methods == [START, DIAGNOSED_SIM, NONE]
+    page = (config.out / "result.md").read_text()
+    assert "`flat`" in page
+    assert "speed_limit@LKneePitch:speed=2" in page
+
+
+def test_diagnosed_sims_need_a_diagnosis():
+    with pytest.raises(BadValueError, match="--sim"):
+        TransferNao(methods=(DIAGNOSED_SIM,))
+
+
+@pytest.mark.parametrize(
+    ("nominal", "diagnosed", "holds"),
+    [((20, 10), (19, 2), True), ((20, 2), (19, 2), False)],
+)
+def test_the_claim_of_a_diagnosed_sim_can_fail(nominal, diagnosed, holds):
+    cells = [cell(NONE, 1, *nominal), cell(DIAGNOSED_SIM, 1, *diagnosed)]
+    (claim,) = claims_of(cells)
+    assert claim.holds is holds

@@ -21,7 +21,7 @@ from rrd_files import (
 
 from groundwalk.errors import BadValueError
 from terrain import make
-from worlds.rerun_log import ARROW_M_PER_N, write_rrd
+from worlds.rerun_log import write_rrd
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_foot_forces_are_sums_and_arrows_at_the_sensors(file, walk):
     np.testing.assert_allclose(scalars(file, "/sim/contact/left"), 10 * time_s)
     force = "/sim/robot/RFoot/force"
     arrows_m = components(file, force, "Arrows3D:vectors", 3).reshape(-1, 4, 3)
-    expected_m = ARROW_M_PER_N * np.outer(time_s, [4, 3, 2, 1])
+    expected_m = 0.005 * np.outer(time_s, [4, 3, 2, 1])
     np.testing.assert_allclose(arrows_m[:, :, 2], expected_m, rtol=1e-6)
     assert (arrows_m[:, :, :2] == 0).all()
     origins_m = components(file, force, "Arrows3D:origins", 3)

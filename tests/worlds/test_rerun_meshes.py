@@ -1,11 +1,10 @@
 """Meshes of a made-up robot, in Rerun files and as arrays."""
 
 import struct
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from made_up_urdf import link, two_legged
 from rrd_files import components, read, rerun
 
 import robots
@@ -16,9 +15,6 @@ from worlds.recording_metadata import RecordingMetadata
 from worlds.rerun_log import write_rrd
 from worlds.scene import Scene
 from worlds.scene_colours import accent, pale
-
-sys.path.append(str(Path(__file__).parents[1] / "robots"))
-from made_up_urdf import link, two_legged
 
 CORNERS = np.array([[0.0, 0, 0], [0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.3]])
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])

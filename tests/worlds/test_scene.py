@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import robots
 from groundwalk.errors import BadRecordingError, BadValueError
+from robots.scale import NAO_HIP_M, Scale
 from terrain import Heightfield
 from worlds.recording import Recording
 from worlds.recording_metadata import RecordingMetadata
@@ -151,3 +154,14 @@ def test_an_id_belongs_to_the_contents():
         [scene(ground=FLAT), scene("real")],
     ]
     assert len({same, *map(content_id, others)}) == 7
+
+
+def test_a_robots_weight_is_as_long_as_its_legs():
+    nao = robots.get("nao")
+    twice = replace(nao, scale=Scale(length=2.0, weight=7.0))
+    small, large = (
+        Scene("sim", scene().recording, robot).arrow_m_per_n * weight_n
+        for robot, weight_n in ((nao, 52.0), (twice, 7 * 52.0))
+    )
+    assert small == pytest.approx(NAO_HIP_M, rel=0.1)
+    assert large == pytest.approx(2 * small)
