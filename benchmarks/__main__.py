@@ -2,13 +2,13 @@
 
 import sys
 
-from benchmarks import control_loop, grounded_loop
+from benchmarks import candidate_fit, control_loop, grounded_loop
 
 
 def main() -> int:
     """Print each report."""
     failed = 0
-    for benchmark in (control_loop, grounded_loop):
+    for benchmark in (control_loop, grounded_loop, candidate_fit):
         text, passes = benchmark.report(benchmark.measure())
         print(text, flush=True)
         failed += not passes

@@ -10,8 +10,9 @@ from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 
-_LEAST_WHOLE = 3
-"""From this many recordings on, whole ones are set aside."""
+_LEAST_WHOLE = 4
+"""From this many recordings on, whole ones are set aside: of three with motions of
+their own, one would be left to fit."""
 _SHARE = 0.25
 _GAP_S = 0.2
 _TWICE_S = 20.0
@@ -42,7 +43,7 @@ class Split:
 def split(traces: Sequence[Trace]) -> Split:
     """Set traces aside; the same traces are always split alike.
 
-    With three or more, whole traces are, such that what moves in those set aside
+    With four or more, whole traces are, such that what moves in those set aside
     moves in the others, too. Otherwise, or where that cannot be, each is cut into
     contiguous parts, 0.2 s apart, in the order that leaves the most motion to fit.
 

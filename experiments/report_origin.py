@@ -15,7 +15,8 @@ class Origin:
 
     Attributes:
       command: the command line that does it again.
-      commit: of the code, and whether there were changes beside it.
+      commit: of the code, whether there were changes beside it, and those at which
+        the run was resumed.
       settings: what was chosen, by name; all of it, defaults, too.
       versions: of the code and what it stands on, by name.
     """
@@ -33,7 +34,7 @@ class Origin:
           provenance: of the run.
           settings: plain values; what is None is left out.
         """
-        changed = ", with changes that were not committed"
+        known = [provenance, *provenance.get("resumed", ())]
         versions = {
             "groundwalk": provenance.get("groundwalk"),
             "Python": provenance["python"],
@@ -41,8 +42,7 @@ class Origin:
         }
         return cls(
             command=command_of(provenance),
-            commit=(provenance["commit"] or "unknown")
-            + (changed if provenance["changed"] else ""),
+            commit="; resumed at ".join(map(_code, known)),
             settings={k: _text(v) for k, v in settings.items() if v is not None},
             versions={k: v for k, v in versions.items() if v},
         )
@@ -72,6 +72,11 @@ class Origin:
             f"- commit: `{self.commit}`",
             f"- versions: {versions}",
         ]
+
+
+def _code(provenance: Mapping[str, Any]) -> str:
+    changed = ", with changes that were not committed"
+    return (provenance["commit"] or "unknown") + changed * bool(provenance["changed"])
 
 
 def command_of(provenance: Mapping[str, Any]) -> str:

@@ -23,6 +23,9 @@ PACKAGES = (
 )  # fmt: skip
 
 
+_CODE = ("commit", "changed")
+
+
 class _RunConfig(Protocol):
     """What every long verb's configuration has; it is a dataclass."""
 
@@ -83,6 +86,15 @@ class RunFolder:
         if verb not in (None, there):
             raise RunFolderError(f"{path} holds a run of {there}, not of {verb}")
         return folder
+
+    def note_resumed(self) -> None:
+        """Write down the code that goes on, if it is not the one that began."""
+        began = self.read_json(PROVENANCE)
+        known = [began, *began.get("resumed", [])]
+        now = {key: value for key, value in provenance().items() if key in _CODE}
+        if all(now != {key: one.get(key) for key in _CODE} for one in known):
+            began["resumed"] = [*known[1:], now]
+            self.write_json(PROVENANCE, began)
 
     def write_json(self, name: str, content: Any) -> None:
         """Write a file of plain values at once."""
@@ -154,13 +166,16 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
         if field.name in FREE_WHEN_RESUMED:
             continue
         given = getattr(config, field.name)
-        before = _revived(stored.get(field.name), field.type)
+        before = field.default  # of an option that the run's version did not have
+        if field.name in stored:
+            before = _revived(stored[field.name], field.type)
         if given not in (field.default, before):
             raise BadValueError(
                 f"{field.name} cannot change from {before} to {given} when a run is "
                 "resumed; leave it out"
             )
         changes[field.name] = before
+    folder.note_resumed()
     return folder, dataclasses.replace(config, **changes)
 
 

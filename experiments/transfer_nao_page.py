@@ -135,7 +135,7 @@ def write_nao_page(
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
-        f"{RATED.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the sim has lumps.",
+        f"{RATED.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the ground has lumps.",
         "*real walks*: what the method has seen of the real world before its trials.",
     ]
     title = "Do gaits from grounded sims hold on uneven real ground?"

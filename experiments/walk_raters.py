@@ -12,6 +12,7 @@ from experiments.evaluation import MOST_AT_ONCE
 from experiments.grounded_sim import ROBOT, GroundedSim, walk_in_sim
 from experiments.reward import reward_cm_s
 from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walk_data import ON_COURSE
 from experiments.walk_places import RealCourse
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield
@@ -90,7 +91,9 @@ class RandomisedRater:
 
 @dataclass(frozen=True)
 class RealRater:
-    """The real world on its ground, one walk of each gait: the upper line.
+    """The real world on its ground, a walk of a course's length for each gait.
+
+    It is the upper line.
 
     Attributes:
       course: the ground, and what is hidden.
@@ -105,8 +108,9 @@ class RealRater:
         for first in range(0, len(vectors), MOST_AT_ONCE):
             some = vectors[first : first + MOST_AT_ONCE]
             under = [grounds[i % REAL_GROUNDS] for i in range(len(some))]
-            trials.append(_walk("real", some, under, seed, self.course.options))
-        return _reward_cm_s(Trials.joined(trials))
+            options = self.course.options
+            trials.append(_walk("real", some, under, seed, options, ON_COURSE))
+        return _reward_cm_s(Trials.joined(trials), ON_COURSE)
 
 
 def _walk(
@@ -115,12 +119,13 @@ def _walk(
     grounds: Sequence[Heightfield],
     seed: np.random.SeedSequence,
     options: WorldOptions,
+    rules: TrialRules = RATED,
 ) -> Trials:
     """Every gait once, with the same noise and from the same start pose."""
     seeds: Sequence[np.random.SeedSequence] = [seed] * len(vectors)
     world = worlds.make(world_name, robots.get(ROBOT), grounds, seeds, options)
     try:
-        return walk_trials(world, vectors, RATED, seeds)
+        return walk_trials(world, vectors, rules, seeds)
     finally:
         world.close()
 

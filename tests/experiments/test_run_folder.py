@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from experiments import run_folder
+from experiments.report_origin import Origin
 from experiments.run_folder import CONFIG, RunFolder, open_run
 from groundwalk.errors import BadValueError, RunFolderError
 
@@ -80,3 +82,26 @@ def test_json_written_is_json_read(tmp_path):
     assert json.loads((tmp_path / "a.json").read_text())
     assert folder.has("a.json")
     assert not folder.has("b.json")
+
+
+def test_an_option_that_came_later_has_its_default_when_resumed(tmp_path):
+    folder, _ = open_run("verb", Config(out=tmp_path / "run"))
+    stored = folder.read_json("config.json")
+    del stored["size"]
+    folder.write_json("config.json", stored)
+    _, config = open_run("verb", Config(resume=tmp_path / "run"))
+    assert config.size == Config.size
+
+
+def test_the_code_that_goes_on_is_written_down(tmp_path, monkeypatch):
+    of_code = {"python": "3", "packages": {}, "arguments": []}
+    for commit, told in (
+        ("a", "a"), ("a", "a"), ("b", "a; resumed at b"), ("b", "a; resumed at b"),
+        ("a", "a; resumed at b"), ("c", "a; resumed at b; resumed at c"),
+    ):  # fmt: skip
+        now = of_code | {"commit": commit, "changed": ""}
+        monkeypatch.setattr(run_folder, "provenance", lambda now=now: now)
+        there = (tmp_path / "run").exists()
+        where = {"resume" if there else "out": tmp_path / "run"}
+        folder, _ = open_run("verb", Config(**where))
+        assert Origin.of_run(folder).commit == told

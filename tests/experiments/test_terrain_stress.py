@@ -1,5 +1,7 @@
 import dataclasses
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -197,3 +199,19 @@ def test_unknown_names_are_refused(change):
 def test_a_place_on_no_family_is_refused():
     with pytest.raises(UnknownNameError, match="lumps"):
         Place("nao", "sim", "lump", 0.01)
+
+
+def test_the_documented_ladders_are_those_that_are_climbed():
+    page = (Path(__file__).parents[2] / "docs" / "terrain_stress.md").read_text()
+    rows = re.findall(r"^\| (`.*?`) \| .*? \| (.*?) \|", page, re.MULTILINE)
+    told = {
+        name: ladder for names, ladder in rows for name in re.findall("`(.*?)`", names)
+    }
+    assert set(told) == {*FAMILIES, FLAT}
+    for name, family in FAMILIES.items():
+        ends = np.array([float(n) for n in re.findall(r"\d+\.?\d*", told[name])])
+        share = {"%": 0.01, "°": np.pi / 180}.get(
+            re.sub(r"[\d. to]", "", told[name])[:1]
+        )
+        expected = family.mildest, family.hardest
+        np.testing.assert_allclose(ends * (share or 1), expected, rtol=0.05)

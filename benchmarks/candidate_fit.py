@@ -1,0 +1,104 @@
+"""What a candidate costs: fits of the diagnosis against mujoco.sysid's own.
+
+The same parameters of the same robot to the same recording: viscous and dry friction of
+one joint of the NAO, joint by joint. The diagnosis fits all candidates side by side,
+each replay and each difference a row of one batch; mujoco.sysid fits one after the
+other by its own finite differences, on as many threads. Both to their own end; that
+both find what is hidden is checked.
+"""
+
+import contextlib
+import io
+import statistics
+import tempfile
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.stopwatch import seconds
+from diagnosis.baselines.sysid import fitted
+from diagnosis.baselines.sysid_models import Unknown, unknowns
+from diagnosis.channels import channels_of
+from diagnosis.effect import Placed
+from diagnosis.fitting import fit_all
+from diagnosis.library import effect
+from diagnosis.plant import Plant
+from diagnosis.predictor import Model, Predictor
+from diagnosis.trace import Trace
+from diagnosis.trace_reading import read_traces
+from experiments.record import Record
+from experiments.record import main as record
+
+JOINTS = ("LKneePitch", "LHipRoll", "LAnklePitch", "LShoulderRoll",
+          "RKneePitch", "RHipRoll", "RAnklePitch", "RShoulderRoll")  # fmt: skip
+EFFECTS = ("viscous_friction", "coulomb_friction")
+HIDDEN_VALUE = 0.2
+HIDDEN = (f"viscous_friction@LKneePitch:coefficient={HIDDEN_VALUE}",)
+DURATION_S, ROUNDS = 4.0, 3
+MOST = 1.0
+ALIKE = 0.5
+"""Of the hidden value: mujoco.sysid's models keep the integrator's error."""
+
+
+def measure() -> list[float]:
+    """Seconds of a candidate's fit over those of mujoco.sysid's, round by round."""
+    plant, traces = _recording()
+    predictor = Predictor(plant, traces, channels_of(plant, traces), threads=1)
+    predictor.calibrate()
+    models = [_model(plant, joint) for joint in JOINTS]
+    free = unknowns(plant, traces)
+    _check_found(predictor, models[0], _of(free, JOINTS[0]))
+    ratios = []
+    for number in range(ROUNDS):
+        ours_s = seconds(partial(fit_all, predictor, models)) / len(models)
+        joint = JOINTS[number % len(JOINTS)]
+        theirs_s = seconds(partial(fitted, plant, traces, _of(free, joint)))
+        ratios.append(ours_s / theirs_s)
+    return ratios
+
+
+def report(ratios: list[float]) -> tuple[str, bool]:
+    """The median as text, and whether candidates are cheap enough."""
+    median = statistics.median(ratios)
+    rounds = ", ".join(f"{ratio:.3f}" for ratio in ratios)
+    verdict = "pass" if median <= MOST else "FAIL"
+    return (
+        f"fit of a candidate, {len(EFFECTS)} parameters, {DURATION_S:g} s of the NAO, "
+        f"{len(JOINTS)} side by side\n"
+        f"  time against mujoco.sysid's fit : {median:.3f} (rounds {rounds}); "
+        f"at most {MOST} to pass: {verdict}"
+    ), median <= MOST
+
+
+def _recording() -> tuple[Plant, list[Trace]]:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "air.parquet")
+        with contextlib.redirect_stdout(io.StringIO()):
+            record(Record(path, world="sim", hidden=HIDDEN, duration=DURATION_S))
+        return read_traces([path], "nao")
+
+
+def _model(plant: Plant, joint: str) -> Model:
+    return tuple(
+        Placed(
+            name,
+            joint,
+            tuple(one.typical for one in effect(name).parameters(plant, joint)),
+        )
+        for name in EFFECTS
+    )
+
+
+def _of(free: list[Unknown], joint: str) -> list[Unknown]:
+    return [one for one in free if one.place == joint and one.effect in EFFECTS]
+
+
+def _check_found(predictor: Predictor, model: Model, free: list[Unknown]) -> None:
+    """Both find the hidden friction, or they have not done the same work."""
+    fit = fit_all(predictor, [model])[0]
+    ours = next(p.values[0] for p in fit.model if p.effect == EFFECTS[0])
+    counts, _ = fitted(predictor.plant, predictor.traces, free)
+    pairs = zip(free, counts, strict=True)
+    theirs = next(one.value(count) for one, count in pairs if one.effect == EFFECTS[0])
+    np.testing.assert_allclose([ours, theirs], HIDDEN_VALUE, rtol=ALIKE)
