@@ -26,6 +26,7 @@ from diagnosis.search import Search
 from diagnosis.search_result import Found as Searched
 from diagnosis.search_result import Rules
 from diagnosis.simpler import simpler
+from diagnosis.surprise import surprises
 from diagnosis.torque_drive import DriveBy
 from diagnosis.trace import Trace
 from diagnosis.unexplained import unexplained
@@ -105,16 +106,18 @@ def diagnose(
     left = refitted.residual if refitted else wrong
     share = 1 - searched.closed(winner) if winner else 1.0
     final = FinalTest((data.learned, data.test), both, test, searched, model, seed)
+    fit = final.fit()
+    limits = (*surprises(data.learned, left, fit), *audited.limits, *ready.said)
     verdict = Verdict(
         kind=kind,
         effects=effects_of(both, searched, refitted) if kind != "none" else (),
         alternatives=alternatives(searched),
         smallest_detectable=_detectable(search, kind),
         unexplained=unexplained(both, left, share) if kind == "unknown" else None,
-        limits=(*audited.limits, *ready.said, *(said_of(standing) if standing else ())),
+        limits=(*limits, *(said_of(standing) if standing else ())),
         mismatch=mismatch(data.learned, wrong),
         pulses=ready.pulses,
-        fit=final.fit(),
+        fit=fit,
         next_experiment=next_experiment(plant, searched, traces),
         recordings=data.recordings(),
         seconds=time.monotonic() - begun_s,

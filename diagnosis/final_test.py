@@ -7,6 +7,7 @@ from diagnosis.ceiling import ceiling_errors
 from diagnosis.controls import wrong_effects, wrong_places
 from diagnosis.predictor import Model, Predictor
 from diagnosis.search_result import Found
+from diagnosis.surprise import channel_rms
 from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
 
@@ -71,7 +72,4 @@ class FinalTest:
 
 def _error(test: Predictor, model: Model) -> FloatArray:
     """(c,) rms [noise] on the test data."""
-    squares = test.residuals([model])[0] ** 2
-    c = len(test.channels.names)
-    count = np.maximum(np.bincount(test.channel, test.scored, c), 1)
-    return np.asarray(np.sqrt(np.bincount(test.channel, squares, c) / count))
+    return channel_rms(test, test.residuals([model])[0])

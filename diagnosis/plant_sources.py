@@ -21,6 +21,7 @@ from robots import Description
 from robots import get as robot
 from robots import names as robot_names
 from robots.package_paths import example_robots
+from worlds.quiet_mujoco import quiet_mujoco
 from worlds.recording_columns import nearest
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ def load_plant(
       BadModelError: the file is no model.
       BadRecordingError: the model lacks one of the joints.
     """
+    quiet_mujoco()  # of trial values that blow up, or joints that mimic others
     name, spec, description = _read(source, base)
     known = _compiled(spec.copy(), name)  # compiling may merge bodies
     ours = _chosen(known, joints, name)

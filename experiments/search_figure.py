@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from experiments.figure_file import write_figure
-from experiments.reward import FALL_PENALTY_CM_S
 from groundwalk.errors import BadValueError
 
 if TYPE_CHECKING:
@@ -73,9 +72,7 @@ def _draw_rewards(axes: "Axes", history: Sequence[Mapping[str, Any]]) -> None:
     if fell.any():
         axes.plot(every[fell], mean[fell], "kx", ms=9, label="the mean gait fell")
     axes.axhline(0, color="0.6", lw=0.8)
-    axes.set_ylabel(
-        f"reward [cm/s]\n(speed, less {FALL_PENALTY_CM_S:.0f} after a fall)"
-    )
+    axes.set_ylabel("reward [cm/s]\n(speed, less a penalty after a fall)")
     axes.set_title(
         f"CMA-ES search: reward of the mean gait {mean[0]:.1f} → {mean[-1]:.1f} cm/s",
         pad=24,

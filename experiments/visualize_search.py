@@ -1,4 +1,4 @@
-"""A run's search in Rerun, along the timeline `generation`."""
+"""A run's search in Rerun, along the timeline `generation`: the best gaits walk."""
 
 import hashlib
 import json
@@ -8,11 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from experiments.run_folder import HISTORY, RunFolder
+from experiments.optimize_gait import VERB
+from experiments.run_folder import CONFIG, HISTORY, RunFolder
+from experiments.search_walks import search_config, walk_again
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import RunFolderError
+from groundwalk.errors import GroundwalkError, RunFolderError
+from walk_engine import Gait
 from walk_engine.gait import PARAMETERS
-from worlds.rerun_search import SearchHistory, write_search
+from worlds.rerun_search import write_search
+from worlds.search_history import SearchHistory
 
 SEARCH_RERUN = "search.rrd"
 
@@ -20,7 +24,10 @@ Entries = Sequence[Mapping[str, Any]]
 
 
 def visualize_search(folder: RunFolder) -> Path | None:
-    """Write a run's search for Rerun.
+    """Write a run's search for Rerun, and let its best gaits walk for that.
+
+    Of earlier versions nobody knows the best gaits. Where they cannot walk any more,
+    the page of each generation says why.
 
     Returns:
       The file; None if there is no history, as before the first generation.
@@ -40,8 +47,24 @@ def visualize_search(folder: RunFolder) -> Path | None:
         raise RunFolderError(f"{path} is damaged: {error!r}") from None
     identity = hashlib.sha256(json.dumps(entries).encode()).hexdigest()[:32]
     rerun = folder.path / SEARCH_RERUN
-    write_search(rerun, history, identity)
+    write_search(rerun, _with_walks(folder, history, entries), identity)
     return rerun
+
+
+def _with_walks(
+    folder: RunFolder, history: SearchHistory, entries: Entries
+) -> SearchHistory:
+    """With the walk of each generation's best gait, or why there is none."""
+    if not all(entry.get("best_gait") for entry in entries):
+        return history
+    try:
+        stored = folder.read_json(CONFIG)
+        if stored.get("verb") != VERB:
+            raise RunFolderError(f"{CONFIG} is of {stored.get('verb')!r}, not {VERB!r}")
+        best = [Gait.from_mapping(entry["best_gait"]) for entry in entries]
+        return history._replace(walks=walk_again(search_config(stored), best))
+    except GroundwalkError as error:
+        return history._replace(no_walks=str(error))
 
 
 def read_history(entries: Entries) -> SearchHistory:

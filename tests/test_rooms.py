@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-RERUN = ("balance", "columns", "layout", "search")
+RERUN = ("balance", "columns", "layout", "search", "search_walk")
 HEAVY = {"mujoco", "pybullet", "rerun", "cma", "torch", "matplotlib"}
 
 

@@ -12,6 +12,7 @@ from terrain import Heightfield, Lumps
 from worlds.hidden_effects import Hidden
 from worlds.hidden_plant import HiddenPlant
 from worlds.mujoco_model import add_ground
+from worlds.quiet_mujoco import quiet_mujoco
 
 if TYPE_CHECKING:
     import mujoco
@@ -40,9 +41,7 @@ def hidden_model(
     """
     import mujoco
 
-    log = mujoco.MjLogConfig.get()
-    log.logto_console = log.logto_file = False
-    log.set()
+    quiet_mujoco()
     spec = plant.make_spec()
     spec.compiler.discardvisual = False
     # Semi-implicit Euler: with speeds half a step ahead it is a leapfrog, and exact

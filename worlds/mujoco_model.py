@@ -10,6 +10,7 @@ from robots.description import Description
 from robots.mjcf import ROOT_JOINT, mujoco_spec
 from robots.sole import contact_shares
 from terrain import Heightfield
+from worlds.quiet_mujoco import quiet_mujoco
 from worlds.soft_ground import FootSpring, soften_mujoco
 from worlds.world import WorldOptions
 
@@ -50,10 +51,7 @@ def world_spec(
     """
     import mujoco
 
-    # Worlds tell what blew up; MuJoCo would litter the screen and write a file.
-    log = mujoco.MjLogConfig.get()
-    log.logto_console = log.logto_file = False
-    log.set()
+    quiet_mujoco()  # worlds tell what blew up
     spec = mujoco_spec(description)
     spec.option.timestep = options.timestep_s
     # A diverged robot shall show its NaN, not start again in silence.

@@ -18,6 +18,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray, IntArray
 from worlds import scene_colours as colours
+from worlds.fall_ring import fall_ring
 from worlds.rerun_columns import ColumnLog
 from worlds.scene import Scene
 from worlds.scene_balance import Balance, balance, loaded_feet
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 _LIFT_M = 0.002
 """Above the ground, to be seen."""
 _POINT_M, _LINE_M = 0.008, 0.003
-_RING_M, _RING_CORNERS = 0.15, 48
 _FALLS = (End.FALL, End.DIVERGED)
 
 
@@ -128,11 +128,7 @@ def _write_fall(log: ColumnLog, scene: Scene, found: Balance) -> None:
     place_m = found.below_m[-1]
     if end not in _FALLS or not np.isfinite(place_m).all():
         return
-    turn = np.linspace(0, 2 * np.pi, _RING_CORNERS + 1)
-    ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-    strip_m = place_m + _RING_M * ring + np.array([0.0, 0.0, 2 * _LIFT_M])
-    if scene.ground is not None:
-        strip_m[:, 2] = scene.ground.height_at(strip_m[:, 0], strip_m[:, 1]) + _LIFT_M
+    strip_m = fall_ring(place_m, scene.ground)
     text = f"{end} at {scene.recording.time_s[-1]:.2f} s"
     look = rr.LineStrips3D(
         [strip_m], radii=1.5 * _LINE_M, colors=colours.FALL, labels=[text]

@@ -1,7 +1,7 @@
 """A search as a Rerun file: what each generation tried, and what it came to.
 
-Its one timeline is `generation`. What is drawn over it shows the whole search; bars
-and page show the generation under the cursor.
+Its one timeline is `generation`. What is drawn over it shows the whole search; bars,
+page and robot show the generation under the cursor.
 
 | entity | what |
 |---|---|
@@ -12,17 +12,20 @@ and page show the generation under the cursor.
 | `search/parameters/<name>/{mean,spread}` | mean gait, and one deviation around it |
 | `search/parameters/<name>/best` | of the best gait, where the history has it |
 | `search/gait` | page: parameters of the best gait and of the mean |
+| `search/walk/...` | the best gait walks, see `worlds.rerun_search_walk` |
 """
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.files import write_bytes
 from worlds import scene_colours as colours
+from worlds.rerun_search_walk import walk_view, write_walks
+from worlds.search_history import SearchHistory
+from worlds.search_page import search_page
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -35,25 +38,6 @@ _APPLICATION = "groundwalk-search"
 _BINS = 30
 _PARAMETER_COLUMNS = 4
 _MEAN, _BEST, _TRIED = colours.accent(0), colours.accent(1), colours.NEITHER_SIDE
-
-
-class SearchHistory(NamedTuple):
-    """What a search tried; its rows are generations."""
-
-    rewards: Sequence[FloatArray]
-    """Of the gaits that were tried, each generation's."""
-    falls: FloatArray
-    """(generations,) how many of them fell."""
-    mean_reward: FloatArray
-    """(generations,) of the gait in the middle of the distribution."""
-    mean: Mapping[str, FloatArray]
-    """(generations,) each parameter of that gait."""
-    spread: Mapping[str, FloatArray]
-    """(generations,) standard deviation of each parameter, in its own unit."""
-    best: Mapping[str, FloatArray]
-    """(generations,) each parameter of the best gait; empty where it is not known."""
-    units: Mapping[str, str]
-    """Of parameters and, as "reward", of the reward."""
 
 
 def write_search(path: Path, history: SearchHistory, identity: str) -> None:
@@ -72,6 +56,9 @@ def write_search(path: Path, history: SearchHistory, identity: str) -> None:
     stream.send_recording_name(path.stem)
     _write_rewards(stream, history)
     _write_parameters(stream, history)
+    if history.walks:
+        index = rr.TimeColumn(TIMELINE, sequence=np.arange(len(history.walks)))
+        write_walks(stream, history.walks, index, _BEST)
     for generation in range(len(history.rewards)):
         _write_generation(stream, history, generation)
     write_bytes(path, file.drain_as_bytes())
@@ -129,34 +116,8 @@ def _write_generation(
     )
     stream.set_time(TIMELINE, sequence=generation)
     stream.log("search/rewards", bars, strict=True)
-    page = rr.TextDocument(_page(history, generation), media_type="text/markdown")
+    page = rr.TextDocument(search_page(history, generation), media_type="text/markdown")
     stream.log("search/gait", page, strict=True)
-
-
-def _page(history: SearchHistory, generation: int) -> str:
-    """The gaits of a generation as a table in Markdown."""
-    best = float(np.max(history.rewards[generation]))
-    mean = float(history.mean_reward[generation])
-    unit = history.units.get("reward", "")
-    lines = [
-        f"## Generation {generation}",
-        "",
-        f"Reward of the best gait {best:.1f}, of the mean gait {mean:.1f} {unit}.",
-        "",
-        "| parameter | unit | best gait | mean | spread |",
-        "|---|---|---:|---:|---:|",
-    ]
-    for name in history.mean:
-        columns = (history.best, history.mean, history.spread)
-        cells = [_cell(column, name, generation) for column in columns]
-        lines.append(
-            " | ".join((f"| {name}", history.units.get(name, ""), *cells)) + " |"
-        )
-    return "\n".join(lines)
-
-
-def _cell(column: Mapping[str, FloatArray], name: str, generation: int) -> str:
-    return f"{column[name][generation]:.4g}" if name in column else ""
 
 
 def _tried(history: SearchHistory) -> FloatArray:
@@ -186,34 +147,57 @@ def _line(name: str, colour: colours.Colour) -> "rr.SeriesLines":
 
 
 def _layout(history: SearchHistory) -> "rrb.Blueprint":
-    """Rewards and falls beside the generation's gait, the parameters below."""
+    """The walk beside the generation's gaits, the whole search below, in tabs.
+
+    Without walks, everything at once.
+    """
+    import rerun.blueprint as rrb
+
+    page = rrb.TextDocumentView(name="gaits of this generation", origin="search/gait")
+    parameters = [_parameter_view(history, name) for name in history.mean]
+    grid = rrb.Grid(*parameters, grid_columns=_PARAMETER_COLUMNS, name="parameters")
+    if history.walks:
+        robot = walk_view(history.walks, "best gait of this generation")
+        above = rrb.Horizontal(robot, page, column_shares=[5, 2])
+        tabs = [_reward_views(history, abreast=True), *([grid] if parameters else [])]
+        rows = [above, rrb.Tabs(*tabs)]
+        shares = [5, 3]
+    else:
+        above = rrb.Horizontal(
+            _reward_views(history, abreast=False), page, column_shares=[2, 1]
+        )
+        rows = [above, *([grid] if parameters else [])]
+        shares = [1] * len(rows)
+    return rrb.Blueprint(
+        rrb.Vertical(*rows, row_shares=shares),
+        rrb.TimePanel(timeline=TIMELINE, state="collapsed", fps=1.0, loop_mode="All"),
+        collapse_panels=True,
+    )
+
+
+def _reward_views(
+    history: SearchHistory, abreast: bool
+) -> "rrb.Horizontal | rrb.Vertical":
+    """Rewards, all abreast or above the two others: by gait, and falls."""
     import rerun.blueprint as rrb
 
     unit = history.units.get("reward", "")
-    rewards = rrb.Vertical(
-        rrb.TimeSeriesView(name=f"reward [{unit}]", origin="search/reward"),
-        rrb.Horizontal(
-            rrb.BarChartView(name=f"gaits by reward [{unit}]", origin="search/rewards"),
-            rrb.TimeSeriesView(name="tried gaits that fell [%]", origin="search/falls"),
-        ),
-        row_shares=[3, 2],
+    rewards = rrb.TimeSeriesView(name=f"reward [{unit}]", origin="search/reward")
+    others = (
+        rrb.BarChartView(name=f"gaits by reward [{unit}]", origin="search/rewards"),
+        rrb.TimeSeriesView(name="tried gaits that fell [%]", origin="search/falls"),
     )
-    page = rrb.TextDocumentView(name="gaits of this generation", origin="search/gait")
-    parameters = [
-        rrb.TimeSeriesView(
-            name=f"{name} [{history.units[name]}]" if name in history.units else name,
-            origin=f"search/parameters/{name}",
-            plot_legend=rrb.PlotLegend(visible=False),
-        )
-        for name in history.mean
-    ]
-    rows: list[rrb.Horizontal | rrb.Grid] = [
-        rrb.Horizontal(rewards, page, column_shares=[2, 1])
-    ]
-    if parameters:
-        rows.append(rrb.Grid(*parameters, grid_columns=_PARAMETER_COLUMNS))
-    return rrb.Blueprint(
-        rrb.Vertical(*rows),
-        rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
-        collapse_panels=True,
+    if abreast:
+        shares = [2, 1, 1]
+        return rrb.Horizontal(rewards, *others, column_shares=shares, name="rewards")
+    return rrb.Vertical(rewards, rrb.Horizontal(*others), row_shares=[3, 2])
+
+
+def _parameter_view(history: SearchHistory, name: str) -> "rrb.TimeSeriesView":
+    import rerun.blueprint as rrb
+
+    return rrb.TimeSeriesView(
+        name=f"{name} [{history.units[name]}]" if name in history.units else name,
+        origin=f"search/parameters/{name}",
+        plot_legend=rrb.PlotLegend(visible=False),
     )

@@ -36,7 +36,7 @@ def test_falls_of_the_mean_gait_are_marked():
 def test_axes_say_what_they_show():
     above, below = search_figure(history(2)).axes
     assert "[cm/s]" in above.get_ylabel()
-    assert "15 after a fall" in above.get_ylabel()
+    assert "after a fall" in above.get_ylabel()
     assert "[%]" in below.get_ylabel()
     assert below.get_xlabel() == "generation"
     assert above.get_title().endswith("0.5 → 1.5 cm/s")

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from rrd_files import entities, read, rerun, scalars, view_kinds
 
-from worlds.rerun_search import SearchHistory, write_search
+from worlds.rerun_search import write_search
+from worlds.search_history import SearchHistory
 
 HISTORY = SearchHistory(
     rewards=[np.array([3.0, 1.0, 2.0]), np.array([5.0, -4.0, 6.0])],

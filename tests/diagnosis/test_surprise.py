@@ -1,0 +1,42 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from diagnosis.surprise import channel_rms, surprises
+from diagnosis.verdict import ChannelFit, Fit
+
+CHANNELS = SimpleNamespace(names=("position.a", "position.b"))
+LEARNED = SimpleNamespace(
+    channels=CHANNELS,
+    channel=np.array([0, 0, 0, 1, 1]),
+    scored=np.array([True, True, False, True, True]),
+)
+
+
+def fit_of(a, b):
+    """Errors on the test data, in units of noise; the noise of b is 0.1."""
+    channels = {
+        "position.a": ChannelFit(unit="rad", nominal=50.0, floor=1.0, corrected=a),
+        "position.b": ChannelFit(unit="rad", nominal=5.0, floor=0.1, corrected=0.1 * b),
+    }
+    together = float(np.sqrt((a**2 + b**2) / 2))
+    return Fit(nominal=50.0, floor=1.0, corrected=together, channels=channels)
+
+
+def test_rms_is_of_the_rows_that_are_scored():
+    found = channel_rms(LEARNED, np.array([3.0, 4.0, 0.0, 1.0, 1.0]))
+    assert found == pytest.approx([np.sqrt(12.5), 1.0])
+
+
+def test_a_test_that_is_much_worse_is_told_with_its_worst_channel():
+    left = np.array([1.0, 1.0, 0.0, 1.0, 1.0])
+    (said,) = surprises(LEARNED, left, fit_of(1.0, 20.0))
+    assert "14 instead of 1 times" in said
+    assert "position.b" in said
+
+
+@pytest.mark.parametrize(("left", "test"), [(1.0, 1.5), (15.0, 20.0), (0.1, 1.0)])
+def test_a_test_as_good_as_what_was_learned_from_is_none(left, test):
+    residual = left * np.array([1.0, 1.0, 0.0, 1.0, 1.0])
+    assert surprises(LEARNED, residual, fit_of(test, test)) == ()
