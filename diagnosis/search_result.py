@@ -50,7 +50,7 @@ class Rules:
     least_gain: float = 15.0
     least_pattern: float = 0.15
     least_share: float = 0.3
-    least_of_all: float = 0.002
+    least_of_all: float = 0.0005
 
 
 @dataclass(frozen=True, eq=False)
