@@ -10,9 +10,10 @@ from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 
-_LEAST_WHOLE = 4
-"""From this many recordings on, whole ones are set aside: of three with motions of
-their own, one would be left to fit."""
+_LEAST_WHOLE, _LEAST_WHOLE_IF_LONG = 3, 4
+_LONG_S = 8.0
+"""From this many recordings on, whole ones are set aside. Of three, each of a motion of
+its own, one would be left to fit: if they are long enough, all are cut instead."""
 _SHARE = 0.25
 _GAP_S = 0.2
 _TWICE_S = 20.0
@@ -43,14 +44,16 @@ class Split:
 def split(traces: Sequence[Trace]) -> Split:
     """Set traces aside; the same traces are always split alike.
 
-    With four or more, whole traces are, such that what moves in those set aside
-    moves in the others, too. Otherwise, or where that cannot be, each is cut into
-    contiguous parts, 0.2 s apart, in the order that leaves the most motion to fit.
+    With four or more, or three short ones, whole traces are, such that what moves in
+    those set aside moves in the others, too. Otherwise, or where that cannot be, each
+    is cut into contiguous parts, 0.2 s apart, in the order that leaves the most motion
+    to fit.
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
     """
-    if len(traces) >= _LEAST_WHOLE:
+    long = all(trace.duration_s >= _LONG_S for trace in traces)
+    if len(traces) >= (_LEAST_WHOLE_IF_LONG if long else _LEAST_WHOLE):
         travel = np.stack([_travel(trace) for trace in traces])
         seconds = np.array([trace.duration_s for trace in traces])
         left = list(range(len(traces)))

@@ -120,3 +120,12 @@ def test_both_ways_of_a_motion_that_repeats_itself_are_fitted():
         ways = [np.sign(np.diff(part.position_rad[:, 0])) for part in parts]
         forward = np.mean(np.concatenate(ways) > 0)
         assert 0.3 < forward < 0.7
+
+
+@pytest.mark.parametrize(("duration_s", "cut"), [(7.0, False), (9.0, True)])
+def test_three_recordings_are_cut_if_they_are_long(duration_s, cut):
+    result = split([trace(name, duration_s) for name in "abc"])
+    assert (len(result.fit) > 1) is cut
+    if cut:
+        for part in (result.fit, result.select, result.test):
+            assert {one.name[0] for one in part} == {"a", "b", "c"}
