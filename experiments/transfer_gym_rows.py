@@ -7,6 +7,7 @@ import numpy as np
 
 from experiments.transfer_gym_study import GAT, REAL, SGAT, SGAT_FULL, Cell
 from experiments.transfer_page import Claim
+from groundwalk.arrays import FloatArray
 
 WAYS = ("deterministic", "stochastic")
 NUMBERS = (
@@ -21,8 +22,8 @@ Row = dict[str, Any]
 def rows_of(cells: Sequence[Cell]) -> list[Row]:
     """A row for each setting and noise, in the cells' order.
 
-    Returns are means over seeds with their standard errors; everything else that the
-    cells of a method tell is averaged.
+    Returns are means over seeds with their standard errors, and those of each seed;
+    everything else that the cells of a method tell is averaged.
     """
     worlds = dict.fromkeys((cell["setting"], cell["noise"]) for cell in cells)
     rows = []
@@ -37,17 +38,21 @@ def rows_of(cells: Sequence[Cell]) -> list[Row]:
 
 
 def _over_seeds(cells: Sequence[Cell]) -> dict[str, Any]:
+    cells = sorted(cells, key=lambda cell: int(cell["seed"]))
     row: dict[str, Any] = {"seeds": len(cells)}
     for way in WAYS:
         returns = np.array([cell[way]["mean"] for cell in cells])
-        row[way] = {
-            "mean": float(returns.mean()),
-            "standard_error": float(returns.std(ddof=1) / np.sqrt(len(returns))),
-        }
+        row[way] = {**_mean(returns), "returns": returns.tolist()}
     for name in NUMBERS:
         if name in cells[0]:
             row[name] = float(np.mean([cell[name] for cell in cells]))
     return row
+
+
+def _mean(values: FloatArray) -> dict[str, float]:
+    """With its standard error."""
+    error = values.std(ddof=1) / np.sqrt(len(values))
+    return {"mean": float(values.mean()), "standard_error": float(error)}
 
 
 def check_claims(rows: Sequence[Row]) -> list[Claim]:
@@ -70,10 +75,11 @@ def check_claims(rows: Sequence[Row]) -> list[Claim]:
 def _more_than_gat(row: Row, sampled: str) -> Claim:
     """What the paper claims, of a setting's noisiest world."""
     sgat, gat = (row["methods"][name][WAYS[0]] for name in (sampled, GAT))
+    more = _mean(np.subtract(sgat["returns"], gat["returns"]))
     return Claim(
         f"{row['setting']}, noise {row['noise']:g}: {sampled} returns more than {GAT}",
         sgat["mean"] > gat["mean"],
-        f"{_text(sgat)} against {_text(gat)}",
+        f"{_text(sgat)} against {_text(gat)}; seed by seed {_text(more)} more",
     )
 
 

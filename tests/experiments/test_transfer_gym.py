@@ -98,6 +98,8 @@ def test_the_claim_can_fail():
     for sgat, holds in (([4.0, 6.0], True), ([1.0, 2.0], False)):
         (claim,) = check_claims(rows_of(made_up_cells(gat=[2.0, 3.0], sgat=sgat)))
         assert claim.holds is holds
+    # 1 - 2 and 2 - 3: the same for both seeds
+    assert claim.found.endswith("seed by seed -1.0 ± 0.0 more")
     assert check_claims(rows_of(made_up_cells(gat=[2.0, 3.0]))) == []
 
 
