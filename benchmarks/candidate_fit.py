@@ -9,13 +9,13 @@ both find what is hidden is checked.
 
 import contextlib
 import io
-import statistics
 import tempfile
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
 from diagnosis.baselines.sysid import fitted
 from diagnosis.baselines.sysid_models import Unknown, unknowns
@@ -60,15 +60,11 @@ def measure() -> list[float]:
 
 def report(ratios: list[float]) -> tuple[str, bool]:
     """The median as text, and whether candidates are cheap enough."""
-    median = statistics.median(ratios)
-    rounds = ", ".join(f"{ratio:.3f}" for ratio in ratios)
-    verdict = "pass" if median <= MOST else "FAIL"
+    line, passes = judged("time against mujoco.sysid's fit", ratios, "at most", MOST)
     return (
         f"fit of a candidate, {len(EFFECTS)} parameters, {DURATION_S:g} s of the NAO, "
-        f"{len(JOINTS)} side by side\n"
-        f"  time against mujoco.sysid's fit : {median:.3f} (rounds {rounds}); "
-        f"at most {MOST} to pass: {verdict}"
-    ), median <= MOST
+        f"{len(JOINTS)} side by side\n{line}"
+    ), passes
 
 
 def _recording() -> tuple[Plant, list[Trace]]:

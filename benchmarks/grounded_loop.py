@@ -7,7 +7,6 @@ size that is used; they are fitted to few walks, which does not change what they
 """
 
 import dataclasses
-import statistics
 from functools import partial
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 import robots
 import terrain
 import worlds
+from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
 from experiments.trials import TrialRules, walk_trials
 from experiments.walk_data import GaitCloud, leg_senses, walk
@@ -56,14 +56,11 @@ def measure() -> list[float]:
 
 def report(ratios: list[float]) -> tuple[str, bool]:
     """The median as text, and whether grounding is cheap enough."""
-    median = statistics.median(ratios)
-    rounds = ", ".join(f"{ratio:.3f}" for ratio in ratios)
-    verdict = "pass" if median <= MOST else "FAIL"
+    line, passes = judged("time against the ungrounded one", ratios, "at most", MOST)
     return (
         f"grounded control loop of {ROBOTS} robots, {TICKS} ticks, {ROUNDS} rounds\n"
-        f"  time against the ungrounded one : {median:.3f} (rounds {rounds}); "
-        f"at most {MOST} to pass: {verdict}"
-    ), median <= MOST
+        f"{line}"
+    ), passes
 
 
 def _transformer() -> ActionTransformer:

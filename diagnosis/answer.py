@@ -1,6 +1,7 @@
 """What a search's outcome means: the kind of verdict, and the effects believed."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from diagnosis.audit_result import Audit
 from diagnosis.belief import confusable, probability, twins
@@ -20,6 +21,31 @@ MOST_LEFT = 0.5
 """... unless what it leaves is below so large a part of the noise's own energy."""
 
 
+UNSURE, WEAK = 0.5, 4.0
+"""An effect that is less probable may as well be another; so many times the least gain
+of a search is a weak reason to believe it all the same."""
+
+
+def sure(searched: Searched, least_gain: float) -> Searched:
+    """What a search came to, less an effect that is unsure and hardly needed.
+
+    Where two sims of the same physics differ a little, some effect always explains it.
+
+    Args:
+      searched: that is to be believed.
+      least_gain: that the search asked of an effect [nats].
+    """
+    winner = searched.winner
+    if winner is None or searched.chosen == 1:
+        return searched
+    least = min(probability(searched, placed) for placed in winner.model)
+    smaller = searched.best[searched.chosen - 1][0]
+    weak = smaller.selected - winner.selected < WEAK * least_gain
+    if least >= UNSURE or not weak or not smaller.keys < winner.keys:
+        return searched
+    return sure(replace(searched, chosen=searched.chosen - 1), least_gain)
+
+
 def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
     """The kind of verdict.
 
@@ -33,9 +59,9 @@ def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
     closed = searched.closed(searched.winner) if searched.winner else 0.0
     if left > MOST_LEFT * searched.floor and closed < LEAST_CLOSED:
         return "unknown"
-    if searched.winner:
+    still = set(plant.joints) - audited.moving
+    if searched.winner and not {one.place for one in searched.winner.model} <= still:
         return "effects"
-    still = [joint for joint in plant.joints if joint not in audited.moving]
     return "not_identifiable" if still else "none"
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.columns import columns
 from diagnosis.plant import Plant
 from groundwalk.arrays import FloatArray
 
@@ -30,7 +31,7 @@ class BatchFriction:
           joints: `Joints`, rows as the batch has them.
           step_s: of the physics.
         """
-        self._joints, self._dofs = joints, plant.dofs
+        self._joints, self._dofs = joints, columns(plant.dofs)
         self.varies = bool(joints["stribeck_nm"].any() or joints["load_share"].any())
         """Whether `follow` has anything to do."""
         self._torque_nm = np.asarray(batch.expand("dof_frictionloss"))

@@ -61,14 +61,20 @@ class BatchGaps:
         arrives = np.where(apart, 0.0, asked_rad - self._motor_rad)
         return position + arrives, apart
 
-    def damping(self) -> FloatArray:
-        """(rows, j) that a joint lacks while its motor is apart from it."""
-        return self._law["kd"] + self._law["emf"]
+    def drag_nm(self, velocity: FloatArray) -> FloatArray:
+        """(rows, j) by which the servo brakes: a joint lacks it while apart from it.
+
+        Args:
+          velocity: of the joints.
+        """
+        law = self._law
+        servo_nm = np.clip(law["kd"] * velocity, -law["limit"], law["limit"])
+        return np.asarray(servo_nm + law["emf"] * velocity)
 
     def _followed(self, asked_rad: FloatArray, motor_rad: FloatArray) -> FloatArray:
         """One implicit step of motors that nothing holds, within their torque."""
         law = self._law
-        drag = np.maximum(self.damping(), LEAST_DRAG) / self._step_s
+        drag = np.maximum(law["kd"] + law["emf"], LEAST_DRAG) / self._step_s
         moved = law["kp"] * (asked_rad - motor_rad) / (law["kp"] + drag)
         emf = np.maximum(law["emf"], LEAST_DRAG)
         most = self._step_s * law["limit"] / emf

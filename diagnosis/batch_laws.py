@@ -7,12 +7,16 @@ import numpy as np
 
 from diagnosis.batch_friction import BatchFriction
 from diagnosis.batch_gaps import BatchGaps
-from diagnosis.batch_servos import BatchServos
+from diagnosis.batch_servos import BatchServos, Ends, first_share
+from diagnosis.columns import columns
 from diagnosis.elastic import ElasticJoints
 from diagnosis.outside_forces import OutsideForces
 from diagnosis.servo import Servo
 from diagnosis.variants import Variants
 from groundwalk.arrays import FloatArray
+
+FAST = 1e9
+"""Setpoints as fast as that are at their targets at once [rad/s]."""
 
 
 class BatchLaws:
@@ -31,8 +35,8 @@ class BatchLaws:
         """
         plant, runs = variants.plant, len(servos)
         self._batch, self._step_s = batch, step_s
-        self._dofs, self._columns = plant.dofs, plant.qpos
-        self._actuators = plant.actuators
+        self._dofs, self._columns = columns(plant.dofs), columns(plant.qpos)
+        self._actuators = columns(plant.actuators)
         self._qpos, self._qvel, self._ctrl = map(self._bind, ("qpos", "qvel", "ctrl"))
         self.joints = joints = {
             name: np.repeat(values, runs, axis=0)
@@ -73,16 +77,27 @@ class BatchLaws:
         if self._elastic is not None and is_first:
             self._servos.soften(self._elastic, self._step_s)
 
-    def servo(self, asked_rad: FloatArray, time_s: FloatArray) -> None:
+    def servo(
+        self, asked_rad: FloatArray, time_s: FloatArray, ends: Ends | None = None
+    ) -> None:
         """Set the controls of one step.
 
         Args:
-          asked_rad: (n R, j) position targets, as the encoders have it.
+          asked_rad: (n R, j) position targets, as the encoders have it: the mean over
+            the step.
           time_s: (R,) now; fading servos need it.
+          ends: targets as the step begins and as it ends, if they jump within it.
         """
         asked_rad = asked_rad - self.joints["offset_rad"]
+        if ends is not None:
+            offset = self.joints["offset_rad"]
+            ends = ends[0] - offset, ends[1] - offset
+        jumped_rad = self._jumped(asked_rad, ends) if ends else asked_rad
         if self._slews:
-            asked_rad = self._slewed(asked_rad)
+            slewed_rad = self._slewed(asked_rad, ends or (asked_rad, asked_rad))
+            slow = np.isfinite(self.joints["setpoint_speed_rad_s"])
+            jumped_rad = np.where(slow, slewed_rad, jumped_rad)
+        asked_rad = jumped_rad
         if self._servos.fades:
             self._servos.fade(time_s)
         position, velocity = self.joint_state()
@@ -90,11 +105,25 @@ class BatchLaws:
             self._friction.follow(velocity, self._force[:, self._actuators])
         if self._gaps is not None:
             asked_rad, apart = self._gaps.through(asked_rad, position)
-            free_nm = np.where(apart, self._gaps.damping() * velocity, 0.0)
+            free_nm = np.where(apart, self._gaps.drag_nm(velocity), 0.0)
             self._applied[:, self._dofs] = free_nm
         if self._elastic is not None:
             asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
         self._ctrl[:, self._actuators] = asked_rad
+
+    def jumps(self, ends: Ends | None) -> list[Ends | None]:
+        """For each of B steps the targets at its ends, where some of them jump.
+
+        Args:
+          ends: (B, n R, j) targets as the steps begin and end; None for none.
+        """
+        if ends is None:
+            return []
+        least = self._servos.least_jump_rad
+        return [
+            (before, after) if (np.abs(after - before) > least).any() else None
+            for before, after in zip(*ends, strict=True)
+        ]
 
     def push_joints(self, torque_nm: FloatArray) -> None:
         """Apply (n R, j) torques where no servo drives."""
@@ -120,7 +149,7 @@ class BatchLaws:
         self._outside.apply(time_s)
 
     def joint_state(self) -> tuple[FloatArray, FloatArray]:
-        """(n R, j) positions and velocities."""
+        """(n R, j) positions and velocities, as they are until the next step."""
         return self._qpos[:, self._columns], self._qvel[:, self._dofs]
 
     def encoder_rad(self) -> FloatArray:
@@ -128,19 +157,29 @@ class BatchLaws:
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 
+    def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
+        velocity = self._qvel[:, self._dofs]
+        return self._servos.equal(asked_rad, ends, self.encoder_rad(), velocity)
+
     def _bind(self, name: str) -> FloatArray:
         return np.asarray(self._batch.bind(name))
 
     def _expand(self, name: str) -> FloatArray:
         return np.asarray(self._batch.expand(name))
 
-    def _slewed(self, asked_rad: FloatArray) -> FloatArray:
+    def _slewed(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
+        """Mean setpoints of a step, on their way to its first and its last target."""
         if self._setpoint is None:
-            self._setpoint = asked_rad.copy()
-        most = self.joints["setpoint_speed_rad_s"] * self._step_s
-        change = np.minimum(np.maximum(asked_rad - self._setpoint, -most), most)
-        self._setpoint = self._setpoint + change
-        return self._setpoint
+            self._setpoint = ends[0].copy()
+        most = np.minimum(self.joints["setpoint_speed_rad_s"], FAST) * self._step_s
+        first = first_share(asked_rad, ends)
+        mean = np.zeros_like(asked_rad)
+        for share, target in zip((first, 1 - first), ends, strict=True):
+            way = share * most
+            change = np.minimum(np.maximum(target - self._setpoint, -way), way)
+            mean += share * (self._setpoint + change / 2)
+            self._setpoint = self._setpoint + change
+        return mean
 
     def _rotors(self) -> FloatArray:
         """Armatures; those of elastic joints turn beside their links, not with them.

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from diagnosis.columns import columns
 from diagnosis.elastic import ElasticJoints
 from diagnosis.plant import Plant
 from diagnosis.servo import Servo
@@ -12,6 +13,12 @@ from groundwalk.arrays import FloatArray
 
 SERVO = ("kp_nm_rad", "kd_nm_s_rad", "max_torque_nm", "back_emf_nm_s_rad")
 UNLIMITED_NM = 1e9
+LEAST_KP = 1e-9
+JUMP = 0.3
+"""Of what takes a servo to its limit: so large is a jump of its target."""
+
+Ends = tuple[FloatArray, FloatArray]
+"""Targets as a step begins, and as it ends: (rows, j) each."""
 
 
 class BatchServos:
@@ -36,7 +43,7 @@ class BatchServos:
           servos: of R runs, one after another for each variant.
           joints: `Joints`, rows as the batch has them.
         """
-        self._joints, self._actuators = joints, plant.actuators
+        self._joints, self._actuators = joints, columns(plant.actuators)
         self.fades = bool(joints["fade_1_s"].any())
         """Whether any servo grows weaker with time."""
         self.law = _laws(servos, joints)
@@ -58,8 +65,40 @@ class BatchServos:
         largest = np.minimum(self.law["limit"], UNLIMITED_NM)
         self._range[:, self._actuators, 0] = -largest
         self._range[:, self._actuators, 1] = largest
-        self._dofs = plant.dofs
+        self._dofs = columns(plant.dofs)
         self._damping[:, self._dofs] += self.law["emf"] - plant.servo.back_emf_nm_s_rad
+
+    @property
+    def least_jump_rad(self) -> FloatArray:
+        """(rows, j) by which a target changes that jumps."""
+        reach = self.law["limit"] / np.maximum(self._full_kp, LEAST_KP)
+        return np.asarray(JUMP * reach)
+
+    def equal(
+        self, mean_rad: FloatArray, ends: Ends, angle: FloatArray, velocity: FloatArray
+    ) -> FloatArray:
+        """(rows, j) constant targets that give the torque of those that jump in a step.
+
+        At the mean target a servo at its limit would give the whole torque of the new
+        one, though it has only had it for a part of the step.
+
+        Args:
+          mean_rad: of the targets over the step.
+          ends: the targets.
+          angle: of the servos, (rows, j).
+          velocity: likewise.
+        """
+        kp, kd, limit = (self.law[name] for name in ("kp", "kd", "limit"))
+        share = first_share(mean_rad, ends)
+        first, last = (
+            np.clip(kp * (end - angle) - kd * velocity, -limit, limit) for end in ends
+        )
+        torque = share * first + (1 - share) * last
+        target = angle + (torque + kd * velocity) / np.maximum(kp, LEAST_KP)
+        jumps = np.abs(ends[1] - ends[0]) > self.least_jump_rad
+        # at its limit all the time a servo gives that at the mean target, too
+        within = (share > 0) & (share < 1) & (np.abs(torque) < limit) & (kp > 0)
+        return np.where(jumps & within, target, mean_rad)
 
     def fade(self, time_s: FloatArray) -> None:
         """Set the stiffness of (R,) times."""
@@ -84,6 +123,14 @@ class BatchServos:
             old = field[:, self._actuators, column]
             field[:, self._actuators, column] = np.where(elastic.soft, value, old)
         self._damping[:, self._dofs] -= np.where(elastic.soft, self.law["emf"], 0.0)
+
+
+def first_share(mean_rad: FloatArray, ends: Ends) -> FloatArray:
+    """(rows, j) share of a step in which its first target holds; 0 if none changes."""
+    before, after = ends
+    jump = after - before
+    nothing = np.zeros_like(jump)
+    return np.divide(after - mean_rad, jump, out=nothing, where=jump != 0)
 
 
 def _laws(

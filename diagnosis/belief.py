@@ -6,7 +6,7 @@ from diagnosis.effect import Placed
 from diagnosis.library import EFFECTS
 from diagnosis.plant import Plant
 from diagnosis.search_result import Found
-from diagnosis.verdict import EffectAt
+from diagnosis.verdict import EffectAt, VerdictKind
 
 TIED_NATS = 10.0
 """What is less plausible by no more than that may be the truth as well: residuals are
@@ -42,18 +42,21 @@ def twins(plant: Plant, placed: Placed) -> tuple[EffectAt, ...]:
     return ()
 
 
-def alternatives(found: Found) -> tuple[tuple[EffectAt, ...], ...]:
-    """Whole other answers of the same size that do as well."""
+def alternatives(found: Found, kind: VerdictKind) -> tuple[tuple[EffectAt, ...], ...]:
+    """Whole other answers of the chosen size that do as well.
+
+    Where the data cannot tell, the one that does best is but one of them.
+    """
     winner = found.winner
     if winner is None:
         return ()
-    answers: dict[frozenset[str], tuple[EffectAt, ...]] = {}
-    for judged in found.best[found.chosen]:
-        if judged.keys != winner.keys and found.worse(judged) <= TIED_NATS:
-            answers[judged.keys] = tuple(
-                EffectAt(placed.effect, placed.place) for placed in judged.model
-            )
-    return tuple(answers.values())
+    tied = [one for one in found.best[found.chosen] if found.worse(one) <= TIED_NATS]
+    every = {one.keys: one.model for one in (winner, *tied)}
+    answers = tuple(
+        tuple(EffectAt(placed.effect, placed.place) for placed in model)
+        for model in every.values()
+    )
+    return answers if kind == "not_identifiable" else answers[1:]
 
 
 def probability(found: Found, placed: Placed) -> float:

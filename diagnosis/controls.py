@@ -54,5 +54,5 @@ def _best(predictor: Predictor, model: Model, options: list[Model]) -> Model | N
         return None
     residuals = predictor.residuals(options)
     order = np.argsort((residuals**2).sum(axis=1))[:MOST]
-    fits = fit_all(predictor, [options[int(i)] for i in order], steps=4)
+    fits = fit_all(predictor, [options[int(i)] for i in order], 4, followed=True)
     return min(fits, key=lambda fit: fit.energy).model

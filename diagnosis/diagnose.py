@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.answer import effects_of, kind_of
+from diagnosis.answer import effects_of, kind_of, sure
 from diagnosis.audit import audit
 from diagnosis.audit_result import Audit
 from diagnosis.belief import alternatives
 from diagnosis.channels import channels_of
+from diagnosis.compared import compared
 from diagnosis.evidence import Evidence
 from diagnosis.final_test import FinalTest
 from diagnosis.fitting import fit_all
@@ -98,7 +99,11 @@ def diagnose(
     well = well_of(plant, reference, channels, threads) if reference else ()
     search = Search(data.fit, data.select, _rules(plant, rules), well)
     searched = _searched(search, audited)
-    kind, winner = kind_of(searched, plant, audited), searched.winner
+    kind = kind_of(searched, plant, audited)
+    others = alternatives(searched, kind)
+    if kind == "not_identifiable":  # then nothing is believed
+        searched = replace(searched, chosen=0)
+    winner = searched.winner
     both, test = data.calibrated(winner.model if winner else ())
     refitted = fit_all(both, [winner.model])[0] if winner else None
     model = refitted.model if refitted else ()
@@ -111,7 +116,7 @@ def diagnose(
     verdict = Verdict(
         kind=kind,
         effects=effects_of(both, searched, refitted) if kind != "none" else (),
-        alternatives=alternatives(searched),
+        alternatives=others,
         smallest_detectable=_detectable(search, kind),
         unexplained=unexplained(both, left, share) if kind == "unknown" else None,
         limits=(*limits, *(said_of(standing) if standing else ())),
@@ -140,7 +145,9 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
 def _searched(search: Search, audited: Audit) -> Searched:
     """What single effects explain, or whole kinds of them if these do not."""
     plant = search.fit.plant
-    searched = proven(search, simpler(search, search.run()))
+    searched = compared(search, search.run())
+    searched = proven(search, simpler(search, searched))
+    searched = sure(searched, search.least_gain)
     # on feet, models of whole kinds would take an hour
     if plant.base == "fixed" and kind_of(searched, plant, audited) == "unknown":
         return widespread(search, searched)

@@ -1,13 +1,13 @@
 """What traces tell servos to do, on the steps of a replay."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from diagnosis.run import Run
 from diagnosis.trace import Trace
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +38,18 @@ class Held:
         end_s = start_s + step_s
         return (self._at(end_s) - self._at(start_s)) / step_s
 
+    def at(self, time_s: FloatArray) -> FloatArray:
+        """(..., j) values that hold from `time_s` (...) on."""
+        return np.asarray(self.values[self._row(time_s)])
+
     def _at(self, time_s: FloatArray) -> FloatArray:
-        row = np.searchsorted(self.time_s, time_s, side="right") - 1
-        row = np.clip(row, 0, len(self.time_s) - 1)
+        row = self._row(time_s)
         since = (time_s - self.time_s[row])[..., None]
         return np.asarray(self.integral[row] + since * self.values[row])
+
+    def _row(self, time_s: FloatArray) -> IntArray:
+        row = np.searchsorted(self.time_s, time_s, side="right") - 1
+        return np.clip(row, 0, len(self.time_s) - 1)
 
 
 class Drive:
@@ -67,7 +74,20 @@ class Drive:
 
     def at(self, now_s: FloatArray) -> tuple[FloatArray | None, FloatArray | None]:
         """(B, n R, j) position targets and torques of (B, R) steps; None for none."""
-        return self._mean(self._commands, now_s), self._mean(self._torques, now_s)
+
+        def mean(held: Held, late_s: FloatArray) -> FloatArray:
+            return held.mean(late_s, self._step_s)
+
+        return (
+            self._all(self._commands, now_s, mean),
+            self._all(self._torques, now_s, mean),
+        )
+
+    def ends(self, now_s: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """(B, n R, j) position targets as (B, R) steps begin and end; None for none."""
+        before = self._all(self._commands, now_s, Held.at)
+        after = self._all(self._commands, now_s + self._step_s, Held.at)
+        return None if before is None or after is None else (before, after)
 
     def added(self, now_s: FloatArray) -> FloatArray | None:
         """(B, n R, j) torques beside the servos' own in (B, R) steps; None for none."""
@@ -80,14 +100,15 @@ class Drive:
         ]
         return np.tile(np.stack(columns, axis=1), (1, self._variants, 1))
 
-    def _mean(
-        self, held: Sequence[Held | None], now_s: FloatArray
+    def _all(
+        self,
+        held: Sequence[Held | None],
+        now_s: FloatArray,
+        take: Callable[[Held, FloatArray], FloatArray],
     ) -> FloatArray | None:
         late_s = now_s[None] - self._delays_s[:, None, None]
         columns = [
-            one.mean(late_s[:, :, k], self._step_s)
-            for k, one in enumerate(held)
-            if one is not None
+            take(one, late_s[:, :, k]) for k, one in enumerate(held) if one is not None
         ]
         if len(columns) < len(held):
             return None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from diagnosis.channels import Channels
 from diagnosis.plant import Plant
-from diagnosis.predictor import Model, Predictor
+from diagnosis.predictor import STEPS_S, Model, Predictor
 from diagnosis.shortening import LEAST_FLOATING_S, LEAST_S, shortened
 from diagnosis.split import Split, split
 from diagnosis.standing import Standing
@@ -23,6 +23,11 @@ FIT_S, SELECT_S, TEST_S = 40.0, 20.0, 40.0
 
 FLOATING_S = 3.0, 3.0, 6.0
 """Likewise of a robot on its feet, where contacts take their time."""
+
+
+MOST_WRONG = 0.25
+"""Rms [noise] that replays may be wrong by, besides what their calibration takes out:
+more of it would show up as physics."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +73,7 @@ class Evidence:
         parts = _affordable(plant, split(traces))
         every = [*parts.fit, *parts.select, *parts.test]
         whole = Predictor(plant, every, channels, threads=threads, standing=standing)
-        whole.calibrate()
+        whole = _exact(whole)
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         evidence = cls(
             parts,
@@ -85,16 +90,24 @@ class Evidence:
 
     def calibrated(self, model: Model) -> tuple[Predictor, Predictor]:
         """Predictors of the data learned from and of the test data, for a model."""
-        if model:
-            self._whole.calibrate(model)
+        whole = _exact(self._whole, model) if model else self._whole
         last = len(self.learned.traces)
-        every = len(self._whole.traces)
-        return self._whole.part(0, last), self._whole.part(last, every)
+        return whole.part(0, last), whole.part(last, len(whole.traces))
 
     def recordings(self) -> Recordings:
         """Which recordings were used for what."""
         parts = self.parts
         return Recordings(_names(parts.fit), _names(parts.select), _names(parts.test))
+
+
+def _exact(whole: Predictor, model: Model = ()) -> Predictor:
+    """Calibrated at a model, with shorter steps if these are too wrong."""
+    for step_s in STEPS_S[whole.plant.base]:
+        if step_s < whole.step_s:
+            whole = whole.stepped(step_s)
+        if step_s == whole.step_s and whole.calibrate(model) < MOST_WRONG:
+            break
+    return whole
 
 
 def _affordable(plant: Plant, parts: Split) -> Split:

@@ -20,6 +20,7 @@ HOLD = 1e-3
 """Values that no data show stay where they are: steps would be short without it."""
 
 MOST_STEPS = 8
+
 TOLERANCE = 1e-4
 
 Ask = Callable[[list[Model]], FloatArray]
@@ -45,6 +46,15 @@ class Fit:
     def energy(self) -> float:
         """Half the sum of squared residuals: minus the log-likelihood."""
         return 0.5 * float(self.residual @ self.residual)
+
+    def jacobian_of(self, effects: Model) -> FloatArray:
+        """(N, p) the columns of some of the model's effects."""
+        kept = [
+            any(placed is one for one in effects)
+            for placed in self.model
+            for _ in placed.values
+        ]
+        return self.jacobian[:, kept]
 
 
 class Coordinates:
@@ -153,6 +163,9 @@ def fit_all(
     starts: Sequence[Model],
     steps: int = MOST_STEPS,
     nudges_of: Callable[[Predictor, Model], Nudges] = Nudges.apart,
+    followed: bool = False,
+    jacobians: Sequence[FloatArray | None] | None = None,
+    exactly: bool = False,
 ) -> list[Fit]:
     """Fit the values of several models, each from its own start.
 
@@ -161,12 +174,17 @@ def fit_all(
       starts: models with values to begin with.
       steps: most steps of a fit.
       nudges_of: which values of a model are nudged together.
+      followed: differences are taken at the start only; from there the Jacobian follows
+        what each step shows, which costs nothing. Good enough to compare models; the
+        Jacobian at the end is none to take intervals from.
+      jacobians: at the starts, if they are `followed` and known from an earlier fit.
+      exactly: residuals are `exact`, for six times the work.
     """
 
     def answer(questions: list[list[Model]]) -> list[FloatArray]:
         every = [model for question in questions for model in question]
         ends = np.cumsum([len(question) for question in questions])
-        return np.split(predictor.residuals(every), ends[:-1])
+        return np.split(predictor.residuals(every, exactly), ends[:-1])
 
     tasks = [
         partial(
@@ -174,37 +192,95 @@ def fit_all(
             Coordinates(predictor.plant, start),
             nudges_of(predictor, start),
             steps,
+            followed,
+            jacobian,
         )
-        for start in starts
+        for start, jacobian in zip(
+            starts, jacobians or [None] * len(starts), strict=True
+        )
     ]
     return lockstep(tasks, answer) if tasks else []
 
 
-def _fit(coordinates: Coordinates, nudges: Nudges, steps: int, ask: Ask) -> Fit:
+class _Course:
+    """Residuals and Jacobians at the points that a fit visits."""
+
+    def __init__(
+        self, coordinates: Coordinates, nudges: Nudges, followed: bool, ask: Ask
+    ) -> None:
+        self._coordinates, self._nudges, self._ask = coordinates, nudges, ask
+        self._followed = followed
+        self._high = coordinates.bounds()[1]
+        self._residuals: dict[bytes, FloatArray] = {}
+        self._jacobians: dict[bytes, FloatArray] = {}
+        self._last: FloatArray | None = None
+        """Where the newest Jacobian is of."""
+
+    def begin(self, x: FloatArray, jacobian: FloatArray) -> None:
+        """Take the Jacobian at a point as known."""
+        self._jacobians[x.tobytes()] = jacobian
+
+    def residual(self, x: FloatArray) -> FloatArray:
+        """(N,) at a point."""
+        if x.tobytes() not in self._residuals:
+            if self._followed and self._jacobians:
+                model = self._coordinates.model_at(x)
+                self._residuals[x.tobytes()] = self._ask([model])[0]
+            else:  # the Jacobian will be asked for next
+                self._differences(x)
+        return self._residuals[x.tobytes()]
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """(N, p) at a point."""
+        if x.tobytes() not in self._jacobians:
+            self._jacobians[x.tobytes()] = self._updated(x)
+        self._last = x.copy()
+        return self._jacobians[x.tobytes()]
+
+    def _differences(self, x: FloatArray) -> None:
+        far = self._nudges.steps(x, self._high)
+        points = (x, *self._nudges.nudged(x, far))
+        seen = self._ask([self._coordinates.model_at(point) for point in points])
+        self._residuals[x.tobytes()] = seen[0]
+        self._jacobians[x.tobytes()] = self._nudges.jacobian(seen, far)
+
+    def _updated(self, x: FloatArray) -> FloatArray:
+        """The least change of the last Jacobian that agrees with the step to here.
+
+        Broyden 1965, A class of methods for solving nonlinear simultaneous equations.
+        """
+        assert self._last is not None
+        step, before = x - self._last, self._jacobians[self._last.tobytes()]
+        changed = self._residuals[x.tobytes()] - self._residuals[self._last.tobytes()]
+        missed = changed - before @ step
+        return np.asarray(before + np.outer(missed, step / (step @ step)))
+
+
+def _fit(
+    coordinates: Coordinates,
+    nudges: Nudges,
+    steps: int,
+    followed: bool,
+    jacobian: FloatArray | None,
+    ask: Ask,
+) -> Fit:
     from scipy.optimize import least_squares
 
     low, high = coordinates.bounds()
-    known: dict[bytes, tuple[FloatArray, FloatArray]] = {}
-
-    def both(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        key = x.tobytes()
-        if key not in known:
-            far = nudges.steps(x, high)
-            points = (x, *nudges.nudged(x, far))
-            seen = ask([coordinates.model_at(point) for point in points])
-            known[key] = seen[0], nudges.jacobian(seen, far)
-        return known[key]
-
+    course = _Course(coordinates, nudges, followed, ask)
     x = np.clip(coordinates.of(coordinates.model), low + 1e-9, high - 1e-9)
+    if jacobian is not None:
+        course.begin(x, jacobian)
     held = HOLD * np.eye(len(x))
     found = least_squares(
-        lambda now: np.concatenate([both(now)[0], held @ (now - x)]),
+        lambda now: np.concatenate([course.residual(now), held @ (now - x)]),
         x,
-        jac=lambda now: np.vstack([both(now)[1], held]),
+        jac=lambda now: np.vstack([course.jacobian(now), held]),
         bounds=(low, high),
         max_nfev=steps,
         ftol=TOLERANCE,
         xtol=1e-4,
     )
-    residual, jacobian = both(found.x)
-    return Fit(coordinates.model_at(found.x), residual, jacobian, coordinates)
+    model = coordinates.model_at(found.x)
+    at_end = course.residual(found.x), course.jacobian(found.x)
+    return Fit(model, *at_end, coordinates)

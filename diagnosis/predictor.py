@@ -9,7 +9,7 @@ from diagnosis.effect import Placed
 from diagnosis.library import effect
 from diagnosis.limbs import Limb, limbs_of
 from diagnosis.plant import Plant
-from diagnosis.replay import STEP_S, replay
+from diagnosis.replay import replay
 from diagnosis.run import is_left_over, runs_of, window_s
 from diagnosis.standing import Standing, blocks_of
 from diagnosis.start_state import (
@@ -26,6 +26,9 @@ from groundwalk.arrays import BoolArray, FloatArray
 
 Model = tuple[Placed, ...]
 """The plant with these effects; empty for the plant as it is."""
+
+STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
+"""Of replays, by the plant's base; the shorter ones where the longest is too wrong."""
 
 WARM_UP_S = 0.4
 """Not scored: the start state is known to the sensors' noise only."""
@@ -52,7 +55,7 @@ class Predictor:
         plant: Plant,
         traces: Sequence[Trace],
         channels: Channels | None = None,
-        step_s: float = STEP_S,
+        step_s: float | None = None,
         threads: int = 1,
         standing: Standing | None = None,
     ) -> None:
@@ -62,12 +65,12 @@ class Predictor:
           plant: nominal.
           traces: to be predicted, all with the same channels.
           channels: with their noise; measured on the traces where None.
-          step_s: of the coarse replays.
+          step_s: of the coarse replays; the longest of `STEPS_S` where None.
           threads: of every batch.
           standing: what is wrong when all is well; nothing where None.
         """
         self.plant, self.traces = plant, list(traces)
-        self.step_s, self._threads = step_s, threads
+        self.step_s, self._threads = step_s or STEPS_S[plant.base][0], threads
         self.channels = channels or channels_of(plant, traces)
         self._limbs = limbs_of(plant)
         per_trace = [runs_of(plant, trace) for trace in traces]
@@ -113,23 +116,36 @@ class Predictor:
             some._doubt = self._doubt.part(*runs)
         return some
 
+    def stepped(self, step_s: float) -> "Predictor":
+        """Of the same traces in steps of another length; not calibrated."""
+        return Predictor(
+            self.plant,
+            self.traces,
+            self.channels,
+            step_s,
+            self._threads,
+            self._standing,
+        )
+
     def calibrate(self, model: Model = ()) -> float:
         """Measure the integrator's error at a model; the rms [noise] that is left.
 
-        So is what wrong starts change.
+        So is what wrong starts change. What blows up is as wrong as anything can be.
         """
         coarse, fine, finer = (
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
         )
         self._correction = 2 * finer - fine - coarse
-        # a window's wrong start is in what the windows of the reference get wrong
-        windowed = self._standing is not None and self.plant.base == "floating"
-        self._doubt = None if windowed else self._start_doubt(model)
+        self._doubt = self._start_doubt(model)
         # of the first order, twice the finer less the fine is left with the second
         left = (finer - fine) - (fine - coarse) / 2
-        return float(np.sqrt(np.nanmean((left / self.channels.noise) ** 2)))
+        left = np.nan_to_num(left / self.channels.noise, nan=WORST)
+        return float(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2)))
 
-    def _start_doubt(self, model: Model) -> StartDoubt:
+    def _start_doubt(self, model: Model) -> StartDoubt | None:
+        # a window's wrong start is in what the windows of the reference get wrong
+        if self._standing is not None and self.plant.base == "floating":
+            return None
         runs, models = nudged(self._runs), [self._given(model)]
         variants = variants_of(self.plant, models)
         results = replay(runs, variants, self.step_s, self._threads)
@@ -171,12 +187,26 @@ class Predictor:
         """(n, rows, c), the traces' rows one after another."""
         return self._replayed(models, self.step_s) + self._correction
 
-    def residuals(self, models: Sequence[Model]) -> FloatArray:
+    def exact(self, models: Sequence[Model]) -> FloatArray:
+        """(n, rows, c), each with the integrator's error as it is at that model.
+
+        For six times the work of `predict`: what is implicit in one model, such as a
+        damping, may be explicit in the next, and their errors differ.
+        """
+        fine, finer = (self._replayed(models, self.step_s / part) for part in (2, 4))
+        return 2 * finer - fine
+
+    def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
         """(n, N) measured less predicted, in units of noise; 0 where not scored.
 
         What blew up is as wrong as anything can be.
+
+        Args:
+          models: the effects.
+          exactly: as `exact` predicts them, and not as `predict` does.
         """
-        wrong = (self._measured - self.predict(models)) / self.channels.noise
+        predicted = self.exact(models) if exactly else self.predict(models)
+        wrong = (self._measured - predicted) / self.channels.noise
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
         wrong = np.where(self._scored, wrong, 0.0)
         if self._doubt is not None:

@@ -38,20 +38,18 @@ def _is_new(search: Search, less: Model, more: Model) -> bool:
     """Whether a model gains over a smaller one as it would not have done before."""
     now = _gains(search.select, less, more)
     before = np.concatenate([_gains(well, less, more) for well in search.well])
-    share = _scored(search.select) / sum(_scored(well) for well in search.well)
-    gain, variance = float(now.sum()), len(now) * float(now.var())
-    if before.sum() > 0:
-        gain -= share * float(before.sum())
-        variance += share**2 * len(before) * float(before.var())
-    return bool(gain > SURE * np.sqrt(variance))
-
-
-def _scored(predictor: Predictor) -> float:
-    return float(predictor.scored.sum())
+    usual = max(float(before.mean()), 0.0)
+    variance = now.var() / len(now) + before.var() / len(before)
+    return bool(now.mean() - usual > SURE * np.sqrt(variance))
 
 
 def _gains(predictor: Predictor, less: Model, more: Model) -> FloatArray:
-    """(blocks,) log-likelihood that a model gains over another, moment by moment."""
+    """(blocks,) what a model gains over another, moment by moment, in standard errors.
+
+    Roots of log-likelihoods, with their signs: a squat shows much more at some moments
+    than at others, which is no reason to doubt it.
+    """
     residuals = predictor.residuals([less, more])
     gains = 0.5 * (residuals[0] ** 2 - residuals[1] ** 2)
-    return np.asarray(np.bincount(predictor.block, gains), float)
+    every = np.bincount(predictor.block, gains)
+    return np.asarray(np.sign(every) * np.sqrt(2 * np.abs(every)))

@@ -56,10 +56,11 @@ def replay(
         numbers = np.arange(first, min(first + BLOCK, steps))
         now_s = start_s + numbers[:, None] * step_s
         asked, pushed = drive.at(now_s)
+        jumps = batch.laws.jumps(drive.ends(now_s))
         added = drive.added(now_s)
         for i in range(len(numbers)):
             if asked is not None:
-                batch.laws.servo(asked[i], now_s[i])
+                batch.laws.servo(asked[i], now_s[i], jumps[i])
             if pushed is not None:
                 batch.laws.push_joints(pushed[i])
             if added is not None:

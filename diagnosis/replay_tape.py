@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from diagnosis.columns import columns
 from diagnosis.hermite import hermite
 from diagnosis.run import Run
 from diagnosis.variants import Variants
@@ -28,6 +29,7 @@ class Tape:
             self._base = np.empty((steps + 1, batch.n, 13))
         self._torque = np.zeros((steps + 1, batch.n, j))
         self._force = batch.bind("actuator_force")
+        self._actuators = columns(batch.plant.actuators)
         self.note(0)
         self._torque[0] = 0.0  # no step has been taken
 
@@ -36,7 +38,7 @@ class Tape:
         batch = self._batch
         _, self._velocity[step] = batch.laws.joint_state()
         self._position[step] = batch.laws.encoder_rad()
-        self._torque[step] = self._force[:, batch.plant.actuators]
+        self._torque[step] = self._force[:, self._actuators]
         if self._base is not None:
             self._base[step, :, :7] = batch.qpos[:, :7]
             self._base[step, :, 7:] = batch.qvel[:, :6]

@@ -5,7 +5,7 @@ projection; that of two effects together is least squares.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,10 +15,18 @@ from diagnosis.plant import Plant
 from diagnosis.predictor import Model, Predictor
 from diagnosis.signatures import Signature
 from diagnosis.trial_values import THRESHOLDS, VECTORS
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
+
+SHORT, VECTORS_PAIRED = 200, 20
+"""Pairs of effects with one component that are looked at closely; effects with more
+that are paired with all others."""
 
 LARGEST_STRETCH = 4.0
 """A signature may be stretched so far before it is no guess any more."""
+
+TINY, SAME = 1e-9, 1e-5
+"""Parts of a signature's power that count as nothing: where a number is not exact, and
+where all the rest of it is what a model can do by itself."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,23 @@ class Guess:
 
     model: Model
     gain: float
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """Signatures beside one residual: K products with it, K x K with each other.
+
+    Attributes:
+      wanted: how much of each the residual asks for.
+      products: of the signatures.
+      ridge: part of their own power that is added, so that nothing is divided by.
+      bounded: whether effects that have one sign keep it.
+    """
+
+    wanted: FloatArray
+    products: FloatArray
+    ridge: float
+    bounded: bool = True
 
 
 class Screen:
@@ -52,40 +77,87 @@ class Screen:
         self._products = (self._columns @ self._columns.T).astype(float)
         self._groups = self._grouped()
 
-    def singles(self, residual: FloatArray) -> list[Guess]:
-        """The best guess of each effect and place, those that explain most first."""
-        wanted = self._wanted(residual)
+    def singles(
+        self, residual: FloatArray, jacobian: FloatArray | None = None
+    ) -> list[Guess]:
+        """The best guess of each effect and place, those that explain most first.
+
+        Args:
+          residual: (N,) to be explained.
+          jacobian: (N, p) of the model that left it, whose values may change with what
+            is added; None if they may not. Two effects that nearly cancel each other
+            are seen only so.
+        """
+        view = self._view(residual, jacobian)
         best: dict[str, Guess] = {}
         for group in self._groups:
-            guess = self._guess(wanted, [group])
+            guess = self._guess(view, [group])
             key = self._found[group[0]].placed.key
             if guess and (key not in best or guess.gain > best[key].gain):
                 best[key] = guess
         return sorted(best.values(), key=lambda guess: -guess.gain)
 
-    def pairs(self, residual: FloatArray, among: int, count: int) -> list[Guess]:
+    def pairs(self, residual: FloatArray, count: int) -> list[Guess]:
         """The pairs that explain most together, those that explain most first.
+
+        Either may explain nothing alone: two that nearly cancel each other do not.
 
         Args:
           residual: (N,) to be explained.
-          among: so many groups are paired with each other: those that explain most
-            alone, as each of a pair nearly always explains something.
           count: how many pairs.
         """
-        wanted = self._wanted(residual)
-        alone = [(self._guess(wanted, [group]), group) for group in self._groups]
-        ranked = sorted(
-            ((guess.gain, group) for guess, group in alone if guess), reverse=True
-        )
-        groups = [group for _, group in ranked[:among]]
+        view = self._view(residual)
         best: dict[frozenset[str], Guess] = {}
-        for i, first in enumerate(groups):
-            for second in groups[:i]:
-                keys = frozenset(self._found[g[0]].placed.key for g in (first, second))
-                guess = self._guess(wanted, [first, second]) if len(keys) == 2 else None
-                if guess and (keys not in best or guess.gain > best[keys].gain):
-                    best[keys] = guess
+        for first, second in self._promising(view):
+            keys = frozenset(self._found[g[0]].placed.key for g in (first, second))
+            guess = self._guess(view, [first, second]) if len(keys) == 2 else None
+            if guess and (keys not in best or guess.gain > best[keys].gain):
+                best[keys] = guess
         return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
+
+    def _promising(self, view: "_View") -> list[tuple[list[int], list[int]]]:
+        """Pairs of groups worth a look."""
+        alone = [group for group in self._groups if len(group) == 1]
+        rows = np.array([row for group in alone for row in group], int)
+        gain = self._gains_together(view, rows)
+        most = np.argsort(-gain, axis=None)[:SHORT]
+        pairs = [
+            (alone[int(i)], alone[int(j)])
+            for i, j in zip(*np.unravel_index(most, gain.shape), strict=True)
+            if gain[i, j] > 0
+        ]
+        free = replace(view, bounded=False)
+        guesses = [
+            (guess.gain, group)
+            for group in self._groups
+            if len(group) > 1 and (guess := self._guess(free, [group]))
+        ]
+        vectors = [group for _, group in sorted(guesses, reverse=True)[:VECTORS_PAIRED]]
+        pairs += [
+            (vector, other)
+            for vector in vectors
+            for other in self._groups
+            if other is not vector
+        ]
+        return pairs
+
+    def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
+        """(K, K) gains of two signatures by least squares, above the diagonal.
+
+        0 where an effect would have the sign that it cannot have, and where two
+        signatures are the same.
+        """
+        products, wanted = view.products[np.ix_(rows, rows)], view.wanted[rows]
+        power = np.diag(products)
+        both = np.outer(power, power)
+        rest = both - products**2
+        apart = np.triu(rest > SAME * both, 1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            size = (wanted[:, None] * power - wanted * products) / rest
+        sided = np.array([self._found[row].two_sided for row in rows], bool)
+        possible = apart & ((size > 0) | sided[:, None]) & ((size.T > 0) | sided)
+        gain = 0.5 * (size * wanted[:, None] + size.T * wanted)
+        return np.where(possible, gain, 0.0)
 
     def _grouped(self) -> list[list[int]]:
         vectors: dict[tuple[str, tuple[float, ...]], list[int]] = {}
@@ -99,17 +171,26 @@ class Screen:
                 alone.append([row])
         return [*alone, *vectors.values()]
 
-    def _wanted(self, residual: FloatArray) -> FloatArray:
-        return np.asarray(-(self._columns @ residual.astype(np.float32)), float)
+    def _view(
+        self, residual: FloatArray, jacobian: FloatArray | None = None
+    ) -> "_View":
+        """All signatures beside a residual, less what a model's values can do."""
+        wanted = -(self._columns @ residual.astype(np.float32)).astype(float)
+        if jacobian is None or not jacobian.any():
+            return _View(wanted, self._products, TINY)
+        basis, size, _ = np.linalg.svd(jacobian, full_matrices=False)
+        basis = basis[:, size > SAME * size[0]]
+        done = (self._columns @ basis.astype(np.float32)).astype(float)
+        wanted = wanted + done @ (basis.T @ residual)
+        return _View(wanted, self._products - done @ done.T, SAME)
 
-    def _guess(self, wanted: FloatArray, groups: Sequence[list[int]]) -> Guess | None:
+    def _guess(self, view: "_View", groups: Sequence[list[int]]) -> Guess | None:
         """Least squares within what is allowed; None if that explains nothing."""
         rows = [row for group in groups for row in group]
-        products, target = self._products[np.ix_(rows, rows)], wanted[rows]
-        power = np.diag(products).copy()
-        ridge = np.diag(1e-9 * power + 1e-12)
+        products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]
+        ridge = np.diag(view.ridge * np.diag(self._products)[rows] + 1e-12)
         size = np.linalg.solve(products + ridge, target)
-        sided = [self._found[row].two_sided for row in rows]
+        sided = [self._found[row].two_sided or not view.bounded for row in rows]
         least = np.where(sided, -LARGEST_STRETCH, 0.0)
         clipped = np.clip(size, least, LARGEST_STRETCH)
         gain = float(clipped @ target - 0.5 * clipped @ products @ clipped)

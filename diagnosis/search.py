@@ -11,18 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.bursts import push_intervals
-from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
-from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model, Predictor
-from diagnosis.screening import Guess, Screen, stretched
-from diagnosis.search_result import Found, Judged, Rules, keys_of, ranked
+from diagnosis.search_result import Found, Judged, Rules, ranked
 from diagnosis.signatures import Signature, signatures
+from diagnosis.starts import Starts, grown
 from diagnosis.usage import Usage
 from groundwalk.arrays import FloatArray
-
-STRETCHES = (0.3, 0.6, 1.0, 1.7, 3.0)
-"""Of a guess, tried before it is fitted."""
 
 
 class Search:
@@ -59,8 +54,8 @@ class Search:
         self._nothing_fit = 0.5 * float(residual @ residual)
         intervals = push_intervals(self.fit, residual)
         self.signatures = signatures(self.fit, (), self.usage, intervals)
-        screen = Screen(self.fit, self.signatures)
-        best = {1: self.judged(self._scanned(self._short(screen.singles(residual))))}
+        starts = Starts(self.fit, self.signatures, self.rules)
+        best = {1: self.judged(starts.alone(residual))}
         chosen, size, energy = 0, 1, nothing
         while best.get(size):
             if self.worth(energy, best[size][0].selected, nothing):
@@ -71,18 +66,14 @@ class Search:
             # without its friction, say
             elif size > 1 or nothing < self.rules.suspicious * self.floor:
                 break
-            if size == self.rules.largest or self._exhausted(best[size][0], screen):
-                break
-            starts = self._growths(best[size], screen)
-            if size == 1:
-                starts += self._pairs(screen, residual, starts)
+            larger = self._larger(starts, best[size], residual)
             size += 1
-            best[size] = self.judged(self._scanned(starts))
+            best[size] = self.judged(larger)
         if chosen:
-            swaps = self._scanned(self._swaps(best[chosen][0], screen))
-            swapped = self.judged(swaps)
-            best[chosen] = ranked(best[chosen] + swapped, self.floor)
-        return Found(nothing, self.floor, best, chosen)
+            swapped = self.judged(starts.swapped(best[chosen][0]))
+            best[chosen] = _distinct(ranked(best[chosen] + swapped, self.floor))
+        floor_fit = 0.5 * float(self.fit.scored.sum())
+        return Found(nothing, self.floor, best, chosen, self._nothing_fit, floor_fit)
 
     @property
     def least_gain(self) -> float:
@@ -99,14 +90,21 @@ class Search:
             rules.least_of_all * (nothing - self.floor),
         )
 
-    def _exhausted(self, judged: Judged, screen: Screen) -> bool:
-        """Whether a model leaves little, and no effect promises to explain it."""
-        if judged.selected > self.rules.suspicious * self.floor:
-            return False
-        guesses = screen.singles(judged.fit.residual)
-        gain = max((guess.gain for guess in guesses), default=0.0)
-        selected = gain * self.select.scored.sum() / self.fit.scored.sum()
-        return bool(selected < self.rules.promising * self.least_gain)
+    def _larger(
+        self, starts: Starts, best: Sequence[Judged], residual: FloatArray
+    ) -> list[Model]:
+        """What to try next; nothing where little is left, and no effect promises."""
+        leader = best[0]
+        alone = len(leader.model) == 1
+        if len(leader.model) == self.rules.largest:
+            return []
+        if leader.selected > self.rules.suspicious * self.floor:
+            return starts.larger(best, near=alone, residual=residual if alone else None)
+        gain = starts.promised(leader) * self.select.scored.sum()
+        least = self.rules.promising * self.least_gain * self.fit.scored.sum()
+        if gain < least:
+            return []
+        return starts.larger(best, near=False, residual=residual if alone else None)
 
     def _refined(self, best: list[Judged]) -> list[Judged]:
         """The best once more, with the integrator's error as it is at the best.
@@ -114,120 +112,55 @@ class Search:
         Dry friction and stops change that error. With the best come effects that
         contain one of theirs.
         """
-        for part in (self.fit, self.select):
-            part.calibrate(best[0].model)
-        first, rest = best[: self.rules.beam], best[self.rules.beam :]
-        again = [*(judged.model for judged in first), *_grown(best[0].model)]
-        refined = ranked([*self.judged(again), *rest], self.floor)
-        if refined[0].keys != best[0].keys and refined[0].keys in map(keys_of, again):
-            return self._refined(refined)
-        return refined
-
-    def _scanned(self, starts: Sequence[Model]) -> list[Model]:
-        """Starts with the effect that was added last as large as does best.
-
-        Guesses are of first order; a gap or a delay may be far from what they say.
-        """
-        options = [
-            [(*start[:-1], stretched(self.fit.plant, start[-1], k)) for k in STRETCHES]
-            for start in starts
-        ]
-        if not options:
-            return []
-        residuals = self.fit.residuals([model for some in options for model in some])
-        energies = (residuals**2).sum(axis=1).reshape(len(starts), -1)
-        return [
-            some[int(i)]
-            for some, i in zip(options, energies.argmin(axis=1), strict=True)
-        ]
-
-    def _short(self, ranked: Sequence[Guess]) -> list[Model]:
-        """The best guesses, and the best place of each effect that comes close."""
-        short = [
-            guess.model for guess in ranked[: self.rules.singles - self.rules.others]
-        ]
-        named = {model[0].effect for model in short}
-        for guess in ranked[len(short) :]:
-            if len(short) == self.rules.singles:
+        for _ in range(self.rules.rounds):
+            before = best[0]
+            for part in (self.fit, self.select):
+                part.calibrate(before.model)
+            first, rest = best[: self.rules.beam], best[self.rules.beam :]
+            wider = grown(before.model)
+            again = [*(judged.model for judged in first), *wider]
+            known = [None, *(judged.fit.jacobian for judged in first[1:])]
+            tried = self.judged(again, [*known, *(None for _ in wider)])
+            best = _distinct(ranked([*tried, *rest], self.floor))
+            if best[0].keys == before.keys or best[0] not in tried:
                 break
-            if guess.model[0].effect not in named:
-                short.append(guess.model)
-                named.add(guess.model[0].effect)
-        return short
+        return best
 
-    def _growths(self, best: Sequence[Judged], screen: Screen) -> list[Model]:
-        """Models of one effect more, none twice."""
-        seen: set[frozenset[str]] = set()
-        grown: list[Model] = []
-        for judged in best[: self.rules.beam]:
-            added = 0
-            for guess in screen.singles(judged.fit.residual):
-                model = (*judged.model, *guess.model)
-                keys = keys_of(model)
-                if len(keys) == len(model) and keys not in seen:
-                    seen.add(keys)
-                    grown.append(model)
-                    added += 1
-                if added == self.rules.growths:
-                    break
-        return grown
-
-    def _pairs(
-        self, screen: Screen, residual: FloatArray, known: Sequence[Model]
-    ) -> list[Model]:
-        """Pairs that are better than their members let think."""
-        seen = {keys_of(model) for model in known}
-        pairs = screen.pairs(residual, self.rules.paired, self.rules.pairs)
-        return [guess.model for guess in pairs if keys_of(guess.model) not in seen]
-
-    def _swaps(self, judged: Judged, screen: Screen) -> list[Model]:
-        """The model with one effect exchanged for another: what else it may be."""
-        swaps: dict[frozenset[str], Model] = {}
-        rests = [
-            tuple(other for other in judged.model if other is not placed)
-            for placed in judged.model
-        ]
-        residuals = self.fit.residuals(rests)
-        for rest, residual in zip(rests, residuals, strict=True):
-            others = screen.singles(residual)[: self.rules.swaps]
-            for model in ((*rest, *guess.model) for guess in others):
-                keys = keys_of(model)
-                if len(keys) == len(model) and keys != judged.keys:
-                    swaps.setdefault(keys, model)
-        for model in self._moved(judged):
-            swaps.setdefault(keys_of(model), model)
-        return list(swaps.values())
-
-    def _moved(self, judged: Judged) -> list[Model]:
-        """The model with an effect on a body moved to the next bodies of the chain."""
-        plant, traces = self.fit.plant, self.fit.traces
-        return [
-            tuple(
-                Placed(other.effect, place, other.values) if other is placed else other
-                for other in judged.model
-            )
-            for placed in judged.model
-            if EFFECTS[placed.effect].place_kind == "body"
-            for place in EFFECTS[placed.effect].places(plant, traces)
-            if place in plant.neighbours(placed.place)
-        ]
-
-    def judged(self, starts: Sequence[Model]) -> list[Judged]:
+    def judged(
+        self,
+        starts: Sequence[Model],
+        jacobians: Sequence[FloatArray | None] | None = None,
+    ) -> list[Judged]:
         """Fitted and judged, the best on the selection data first.
 
         Most starts lead nowhere: only those that are among the best after a few steps
         are fitted to the end.
+
+        Args:
+          starts: models with values to begin with.
+          jacobians: there, where they are known.
         """
-        rough = fit_all(self.fit, starts, self.rules.first_steps)
+        rough = fit_all(
+            self.fit,
+            starts,
+            self.rules.first_steps,
+            followed=True,
+            jacobians=jacobians,
+        )
         rough.sort(key=lambda fit: fit.energy)
         count = self._worthy([fit.energy for fit in rough])
-        worthy = [fit.model for fit in rough[:count]]
-        fits = fit_all(self.fit, worthy) + rough[count:]
+        fits = fit_all(
+            self.fit,
+            [fit.model for fit in rough[:count]],
+            followed=True,
+            jacobians=[fit.jacobian for fit in rough[:count]],
+        )
+        fits += rough[count:]
         energies = self.energies([fit.model for fit in fits])
         judged = [
             Judged(fit, energy) for fit, energy in zip(fits, energies, strict=True)
         ]
-        return ranked(list(judged), self.floor)
+        return _distinct(ranked(judged, self.floor))
 
     def _worthy(self, energies: Sequence[float]) -> int:
         """How many of the best are worth more steps: none that is far behind.
@@ -245,11 +178,11 @@ class Search:
     def _energy(self, model: Model) -> float:
         return self.energies([model])[0]
 
-    def energies(self, models: Sequence[Model]) -> list[float]:
+    def energies(self, models: Sequence[Model], exactly: bool = False) -> list[float]:
         """Of models on the selection data, with what they gained when all was well."""
         if not models:
             return []
-        residuals = self.select.residuals(models)
+        residuals = self.select.residuals(models, exactly)
         energies = [0.5 * float(row @ row) for row in residuals]
         before = self._gains_before(models)
         return [e + gain for e, gain in zip(energies, before, strict=True)]
@@ -267,11 +200,7 @@ class Search:
         return [max(float(gain), 0.0) for gain in gains]
 
 
-def _grown(model: Model) -> list[Model]:
-    """The model with one effect exchanged for another that contains it."""
-    return [
-        tuple(grown if other is placed else other for other in model)
-        for placed in model
-        for kind in EFFECTS.values()
-        for grown in kind.grown_from(placed)
-    ]
+def _distinct(judged: Sequence[Judged]) -> list[Judged]:
+    """The first of each structure: several starts may lead to the same."""
+    first = {one.keys: one for one in reversed(judged)}
+    return [one for one in judged if first[one.keys] is one]

@@ -16,11 +16,12 @@ class Rules:
       others: ... of which so many are effects that are not among the best guesses.
       beam: models that grow further.
       growths: ways in which each of them grows.
-      paired: effects that are paired with each other at first order ...
-      pairs: ... of which so many are fitted.
+      pairs: pairs that promise most at first order, which are fitted.
       first_steps: of a fit, after which most models are given up ...
       finished: ... but for so many ...
       far: ... that are behind by no more than this share of what the best explains.
+      rounds: of refinement, as another model may then be the best.
+      compared: models that are compared with the integrator's error of each.
       swaps: effects that are tried in the stead of each one of the best model.
       largest: effects in a model.
       suspicious: times the noise's energy: so much is looked at in pairs, even if no
@@ -38,11 +39,12 @@ class Rules:
     others: int = 4
     beam: int = 3
     growths: int = 4
-    paired: int = 30
-    pairs: int = 6
+    pairs: int = 8
     first_steps: int = 3
-    finished: int = 6
+    finished: int = 10
     far: float = 0.5
+    rounds: int = 4
+    compared: int = 8
     swaps: int = 6
     largest: int = 3
     suspicious: float = 1.5
@@ -50,7 +52,7 @@ class Rules:
     least_gain: float = 15.0
     least_pattern: float = 0.15
     least_share: float = 0.3
-    least_of_all: float = 0.0005
+    least_of_all: float = 0.001
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,12 +87,16 @@ class Found:
       floor: energy that noise alone would leave there.
       best: the models of each size that do best, the best first.
       chosen: how many effects are believed.
+      nothing_fit: as `nothing`, on the fitting data.
+      floor_fit: as `floor`, likewise.
     """
 
     nothing: float
     floor: float
     best: dict[int, list[Judged]]
     chosen: int
+    nothing_fit: float = 0.0
+    floor_fit: float = 0.0
 
     @property
     def winner(self) -> Judged | None:
@@ -104,9 +110,16 @@ class Found:
         return plausibility(judged, scale) - plausibility(self.winner, scale)
 
     def closed(self, judged: Judged) -> float:
-        """Share of the energy above the noise that a model takes away."""
-        excess = self.nothing - self.floor
-        return (self.nothing - judged.selected) / excess if excess > 0 else 0.0
+        """Share of the energy above the noise that a model takes away.
+
+        Of the selection data, or of all: what an effect does may show in the fitting
+        data only, such as a stop that the joint does not reach in the others; and a
+        robot that falls may do so in many ways there.
+        """
+        excess, gained = self.nothing - self.floor, self.nothing - judged.selected
+        more = self.nothing_fit - self.floor_fit, self.nothing_fit - judged.fit.energy
+        shares = (gained, excess), (gained + more[1], excess + more[0])
+        return max((a / b for a, b in shares if b > 0), default=0.0)
 
 
 def keys_of(model: Model) -> frozenset[str]:

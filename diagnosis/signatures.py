@@ -19,11 +19,8 @@ from diagnosis.trial_values import Interval, trial_values
 from diagnosis.usage import Usage
 from groundwalk.arrays import FloatArray, IntArray
 
-ALONE = frozenset({"joint_elasticity"})
-"""Effects that show at the neighbours more than at their own joint."""
-
-ALONE_ON_FEET = frozenset({"encoder_offset"})
-"""Likewise where legs and ground make a closed chain."""
+ALONE = frozenset({"joint_elasticity", "encoder_offset"})
+"""Effects that may show at the neighbours more than at their own joint."""
 
 AT_TIPS = frozenset({"external_force", "drag"})
 """Effects that are first tried at the outermost bodies only: there they show most."""
@@ -97,9 +94,7 @@ def _trials(
         }
         if not any(options.values()):
             continue
-        floats = predictor.plant.base == "floating"
-        alone = ALONE | ALONE_ON_FEET if floats else ALONE
-        if kind.place_kind == "joint" and name not in alone:
+        if kind.place_kind == "joint" and name not in ALONE:
             for level in range(max(map(len, options.values()))):
                 model = tuple(
                     Placed(name, place, values[level])

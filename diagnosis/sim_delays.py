@@ -53,8 +53,8 @@ class LateEncoders:
             self.note(position_rad, velocity_rad_s)
 
     def note(self, position_rad: FloatArray, velocity_rad_s: FloatArray) -> None:
-        """What is true after a step."""
-        self._states.append((position_rad, velocity_rad_s))
+        """What is true after a step, until the next."""
+        self._states.append((position_rad.copy(), velocity_rad_s.copy()))
 
     def seen(self) -> tuple[FloatArray, FloatArray]:
         """Positions and velocities that the encoders show."""

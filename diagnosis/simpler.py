@@ -1,5 +1,8 @@
 """An answer with a simpler effect in the stead of one that contains it."""
 
+from dataclasses import replace
+
+from diagnosis.compared import fairly
 from diagnosis.effect import Placed
 from diagnosis.search import Search
 from diagnosis.search_result import Found
@@ -22,12 +25,12 @@ def simpler(search: Search, found: Found) -> Found:
     start = tuple(_without_peak(placed) for placed in winner.model)
     if start == winner.model:
         return found
-    judged = search.judged([start])[0]
+    (judged,) = fairly(search, [search.judged([start])[0].model])
     if search.worth(judged.selected, winner.selected, found.nothing):
         return found
     others = [other for other in found.best[found.chosen] if other.keys != judged.keys]
     best = {**found.best, found.chosen: [judged, *others]}
-    return Found(found.nothing, found.floor, best, found.chosen)
+    return replace(found, best=best)
 
 
 def _without_peak(placed: Placed) -> Placed:

@@ -10,6 +10,8 @@ from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray
 
 _MOST = 0.99
+_APART = 2
+"""Rows on both sides whose positions say how fast a joint goes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +40,23 @@ class Usage:
             if command is None:
                 command = trace.position_rad
             rate = np.abs(np.diff(command, axis=0) / np.diff(trace.time_s)[:, None])
-            error = np.abs(command - trace.position_rad) * trace.servo.kp_nm_rad
             speeds.append(rate)
-            torques.append(np.minimum(error, trace.servo.max_torque_nm))
+            torques.append(_servo_nm(trace, command))
         return cls(
             low_rad=np.nanmin(position, axis=0),
             high_rad=np.nanmax(position, axis=0),
             command_speed_rad_s=np.nanquantile(np.concatenate(speeds), _MOST, axis=0),
             torque_nm=np.nanquantile(np.concatenate(torques), _MOST, axis=0),
         )
+
+
+def _servo_nm(trace: Trace, command_rad: FloatArray) -> FloatArray:
+    """(T, j) sizes of the torques that the servos should give."""
+    servo, position = trace.servo, trace.position_rad
+    rows = np.arange(len(position))
+    before = np.maximum(rows - _APART, 0)
+    after = np.minimum(rows + _APART, len(rows) - 1)
+    lasted_s = (trace.time_s[after] - trace.time_s[before])[:, None]
+    velocity = (position[after] - position[before]) / lasted_s
+    torque = servo.kp_nm_rad * (command_rad - position) - servo.kd_nm_s_rad * velocity
+    return np.asarray(np.minimum(np.abs(torque), servo.max_torque_nm))

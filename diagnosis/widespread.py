@@ -79,7 +79,7 @@ def widespread(search: Search, found: Found) -> Found:
     ]
     size = len(best.model)
     sizes = {size - 1: ranked(without, found.floor), size: [best]}
-    return Found(found.nothing, found.floor, sizes, size)
+    return replace(found, best=sizes, chosen=size)
 
 
 def _best(search: Search, starts: Sequence[Model]) -> Judged | None:

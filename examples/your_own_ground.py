@@ -12,7 +12,7 @@ import tyro
 import robots
 import worlds
 from experiments.trials import TrialRules, Trials, walk_trials
-from terrain import Heightfield, configuration
+from terrain import Heightfield
 from walk_engine import gaits
 
 
@@ -27,17 +27,14 @@ def main(
       limit_s: time limit.
     """
     if image is None:
-        grey = 0.5 + 0.5 * np.sin(np.arange(240) / 5) * np.ones((120, 1))
-    else:
-        picture = matplotlib.image.imread(image)[::-1]  # rows run along +y
-        grey = picture if picture.ndim == 2 else picture[..., :3].mean(axis=2)
-    spacing_m, x_m, y_m = 0.025, -1.0, -0.025 * len(grey) / 2
-    x, y = np.meshgrid(*(np.arange(n) * spacing_m for n in grey.shape[::-1]))
-    flat_start = configuration("flat").past_start(np.hypot(x + x_m, y + y_m))
-    ground = Heightfield(height_m * grey * flat_start, (x_m, y_m), spacing_m)
-    world = worlds.make(
-        "real", robots.get("nao"), [ground], [np.random.SeedSequence(1)]
-    )
+        grey = np.tile(0.5 + 0.5 * np.sin(np.arange(240) / 5), (120, 1))
+    else:  # rows run along +y, from the picture's bottom to its top
+        grey = np.atleast_3d(matplotlib.image.imread(image))[::-1, :, :3].mean(axis=2)
+    x_m = 0.025 * np.arange(grey.shape[1]) - 1.0
+    heights_m = height_m * grey * (2 * x_m - 0.5).clip(0, 1)  # it starts on the flat
+    ground = Heightfield(heights_m, (x_m[0], -0.0125 * len(grey)), spacing_m=0.025)
+    seed = np.random.SeedSequence(1)
+    world = worlds.make("real", robots.get("nao"), [ground], [seed])
     trials = walk_trials(world, [gaits.get("start")], TrialRules(limit_s))
     world.close()
     print(f"{trials.speed_cm_s[0]:.1f} cm/s, {trials.ended[0] or 'still walking'}")

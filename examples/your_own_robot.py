@@ -31,10 +31,8 @@ def main(robot: Path | None = None, limit_s: float = 7.5) -> Trials:
     ground, seed = terrain.make("flat", seed=0), np.random.SeedSequence(1)
     world = worlds.make("sim", description, [ground], [seed])
     trials = walk_trials(world, [gaits.get("start")], TrialRules(limit_s))
-    print(
-        f"{description.mass_kg:.2f} kg, {trials.speed_cm_s[0]:.1f} cm/s, "
-        f"{trials.ended[0] or 'still walking'}"
-    )
+    speed_cm_s, end = trials.speed_cm_s[0], trials.ended[0] or "still walking"
+    print(f"{description.mass_kg:.2f} kg, {speed_cm_s:.1f} cm/s, {end}")
     return trials
 
 

@@ -1,6 +1,7 @@
 """The command `groundwalk`, and what all its verbs share."""
 
 import contextlib
+import functools
 import importlib
 import io
 import sys
@@ -134,11 +135,13 @@ def _verb(kind: str, name: str, verbs: Mapping[str, Verb]) -> Verb:
 def _parse(config_type: Any, program: str | None, arguments: list[str] | None) -> Any:
     import tyro
 
+    # Of a class, tyro shows inherited options first; of a call, as the call has them.
+    config = functools.partial(config_type)
     said = io.StringIO()
     try:
         with contextlib.redirect_stderr(said):
             return _guarded(
-                lambda: tyro.cli(config_type, prog=program, args=arguments), said.write
+                lambda: tyro.cli(config, prog=program, args=arguments), said.write
             )
     except SystemExit as stop:
         if stop.code:

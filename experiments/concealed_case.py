@@ -16,6 +16,7 @@ from experiments.concealed_draw import (
     drawn_sensors,
 )
 from experiments.concealed_motion import CaseMotion
+from experiments.concealed_reading import PLANT_FILE, RECORDINGS, REFERENCE
 from groundwalk.errors import GroundwalkError
 from groundwalk.files import write_text
 from worlds.hidden_effects import Hidden
@@ -25,7 +26,6 @@ from worlds.hidden_sensors import HiddenSensors, hidden_recording
 from worlds.recording_files import write_recording
 from worlds.recording_metadata import RecordingMetadata
 
-RECORDINGS, REFERENCE, PLANT_FILE = "recordings", "reference", "plant.json"
 REFERENCES = (0, 2)
 _SCALE_STEP_S = 0.0005
 _ATTEMPTS = 30

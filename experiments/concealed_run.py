@@ -1,6 +1,5 @@
 """`groundwalk concealed run`: diagnose every case without looking at its truth."""
 
-import json
 import multiprocessing
 import os
 from collections.abc import Callable
@@ -13,16 +12,14 @@ import numpy as np
 import tyro
 
 from diagnosis.diagnose import diagnose
-from diagnosis.reference_reading import read_reference
-from diagnosis.trace_reading import read_traces
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
+from experiments.concealed_reading import read_case
 from experiments.progress import progress
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text
 
-ANSWERS, CASES, PLANT = "answers", "cases", "plant.json"
-RECORDINGS, REFERENCE = "recordings", "reference"
+ANSWERS, CASES = "answers", "cases"
 
 
 @dataclass(frozen=True)
@@ -90,15 +87,9 @@ def answer_all(
 
 def diagnosed(case: Path, seed: int) -> Verdict:
     """The diagnosis' own verdict; recordings that it refuses are not identifiable."""
-    spec = json.loads((case / PLANT).read_text())
-    source = case / spec["robot"]
-    robot = source if source.exists() else spec["robot"]
-    paths = sorted((case / RECORDINGS).glob("*.parquet"))
-    wells = sorted((case / REFERENCE).glob("*.parquet"))
     own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
     try:
-        plant, traces = read_traces(paths, robot)
-        reference = read_reference(wells, robot, plant)
+        plant, traces, reference = read_case(case)
         return diagnose(plant, traces, own, reference=reference).verdict
     except BadRecordingError as error:
         return Verdict(kind="not_identifiable", limits=(str(error),))

@@ -20,14 +20,13 @@ from diagnosis.fitting import fit_all
 from diagnosis.library import EFFECTS, effect
 from diagnosis.plant import Plant
 from diagnosis.predictor import Model, Predictor
+from diagnosis.reference import standing_of
 from diagnosis.split import split
 from diagnosis.trace import Trace
-from diagnosis.trace_reading import read_traces
 from diagnosis.verdict import Found
-from experiments.concealed_case import PLANT_FILE, RECORDINGS
+from experiments.concealed_reading import read_case
 from experiments.concealed_score_truth import TrueCase
 from groundwalk.arrays import FloatArray, IntArray
-from groundwalk.errors import RunFolderError
 
 LEVELS = {"L1": 100.0, "L2": 20.0, "L3": 5.0, "L4": -np.inf}
 """From easy to see to next to invisible; the least gain [nats per recording]."""
@@ -69,21 +68,6 @@ class Oracle:
         return cls(**{**plain, "answered": answered})
 
 
-def read_case(folder: Path) -> tuple[Plant, list[Trace]]:
-    """Nominal plant and recordings of a case.
-
-    Raises:
-      RunFolderError: the folder holds no case.
-    """
-    path = folder / PLANT_FILE
-    if not path.is_file():
-        raise RunFolderError(f"{folder} holds no case: there is no {PLANT_FILE}")
-    robot = json.loads(path.read_text())["robot"]
-    file = folder / robot
-    recordings = sorted((folder / RECORDINGS).glob("*.parquet"))
-    return read_traces(recordings, file if file.exists() else robot)
-
-
 def answer_key(found: Sequence[Found]) -> str:
     """Tells one set of effects with their values from another."""
     text = json.dumps(
@@ -105,14 +89,16 @@ def consult(
       case: the truth.
       answers: by method, the effects it found.
     """
-    plant, traces = read_case(folder)
+    plant, traces, reference = read_case(folder)
     parts = split(traces)
-    channels = channels_of(plant, traces)
+    channels = channels_of(plant, [*traces, *reference])
+    standing = standing_of(plant, reference, channels) if reference else None
     start = tuple(_true(plant, each) for each in case.effects)
-    fitting = Predictor(plant, parts.fit, channels)
+    fitting = Predictor(plant, parts.fit, channels, standing=standing)
     fitting.calibrate(start)
     model = fit_all(fitting, [start])[0].model
-    every = Predictor(plant, [*parts.fit, *parts.select, *parts.test], channels)
+    used = [*parts.fit, *parts.select, *parts.test]
+    every = Predictor(plant, used, channels, standing=standing)
     every.calibrate(model)
     models = [_answered(plant, traces, found) for found in answers.values()]
     residuals = every.residuals([(), model, *models])

@@ -1,7 +1,6 @@
 """`groundwalk evaluate`: gaits walk a course of 3 m in one or both worlds."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -14,6 +13,7 @@ from experiments.evaluation import Study, evaluate, keep
 from experiments.gait_files import load_gaits
 from experiments.result_page import write_page
 from experiments.run_folder import RESULT, open_run
+from experiments.run_options import RunOptions
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json, print_scores
 from groundwalk.errors import BadValueError
@@ -22,7 +22,7 @@ VERB = "evaluate"
 
 
 @dataclass(frozen=True)
-class Evaluate:
+class Evaluate(RunOptions):
     """Let gaits walk a course of 3 m: speed with its spread, and falls.
 
     Attributes:
@@ -32,10 +32,6 @@ class Evaluate:
       robot: its name, as `groundwalk list robots` shows them, or a URDF (.urdf).
       trials: of each gait in each world, each on its own ground.
       threads: processor threads; 0 for all.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     gaits: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
@@ -44,10 +40,6 @@ class Evaluate:
     robot: str = "nao"
     trials: int = 10
     threads: int = 0
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
@@ -57,8 +49,7 @@ class Evaluate:
         load_gaits(self.gaits)
         for world in self.worlds:
             self.study(world)
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
     def study(self, world: str) -> Study:
         """How one world is used."""

@@ -7,7 +7,7 @@ import numpy as np
 import robots
 from experiments.trials import TrialRules, Trials, walk_trials
 from experiments.walk_data import WALK, leg_senses
-from experiments.walk_places import SimPlace
+from experiments.walk_places import SimPlace, world_at
 from groundwalk.arrays import FloatArray
 from sgat.action_transformer import Transformer
 from sgat.grounded_world import GroundedWorld
@@ -55,7 +55,7 @@ def walk_in_sim(
         children = seed.spawn(repeats)
         seeds = children * len(vectors)
         grounds = sim.place.grounds(children) * len(vectors)
-    world = sim.place.world(robots.get(ROBOT), grounds, seeds)
+    world = world_at(sim.place, robots.get(ROBOT), grounds, seeds)
     if sim.transformer is not None:
         senses = leg_senses(world.description)
         world = GroundedWorld(world, senses, sim.transformer, seeds)

@@ -2,7 +2,6 @@
 
 import dataclasses
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from experiments.run_folder import (
     RunFolder,
     open_run,
 )
+from experiments.run_options import RunOptions
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json
 from experiments.search import GaitSearch, check_search
@@ -57,7 +57,7 @@ FALL_PENALTY_CM_S = 60.0
 
 
 @dataclass(frozen=True)
-class Humanoids:
+class Humanoids(RunOptions):
     """Tune a gait for each robot in the sim, and count its falls in walks of 5 s.
 
     Attributes:
@@ -68,10 +68,6 @@ class Humanoids:
       trials: walks in the sim that count, each from its own start pose.
       real_trials: walks in the real world, each on its own lumps.
       threads: processor threads; 0 for all.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     robots: tuple[str, ...] = (
@@ -83,10 +79,6 @@ class Humanoids:
     trials: int = 30
     real_trials: int = 10
     threads: int = 0
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
@@ -95,14 +87,12 @@ class Humanoids:
         if not self.robots or len({*map(folder_name, self.robots)}) < len(self.robots):
             raise BadValueError("name at least one robot, and none of them twice")
         check_search(self.population, self.sigma)
-        for study in self.studies().values():
-            assert study.trials
+        self.studies()
         if self.generations < 1:
             raise BadValueError(
                 f"generations is {self.generations}; it must be positive"
             )
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
     def studies(self) -> dict[str, Study]:
         """How a tuned gait is tried in each world."""

@@ -67,14 +67,14 @@ def reach(description: Description, gait: Gait) -> Reach:
     beyond = np.maximum(low - angles, angles - high)
     legs = [*body.left_leg, *body.right_leg]
     worst = legs[int(beyond.max(axis=0)[legs].argmax())]
-    poses = _poses(description, np.clip(angles, low, high))
-    reached = _poses(description, angles)
+    wanted = _poses(description, angles)
+    reached = _poses(description, np.clip(angles, low, high))
     places, tilts = [], []
     for foot in description.feet:
         name = description.links[foot.joint].link.name
-        away = poses[name].position_m - reached[name].position_m
+        away = reached[name].position_m - wanted[name].position_m
         places.append(np.linalg.norm(away, axis=1).max())
-        _, x, y, _ = poses[name].orientation.T
+        _, x, y, _ = reached[name].orientation.T
         tilts.append(2 * np.arcsin(np.clip(np.hypot(x, y), 0, 1)).max())
     joint = description.joints[worst] if beyond[:, worst].max() > 0 else ""
     return Reach(float(max(places)), float(max(tilts)), joint)

@@ -1,5 +1,7 @@
 """`groundwalk optimize-gait`: CMA-ES tunes the 16 gait parameters in the sim."""
 
+import contextlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ from experiments.command_line import run_verb
 from experiments.corrected_sims import check_correction, make_sim
 from experiments.evaluation import Study, evaluate, keep
 from experiments.gait_files import load_gait
+from experiments.recorder import Recorder
 from experiments.result_page import write_page
 from experiments.reward import FALL_PENALTY_CM_S, reward_cm_s
 from experiments.run_folder import (
@@ -20,13 +23,15 @@ from experiments.run_folder import (
     RunFolder,
     open_run,
 )
+from experiments.run_options import RunOptions
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json, print_scores
 from experiments.search import GaitSearch, check_search
 from experiments.search_run import run_search
-from experiments.trials import SEARCH_TRIAL, walk_trials
+from experiments.trials import SEARCH_TRIAL, Trials, walk_trials
+from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from terrain import TerrainSpec, parse
+from terrain import Heightfield, TerrainSpec, parse
 from walk_engine import Gait
 
 VERB = "optimize-gait"
@@ -35,7 +40,7 @@ TITLE = "How does the gait that was tuned in the sim walk in both worlds?"
 
 
 @dataclass(frozen=True)
-class OptimizeGait:
+class OptimizeGait(RunOptions):
     """Tune a gait with CMA-ES in the sim, then try it on real uneven ground.
 
     Attributes:
@@ -49,10 +54,6 @@ class OptimizeGait:
       sigma: spread of the first generation, as a part of each parameter's range.
       trials: of each gait in each world, on a course of 3 m.
       threads: processor threads; 0 for all.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     robot: str = "nao"
@@ -65,10 +66,6 @@ class OptimizeGait:
     sigma: float = 0.15
     trials: int = 10
     threads: int = 0
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
@@ -83,8 +80,7 @@ class OptimizeGait:
             raise BadValueError(
                 f"generations is {self.generations}; it must be positive"
             )
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
     def study(self, world: str) -> Study:
         """How start and tuned gait are evaluated in a world."""
@@ -122,10 +118,9 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
       GroundwalkError: the folder is in the way, or cannot be continued.
     """
     folder, config = open_run(VERB, config)
-    of_search, of_trials = np.random.SeedSequence(config.seed).spawn(2)
-    tuned = search(config, folder, of_search)
+    tuned = search(config, folder)
     if not folder.has(RESULT):
-        table = _evaluate(config, folder, tuned, of_trials)
+        table = _evaluate(config, folder, tuned)
         folder.write_json(RESULT, {**table, "gait": dict(tuned)})
     result = folder.read_json(RESULT)
     picture_run(folder)
@@ -133,41 +128,77 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
     return folder, Gait.from_mapping(result["gait"])
 
 
-def search(
-    config: OptimizeGait, folder: RunFolder, seed: np.random.SeedSequence
-) -> Gait:
+def search(config: OptimizeGait, folder: RunFolder) -> Gait:
     """The search's answer, generation by generation with checkpoints."""
-    of_strategy, of_grounds = seed.spawn(2)
-    ground_seeds = of_grounds.generate_state(config.generations)
+    of_samples, _, _ = _seeds(config)
+    grounds = search_grounds(config, config.generations)
 
     def begin() -> GaitSearch:
         start = load_gait(config.start)
-        return GaitSearch(start, config.population, config.sigma, of_strategy)
+        return GaitSearch(start, config.population, config.sigma, of_samples)
 
     return run_search(
         folder.path / CHECKPOINT,
         begin,
-        lambda number, search: _generation(config, search, int(ground_seeds[number])),
+        lambda number, strategy: _generation(config, strategy, grounds[number].make()),
         config.generations,
         lambda entries: folder.write_json(HISTORY, {"generations": entries}),
     ).mean
 
 
+def search_grounds(config: OptimizeGait, generations: int) -> list[TerrainSpec]:
+    """The ground of each generation, from the first one on."""
+    _, of_grounds, _ = _seeds(config)
+    seeds = of_grounds.generate_state(generations).tolist()
+    return [TerrainSpec(*parse(config.terrain), seed=seed) for seed in seeds]
+
+
+def rate(
+    config: OptimizeGait,
+    tried: Sequence[Gait] | FloatArray,
+    grounds: Sequence[Heightfield],
+    recorder: Recorder | None = None,
+    on_end: Callable[[], object] = lambda: None,
+) -> tuple[Trials, FloatArray]:
+    """Let gaits walk as the search lets them, side by side in one sim.
+
+    Nothing of it is random but the ground: the same gait has the same bits again.
+
+    Args:
+      config: of the search.
+      tried: n gaits, or their vectors (n, 16).
+      grounds: n.
+      recorder: notes every tick.
+      on_end: called once for each walk that is over.
+
+    Returns:
+      How the walks went, and their rewards (n,) [cm/s].
+    """
+    description = robots.get(config.robot)
+    nobody = [np.random.SeedSequence(0)] * len(tried)
+    options = config.study("sim").options
+    world = make_sim(description, grounds, nobody, options, config.sim)
+    with contextlib.closing(world):
+        trials = walk_trials(
+            world, tried, SEARCH_TRIAL, recorder=recorder, on_end=on_end
+        )
+    penalty_cm_s = FALL_PENALTY_CM_S * description.scale.speed
+    return trials, reward_cm_s(trials, SEARCH_TRIAL.limit_s, penalty_cm_s)
+
+
+def _seeds(config: OptimizeGait) -> tuple[np.random.SeedSequence, ...]:
+    """Of the search's samples, of its grounds, and of the trials after it."""
+    of_search, of_trials = np.random.SeedSequence(config.seed).spawn(2)
+    return (*of_search.spawn(2), of_trials)
+
+
 def _generation(
-    config: OptimizeGait, strategy: GaitSearch, ground_seed: int
+    config: OptimizeGait, strategy: GaitSearch, ground: Heightfield
 ) -> dict[str, Any]:
     """One generation, and the mean gait before it beside the samples."""
     mean = strategy.mean
     tried = np.vstack([strategy.ask(), mean.to_vector()])
-    ground = TerrainSpec(*parse(config.terrain), seed=ground_seed).make()
-    options = config.study("sim").options
-    n = len(tried)
-    nobody = [np.random.SeedSequence(0)] * n
-    description = robots.get(config.robot)
-    world = make_sim(description, [ground] * n, nobody, options, config.sim)
-    trials = walk_trials(world, tried, SEARCH_TRIAL)
-    penalty_cm_s = FALL_PENALTY_CM_S * description.scale.speed
-    rewards = reward_cm_s(trials, SEARCH_TRIAL.limit_s, penalty_cm_s)
+    trials, rewards = rate(config, tried, [ground] * len(tried))
     strategy.tell(rewards[:-1])
     return {
         "rewards": rewards[:-1].tolist(),
@@ -181,14 +212,13 @@ def _generation(
     }
 
 
-def _evaluate(
-    config: OptimizeGait, folder: RunFolder, tuned: Gait, seed: np.random.SeedSequence
-) -> dict[str, Any]:
+def _evaluate(config: OptimizeGait, folder: RunFolder, tuned: Gait) -> dict[str, Any]:
     """Scores of the start and the tuned gait in both worlds, on a course of 3 m."""
     description = robots.get(config.robot)
     both = {"start": load_gait(config.start), "tuned": tuned}
+    _, _, of_trials = _seeds(config)
     table = {}
-    for world, own in zip(WORLDS, seed.spawn(2), strict=True):
+    for world, own in zip(WORLDS, of_trials.spawn(2), strict=True):
         outcomes = evaluate(config.study(world), description, both, own)
         table[world] = keep(folder, world, outcomes)
     return table

@@ -12,10 +12,12 @@ from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_console import print_verdict
 from experiments.real_robots_cases import ROBOTS, RealRobot
 from experiments.real_robots_page import write_real_page
-from experiments.report import PAGE
+from experiments.report import REPORT
 from groundwalk.errors import BadValueError
 
 DATA = Path("../shared/data")
+DIAGNOSIS = "diagnosis.html"
+"""The diagnosis' own report; the run's is the one that judges it."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +70,9 @@ class RealRobots:
 def main(config: RealRobots) -> None:
     """Diagnose, write the page, and say what was found."""
     folder, verdict = run_diagnosis(config.diagnose())
+    (folder.path / REPORT).rename(folder.path / DIAGNOSIS)
     write_real_page(folder, ROBOTS[config.robot], verdict)
-    print_verdict(verdict, [folder.path / PAGE])
+    print_verdict(verdict, [folder.path / name for name in (REPORT, DIAGNOSIS)])
 
 
 def _model(case: RealRobot, folder: Path) -> str:

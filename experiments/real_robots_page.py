@@ -11,9 +11,6 @@ from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
 from experiments.transfer_page import write_transfer_page
 
-JUDGED = "result.html"
-"""`report.html` is the diagnosis' own."""
-
 MUCH = 2.0
 """Times the noise: what is left above it is told."""
 
@@ -26,7 +23,7 @@ sliding joints read N for N m and m for rad.
 
 
 def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> None:
-    """Write `result.md` and `result.html` into the run's folder.
+    """Write `result.md` and `report.html` into the run's folder.
 
     Args:
       folder: of the diagnosis.
@@ -39,7 +36,7 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
     body += _pulses(verdict)
     body += ["", "## What was used for what", "", *_recordings(verdict), NOTES.rstrip()]
     claims = claims_of(robot, verdict)
-    write_transfer_page(folder, robot.title, claims, body, answer(verdict), JUDGED)
+    write_transfer_page(folder, robot.title, claims, body, answer(verdict))
 
 
 def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:

@@ -35,7 +35,7 @@ class Render:
     Attributes:
       paths: run folders, or recordings (.parquet or .csv).
       out: the file to write; what it ends with says what is drawn.
-      only: of run folders, recordings whose name holds one of these words.
+      only: recordings whose name holds one of these words; all by default.
       start: first moment [s]; by default so that the film shows the fall, or else the
         middle of the walk.
       duration: how much is shown [s].

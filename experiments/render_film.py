@@ -76,6 +76,12 @@ class Film:
         name = scene.name.replace("/", ", ")
         return _with_title(picture, name, label, FALL if end in _FALLS else _INK)
 
+    def shown_s(self, scenes: Sequence[Scene]) -> tuple[float, float]:
+        """First and last moment that is shown of these scenes."""
+        if self.start_s is None:
+            return window_s(scenes, self.duration_s)
+        return self.start_s, self.start_s + self.duration_s
+
 
 def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
     """First and last moment of a part: around the first fall, else in the middle.
@@ -119,9 +125,7 @@ def strip_bytes(film: Film, frames: int) -> bytes:
 
 
 def _strip_times_s(film: Film, scene: Scene, frames: int) -> FloatArray:
-    start_s, stop_s = window_s([scene], film.duration_s)
-    if film.start_s is not None:
-        start_s, stop_s = film.start_s, film.start_s + film.duration_s
+    start_s, stop_s = film.shown_s([scene])
     stop_s = min(stop_s, float(scene.recording.time_s[-1]))
     return np.linspace(min(start_s, stop_s), stop_s, frames)
 
@@ -139,9 +143,7 @@ def film_bytes(film: Film, rate_hz: float, suffix: str) -> bytes:
     """
     if suffix == ".mp4":
         _ffmpeg()
-    start_s, stop_s = window_s(film.scenes, film.duration_s)
-    if film.start_s is not None:
-        start_s, stop_s = film.start_s, film.start_s + film.duration_s
+    start_s, stop_s = film.shown_s(film.scenes)
     times_s = np.arange(start_s, stop_s + 1e-9, 1 / rate_hz)
     frames = list(_frames(film, times_s))
     return _mp4(frames, rate_hz) if suffix == ".mp4" else _gif(frames, rate_hz)

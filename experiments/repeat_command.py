@@ -1,6 +1,5 @@
 """The command line that does a run again."""
 
-import dataclasses
 import shlex
 import sys
 from collections.abc import Iterator
@@ -8,6 +7,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 
 from experiments.command_line import VERBS
+from experiments.run_options import options_of
 
 NOT_REPEATED = frozenset({"out", "resume", "json"})
 """Options that say where a run goes to, not what it is."""
@@ -45,7 +45,7 @@ def _options(config: Any) -> Iterator[str]:
     import tyro
 
     hints = get_type_hints(type(config), include_extras=True)
-    for field in dataclasses.fields(config):
+    for field in options_of(config):
         value = getattr(config, field.name)
         if field.name in NOT_REPEATED or value == field.default:
             continue

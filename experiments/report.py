@@ -58,16 +58,15 @@ class Report:
             files={},
         )
 
-    def write(self, folder: Path, page: str = PAGE, report: str = REPORT) -> None:
+    def write(self, folder: Path, page: str = PAGE) -> None:
         """Write both forms, each file at once.
 
         Args:
           folder: where the pictures are.
           page: name of the Markdown file.
-          report: name of the HTML file.
         """
         write_text(folder / page, self.to_markdown())
-        write_text(folder / report, self.to_html(folder))
+        write_text(folder / REPORT, self.to_html(folder))
 
 
 def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

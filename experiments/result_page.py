@@ -73,14 +73,7 @@ def score_lines(scores: Scores) -> list[str]:
             speed = f"{score['speed_cm_s']:.1f} ± {score['speed_std']:.1f}"
             falls = f"{score['falls']}/{score['trials']}"
             rows.append([world, gait, speed, falls, f"{low:.0%} to {high:.0%}"])
-    columns = [
-        "world",
-        "gait",
-        "speed [cm/s] ± s.d.",
-        "falls",
-        "fall rate, 95 % interval",
-    ]
-    return markdown_table(columns, rows)
+    return markdown_table(COLUMNS, rows)
 
 
 def gait_lines(gait: Mapping[str, float]) -> list[str]:

@@ -8,9 +8,10 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, ClassVar, Protocol, Self, TypeVar, get_args
+from typing import Any, Self, TypeVar, get_args
 
 from experiments.repeat_command import repeat_command
+from experiments.run_options import RunOptions, options_of
 from groundwalk import __version__
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_bytes, write_text
@@ -26,20 +27,7 @@ PACKAGES = (
 _CODE = ("commit", "changed")
 
 
-class _RunConfig(Protocol):
-    """What every long verb's configuration has; it is a dataclass."""
-
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-    @property
-    def out(self) -> Path | None: ...
-    @property
-    def resume(self) -> Path | None: ...
-    @property
-    def seed(self) -> int: ...
-
-
-Config = TypeVar("Config", bound=_RunConfig)
+Config = TypeVar("Config", bound=RunOptions)
 
 
 class RunFolder:
@@ -150,8 +138,8 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
 
     Args:
       verb: what runs, as on the command line.
-      config: a dataclass with `out`, `resume` and `seed`. When a run is resumed, what
-        it was started with counts.
+      config: a frozen dataclass. When a run is resumed, what it was started with
+        counts.
 
     Raises:
       RunFolderError: the folder is in the way, or is none to resume.
@@ -161,8 +149,8 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
         return RunFolder.create(verb, config), config
     folder = RunFolder.at(config.resume, verb)
     stored = folder.read_json(CONFIG)
-    changes = {}
-    for field in dataclasses.fields(config):
+    changes: dict[str, Any] = {}
+    for field in options_of(config):
         if field.name in FREE_WHEN_RESUMED:
             continue
         given = getattr(config, field.name)
@@ -181,7 +169,7 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
 
 def to_plain(config: Any) -> dict[str, Any]:
     """A configuration as values that JSON knows; paths become text."""
-    return {key: _plain(value) for key, value in dataclasses.asdict(config).items()}
+    return {one.name: _plain(getattr(config, one.name)) for one in options_of(config)}
 
 
 def _plain(value: Any) -> Any:

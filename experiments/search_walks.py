@@ -1,6 +1,5 @@
 """The best gaits of a search walk once more, for somebody to look at them."""
 
-import contextlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,13 +7,10 @@ from typing import Any
 import numpy as np
 
 import robots
-from experiments.corrected_sims import make_sim
-from experiments.optimize_gait import OptimizeGait
+from experiments.optimize_gait import OptimizeGait, rate, search_grounds
 from experiments.progress import progress
 from experiments.recorder import Recorder
-from experiments.reward import FALL_PENALTY_CM_S, reward_cm_s
-from experiments.trials import SEARCH_TRIAL, walk_trials
-from terrain import Heightfield, TerrainSpec, parse
+from terrain import Heightfield, TerrainSpec
 from walk_engine import Gait
 from worlds import End, RecordingMetadata
 from worlds.scene import Scene
@@ -38,26 +34,18 @@ def search_config(stored: Mapping[str, Any]) -> OptimizeGait:
 def walk_again(config: OptimizeGait, best: Sequence[Gait]) -> list[SearchWalk]:
     """Let the best gait of each generation walk as it did when it was rated.
 
-    Side by side in one sim, each on its generation's ground: nothing in a trial of the
-    search is random but the ground, and so a walk has the same bits again.
+    Side by side in one sim, each on its generation's ground.
 
     Args:
       config: of the search.
       best: the best gait of each generation, from the first one on.
     """
     description = robots.get(config.robot)
-    specs = _grounds(config, len(best))
+    specs = search_grounds(config, len(best))
     grounds = _shared([spec.make() for spec in specs])
-    nobody = [np.random.SeedSequence(0)] * len(best)
-    options = config.study("sim").options
     recorder = Recorder(description, range(len(best)))
-    world = make_sim(description, grounds, nobody, options, config.sim)
-    with contextlib.closing(world), progress("best gaits walk", len(best)) as bar:
-        trials = walk_trials(
-            world, best, SEARCH_TRIAL, recorder=recorder, on_end=bar.advance
-        )
-    penalty_cm_s = FALL_PENALTY_CM_S * description.scale.speed
-    rewards = reward_cm_s(trials, SEARCH_TRIAL.limit_s, penalty_cm_s)
+    with progress("best gaits walk", len(best)) as bar:
+        trials, rewards = rate(config, best, grounds, recorder, bar.advance)
     walks = []
     for k, gait in enumerate(best):
         about = _metadata(config, specs[k], gait, f"generation {k}", trials.ended[k])
@@ -80,14 +68,6 @@ def _metadata(
         world="sim",
         end=str(end),
     )
-
-
-def _grounds(config: OptimizeGait, generations: int) -> list[TerrainSpec]:
-    """The ground of each generation, seeded as `optimize_gait.tune_gait` seeds it."""
-    of_search, _ = np.random.SeedSequence(config.seed).spawn(2)
-    _, of_grounds = of_search.spawn(2)
-    seeds = of_grounds.generate_state(generations).tolist()
-    return [TerrainSpec(*parse(config.terrain), seed=seed) for seed in seeds]
 
 
 def _shared(grounds: Sequence[Heightfield]) -> list[Heightfield]:

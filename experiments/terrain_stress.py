@@ -4,7 +4,6 @@ import dataclasses
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
@@ -15,6 +14,7 @@ from experiments.command_line import run_verb
 from experiments.gait_files import load_gaits
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
+from experiments.run_options import RunOptions
 from experiments.score_table import print_json
 from experiments.terrain_stress_curves import curves_of
 from experiments.terrain_stress_families import FAMILIES, FLAT, Place, leg_length_m
@@ -31,7 +31,7 @@ SMALLEST = {"trials": 1, "rungs": 2, "worst": 0, "threads": 0, "seed": 0}
 
 
 @dataclass(frozen=True)
-class TerrainStress:
+class TerrainStress(RunOptions):
     """Let gaits climb ladders of ever harder ground: speed, falls and their causes.
 
     For each family of ground, the severity at which half of the trials fall. A run that
@@ -46,10 +46,6 @@ class TerrainStress:
       trials: of each gait at each severity, each on its own ground.
       worst: rollouts of each gait and world that go into a Rerun file.
       threads: processor threads; 0 for all.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     gaits: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
@@ -60,10 +56,6 @@ class TerrainStress:
     trials: int = 8
     worst: int = 3
     threads: int = 0
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""

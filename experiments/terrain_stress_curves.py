@@ -42,7 +42,7 @@ def _curve(
         if (cell["robot"], cell["world"], cell["family"]) == (robot, world, family)
     ]
     half = None
-    if family != FLAT and len(rungs) > 1:
+    if family != FLAT:
         columns = ([rung[name] for rung in rungs] for name in _COUNTS)
         half = dataclasses.asdict(half_fall(*columns))
     known = FAMILIES.get(family)

@@ -5,12 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from experiments.figure_file import write_figure
 from experiments.terrain_stress_curves import Curve
 from experiments.terrain_stress_families import FLAT
-from experiments.terrain_stress_words import severity_text
+from experiments.terrain_stress_words import family_text, severity_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,7 +56,7 @@ def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
         own = [curve for curve in ladders if _setting(curve) == setting]
         image = _heat_map(panel, own)
         panel.set_title(_panel_title(curves, setting), fontsize=10)
-        panel.set_yticks(range(len(families)), [_words(name) for name in families])
+        panel.set_yticks(range(len(families)), [family_text(name) for name in families])
     if image is not None:
         bar = figure.colorbar(image, ax=list(panels), shrink=0.8)
         bar.set_label("share of trials that fall")
@@ -113,7 +111,7 @@ def comparison_figure(curves: Sequence[Curve]) -> "Figure":
                 for curve in own:
                     _half(panel, curve, y, colour, gait if row == 0 else None)
         _frame(panel, ladders, families)
-        panel.set_title(" ".join(setting) if _many(curves) else setting[1])
+        panel.set_title(_name(curves, setting))
     panels[0].invert_yaxis()
     figure.legend(
         *panels[0].get_legend_handles_labels(),
@@ -149,7 +147,7 @@ def _frame(panel: "Axes", curves: Sequence[Curve], families: Sequence[str]) -> N
         first, last = (
             severity_text(curve["rungs"][k]["severity"], curve["unit"]) for k in (0, -1)
         )
-        labels.append(f"{_words(family)}\n{first} to {last}")
+        labels.append(f"{family_text(family)}\n{first} to {last}")
     panel.set_yticks(range(len(families)), labels, fontsize=8)
     panel.set_xticks([0, 1], ["mildest", "hardest"])
     panel.set_xlim(-2 * _EDGE, 1 + 2 * _EDGE)
@@ -168,16 +166,12 @@ def _at(curve: Curve, severity: float | None) -> float | None:
 
 
 def _panel_title(curves: Sequence[Curve], setting: tuple[str, str]) -> str:
-    name = " ".join(setting) if _many(curves) else setting[1]
+    name = _name(curves, setting)
     for curve in curves:
         if _setting(curve) == setting and curve["family"] == FLAT:
             rung = curve["rungs"][0]
             name += f" (flat ground: {rung['falls']}/{rung['trials']} fall)"
     return name
-
-
-def _words(family: str) -> str:
-    return family.replace("_", " ")
 
 
 def _each(curves: Sequence[Curve], name: str) -> list[str]:
@@ -192,6 +186,6 @@ def _settings(curves: Sequence[Curve]) -> list[tuple[str, str]]:
     return list(dict.fromkeys(map(_setting, curves)))
 
 
-def _many(curves: Sequence[Curve]) -> bool:
-    """Whether there is more than one robot."""
-    return len(np.unique(_each(curves, "robot"))) > 1
+def _name(curves: Sequence[Curve], setting: tuple[str, str]) -> str:
+    """The world, and the robot where there is more than one."""
+    return " ".join(setting) if len(_each(curves, "robot")) > 1 else setting[1]

@@ -36,8 +36,7 @@ class HalfFall:
         milder.
       severity: the estimate; at ">" the hardest tried, at "<" the mildest.
       low, high: 95 % interval from mild to hard, so that of friction `low` is the
-        larger
-        number; None where it reaches beyond what was tried.
+        larger number; None where it reaches beyond what was tried.
     """
 
     beyond: str
@@ -62,7 +61,7 @@ def half_fall(
       BadValueError: there are less than two rungs, or they are in no order.
     """
     ladder = np.asarray(severities, float)
-    if ladder.size < 2 or not (ladder > 0).all() or abs(_order(ladder)) != 1:
+    if ladder.size < 2 or not (ladder > 0).all() or not _is_ordered(ladder):
         raise BadValueError(
             f"severities are {ladder.tolist()}; they must be at least two positive "
             "numbers from mild to hard"
@@ -85,10 +84,10 @@ def half_fall(
     return HalfFall("", severity(best), low, high)
 
 
-def _order(ladder: FloatArray) -> int:
-    """1 if the numbers rise, -1 if they fall, else 0."""
-    signs = set(np.sign(np.diff(ladder)).tolist())
-    return int(signs.pop()) if len(signs) == 1 else 0
+def _is_ordered(ladder: FloatArray) -> bool:
+    """Whether all numbers rise, or all fall."""
+    steps = np.diff(ladder)
+    return bool((steps > 0).all() or (steps < 0).all())
 
 
 def _profile(x: FloatArray, falls: FloatArray, trials: FloatArray) -> FloatArray:

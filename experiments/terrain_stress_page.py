@@ -10,7 +10,7 @@ from experiments.run_folder import RunFolder
 from experiments.terrain_stress_curves import Curve, causes_by_family
 from experiments.terrain_stress_families import FLAT
 from experiments.terrain_stress_figure import COMPARISON, heat_map_name
-from experiments.terrain_stress_words import half_text, severity_text
+from experiments.terrain_stress_words import family_text, half_text, severity_text
 
 QUESTION = "How rough may the ground be before these gaits fall?"
 HALF_HEADINGS = (
@@ -132,14 +132,14 @@ def stress_answer(curves: Sequence[Curve]) -> Iterator[str]:
 def _halves(curves: Sequence[Curve]) -> str:
     known = [curve for curve in curves if curve["half"] is not None]
     return ", ".join(
-        f"{curve['family'].replace('_', ' ')} {half_text(curve).split(' (')[0]}"
+        f"{family_text(curve['family'])} {half_text(curve).split(' (')[0]}"
         for curve in known
     )
 
 
 def _setting(curve: Curve) -> list[str]:
-    family = curve["family"].replace("_", " ")
-    return [curve["robot"], curve["world"], curve["gait"], family]
+    names = [curve[name] for name in ("robot", "world", "gait")]
+    return [*names, family_text(curve["family"])]
 
 
 def _counted(causes: Counter[str]) -> str:

@@ -1,4 +1,4 @@
-"""Severities and half-fall severities as people read them: millimetres and degrees."""
+"""Families and severities as people read them: in words, millimetres and degrees."""
 
 import math
 from collections.abc import Mapping
@@ -6,6 +6,11 @@ from typing import Any
 
 SHOWN = {"m": (1000.0, " mm"), "rad": (180.0 / math.pi, "°"), "1": (1.0, "")}
 """By unit: factor, and the unit that is printed."""
+
+
+def family_text(family: str) -> str:
+    """A family's name, such as "slope up"."""
+    return family.replace("_", " ")
 
 
 def severity_text(severity: float, unit: str | None) -> str:

@@ -1,13 +1,13 @@
 """`groundwalk transfer cliff`: cliff walking, grounded by GAT and by SGAT."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
+from experiments.run_options import RunOptions
 from experiments.score_table import print_json
 from experiments.text_table import print_table
 from experiments.transfer_cliff_claims import check_claims
@@ -22,7 +22,7 @@ VERB = "transfer-cliff"
 
 
 @dataclass(frozen=True)
-class TransferCliff:
+class TransferCliff(RunOptions):
     """Walk along a cliff with random moves: no grounding, GAT, SGAT and the optimum.
 
     Attributes:
@@ -31,10 +31,6 @@ class TransferCliff:
       noise: chances of a random move, each a real world of its own.
       episodes: in the real world, of each policy that was found.
       real_episodes: in the real world, at each grounding step.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     rows: int = 4
@@ -42,18 +38,13 @@ class TransferCliff:
     noise: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
     episodes: int = 10_000
     real_episodes: int = 10_000
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
         self.study()
         if not self.noise or min(self.noise) < 0 or max(self.noise) > 1:
             raise BadValueError(f"noise is {self.noise}; give values from 0 to 1")
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
     def study(self) -> CliffStudy:
         """How the methods are compared."""

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any, ClassVar
 
 from experiments.progress import progress
 from experiments.run_folder import RESULT, RunFolder, open_run
+from experiments.run_options import RunOptions
 from experiments.score_table import print_json
 from experiments.text_table import print_table
 from experiments.transfer_gym_environments import Domain
@@ -23,7 +23,7 @@ from groundwalk.errors import BadValueError
 
 
 @dataclass(frozen=True)
-class TransferGym:
+class TransferGym(RunOptions):
     """Options of a study.
 
     Options that are not given follow from the size.
@@ -38,11 +38,7 @@ class TransferGym:
       methods: to compare.
       timesteps: of each training.
       episodes: on real, of each policy that was found.
-      seed: every random number follows from it.
       threads: trainings at a time, each in a process of its own.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     domain: ClassVar[Domain]
@@ -54,17 +50,14 @@ class TransferGym:
     methods: tuple[str, ...] = METHODS
     timesteps: int | None = None
     episodes: int | None = None
-    seed: int = 1
     threads: int = 2
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
         self.study()
         if self.threads < 1:
             raise BadValueError(f"threads is {self.threads}; it must be at least 1")
+        super().__post_init__()
 
     def study(self) -> GymStudy:
         """How the methods are compared."""

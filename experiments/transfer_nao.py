@@ -12,6 +12,7 @@ from experiments.corrected_sims import check_correction
 from experiments.grounded_sim import ROBOT
 from experiments.progress import progress
 from experiments.run_folder import RESULT, RunFolder, open_run
+from experiments.run_options import RunOptions
 from experiments.score_table import print_json
 from experiments.search import check_search
 from experiments.text_table import print_table
@@ -37,7 +38,7 @@ SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,
 
 
 @dataclass(frozen=True)
-class TransferNao:
+class TransferNao(RunOptions):
     """Tune gaits in grounded sims, and count falls on real uneven ground.
 
     Attributes:
@@ -57,10 +58,6 @@ class TransferNao:
       sim_walks: that each grounding step learns from.
       real_population: gaits in a generation of the search on real.
       real_generations: of the search on real.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     methods: tuple[str, ...] | None = None
@@ -77,10 +74,6 @@ class TransferNao:
     sim_walks: int = 200
     real_population: int = 50
     real_generations: int = 10
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
@@ -101,8 +94,7 @@ class TransferNao:
                 raise BadValueError(
                     f"{name} is {getattr(self, name)}; give at least {least}"
                 )
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
     @property
     def compared(self) -> tuple[str, ...]:

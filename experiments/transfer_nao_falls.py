@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from experiments.command_line import run_verb
 from experiments.grounded_sim import ROBOT, walk_in_sim
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, open_run
+from experiments.run_options import RunOptions
 from experiments.score_table import print_json
 from experiments.text_table import print_table
 from experiments.transfer_nao_falls_figure import FIGURE, draw_falls
@@ -40,7 +40,7 @@ STAGES = 2 + len(GROUNDINGS)
 
 
 @dataclass(frozen=True)
-class TransferNaoFalls:
+class TransferNaoFalls(RunOptions):
     """Predict speed and falls of gaits that no grounding has seen.
 
     Attributes:
@@ -49,10 +49,6 @@ class TransferNaoFalls:
       rollouts: of each of them, in every grounded sim.
       real_walks: of other gaits in the real world, which the groundings learn from.
       sim_walks: of other gaits in the sim.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     gaits: int = 24
@@ -60,18 +56,13 @@ class TransferNaoFalls:
     rollouts: int = 12
     real_walks: int = 96
     sim_walks: int = 220
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
         for name in ("gaits", "trials", "rollouts", "real_walks", "sim_walks"):
             if getattr(self, name) < 2:
                 raise BadValueError(f"{name} is {getattr(self, name)}; give at least 2")
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
 
 def main(config: TransferNaoFalls) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from experiments.report import REPORT, Report
+from experiments.report import Report
 from experiments.report_origin import Origin
 from experiments.run_folder import RunFolder
 
@@ -35,7 +35,6 @@ def write_transfer_page(
     claims: Sequence[Claim],
     body: Sequence[str],
     answer: Sequence[str] = (),
-    report: str = REPORT,
 ) -> None:
     """Write `result.md` and the HTML: the answer, the claims, and the rest.
 
@@ -45,13 +44,10 @@ def write_transfer_page(
       claims: what is to be shown.
       body: lines of Markdown.
       answer: in plain words; how many claims hold where there are none.
-      report: name of the HTML file.
     """
     lines = [*claim_lines(claims), "", *body]
     answer = answer or claims_answer(claims)
-    Report(title, answer, lines, Origin.of_run(folder)).write(
-        folder.path, report=report
-    )
+    Report(title, answer, lines, Origin.of_run(folder)).write(folder.path)
 
 
 def claims_answer(claims: Sequence[Claim]) -> list[str]:

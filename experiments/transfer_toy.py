@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from experiments.command_line import run_verb
 from experiments.progress import progress
 from experiments.report import markdown_table
 from experiments.run_folder import RESULT, open_run
+from experiments.run_options import RunOptions
 from experiments.score_table import print_json
 from experiments.text_table import print_table
 from experiments.transfer_page import Claim, write_transfer_page
@@ -42,29 +42,20 @@ FIRST = 0
 
 
 @dataclass(frozen=True)
-class TransferToy:
+class TransferToy(RunOptions):
     """Find the best action in the paper's toy worlds, grounded by GAT and by SGAT.
 
     Attributes:
       episodes: random real transitions, for the forward models that are counted.
-      seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
-      json: print the result as JSON.
     """
 
     episodes: int = 30_000
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
         if self.episodes < 1:
             raise BadValueError(f"episodes is {self.episodes}; it must be positive")
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        super().__post_init__()
 
 
 def main(config: TransferToy) -> None:

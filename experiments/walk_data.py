@@ -9,7 +9,7 @@ import numpy as np
 
 from experiments.evaluation import MOST_AT_ONCE
 from experiments.trials import TrialRules, Trials, walk_trials
-from experiments.walk_places import Place
+from experiments.walk_places import RealCourse, SimPlace, world_at
 from groundwalk.arrays import FloatArray
 from robots import Description, biped
 from sgat.transitions import Transitions
@@ -63,7 +63,7 @@ and a grounding that averages over both falls too seldom."""
 
 
 def walk(
-    place: Place,
+    place: RealCourse | SimPlace,
     description: Description,
     vectors: FloatArray,
     seed: np.random.SeedSequence,
@@ -87,7 +87,7 @@ def walk(
         rows = slice(first, first + MOST_AT_ONCE)
         seeds = children[: len(vectors)][rows]
         world = WatchedWorld(
-            place.world(description, place.grounds(seeds), seeds),
+            world_at(place, description, place.grounds(seeds), seeds),
             leg_senses(description),
             levels[rows],
             children[len(vectors) + first],

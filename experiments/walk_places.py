@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
@@ -15,21 +14,6 @@ from robots import Description
 from terrain import Heightfield
 from worlds import World, WorldOptions
 from worlds.hidden_effects import Hidden
-
-
-class Place(Protocol):
-    """Grounds, and the world that stands on them."""
-
-    def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """One for each seed; equal ones are one object."""
-
-    def world(
-        self,
-        description: Description,
-        grounds: Sequence[Heightfield],
-        seeds: Sequence[np.random.SeedSequence],
-    ) -> World:
-        """One robot on each ground; the seeds are of the sensors' noise."""
 
 
 @dataclass(frozen=True)
@@ -54,20 +38,11 @@ class RealCourse:
         return replace(worlds.kind("real").options, hidden=self.hidden)
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """See `Place`."""
+        """One for each seed; flat ones are one object."""
         name, parameters = terrain.parse(self.terrain)
         if name == "flat":
             return [terrain.make(name, 0, **parameters)] * len(seeds)
         return [terrain.make(name, seed, **parameters) for seed in seeds]
-
-    def world(
-        self,
-        description: Description,
-        grounds: Sequence[Heightfield],
-        seeds: Sequence[np.random.SeedSequence],
-    ) -> World:
-        """See `Place`."""
-        return worlds.make("real", description, grounds, seeds, self.options)
 
 
 LUMPS_M = (0.002, 0.005, 0.008, 0.011, 0.014)
@@ -100,7 +75,7 @@ class SimPlace:
             raise BadValueError("lumps_m is empty; give at least one amplitude")
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """See `Place`; the lumps are as long as the real world's."""
+        """One for each seed, flat or with lumps as long as the real world's."""
         if not self.lumps_m:
             return [terrain.make("flat", 0)] * len(seeds)
         return [self._lumps(seed) for seed in seeds]
@@ -118,14 +93,17 @@ class SimPlace:
         """Of the world inside."""
         return noisy_sim() if self.lumps_m else worlds.kind("sim").options
 
-    def world(
-        self,
-        description: Description,
-        grounds: Sequence[Heightfield],
-        seeds: Sequence[np.random.SeedSequence],
-    ) -> World:
-        """See `Place`."""
-        return make_sim(description, grounds, seeds, self.options, self.correction)
+
+def world_at(
+    place: RealCourse | SimPlace,
+    description: Description,
+    grounds: Sequence[Heightfield],
+    seeds: Sequence[np.random.SeedSequence],
+) -> World:
+    """One robot on each ground; the seeds are of the sensors' noise."""
+    if isinstance(place, RealCourse):
+        return worlds.make("real", description, grounds, seeds, place.options)
+    return make_sim(description, grounds, seeds, place.options, place.correction)
 
 
 def noisy_sim() -> WorldOptions:

@@ -1,5 +1,8 @@
 """What all tests share: patience, the NAO, and kinematics from another library."""
 
+import multiprocessing
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -10,6 +13,21 @@ import robots
 # No test may fail because the machine is busy.
 settings.register_profile("no_deadline", deadline=None)
 settings.load_profile("no_deadline")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def quick_processes():
+    """Processes of the real world begin as copies of one that has imported everything.
+
+    To import it anew takes each of them longer than most tests; `test_real` has them
+    begin as they do elsewhere.
+    """
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["mujoco", "worlds.bullet_worker"])
+    with pytest.MonkeyPatch.context() as patch:
+        copying = SimpleNamespace(get_context=lambda _: context)
+        patch.setattr("worlds.real.multiprocessing", copying)
+        yield
 
 
 def chain(description, pose_rad):

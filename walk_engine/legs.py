@@ -1,6 +1,7 @@
 """Both legs: from where the ankles shall be to the angles of their joints."""
 
-from typing import Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,8 +11,18 @@ from walk_engine.chain_ik import ChainLegs
 from walk_engine.leg_ik import MIRROR, inverse
 
 
-class Legs(Protocol):
+class Legs(ABC):
     """What turns poses of the feet into angles."""
+
+    def __init__(self, leg: LegGeometry, signs: Sequence[FloatArray]) -> None:
+        """Prepare.
+
+        Args:
+          leg: the left leg, or the one with axes that meet which is most like it.
+          signs: (2, 1) of each leg: -1 where a joint of its ankle turns the other way.
+        """
+        self._leg = leg
+        self._signs = signs
 
     def angles(
         self,
@@ -32,6 +43,16 @@ class Legs(Protocol):
         Returns:
           Yaw, roll, pitch, knee, ankle pitch and ankle roll as the joints count them.
         """
+        left, right = self._level(ankle_m, toe_out_rad, tilt_rad)
+        left[4:] += self._signs[0] * ankle_rad[:, 0]
+        right[4:] += self._signs[1] * ankle_rad[:, 1]
+        return left, right
+
+    @abstractmethod
+    def _level(
+        self, ankle_m: FloatArray, toe_out_rad: FloatArray, tilt_rad: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """The same without anything added to the ankles."""
 
 
 def legs_of(biped: Biped) -> Legs:
@@ -41,31 +62,23 @@ def legs_of(biped: Biped) -> Legs:
     return TwoChains(biped.leg, biped.chains)
 
 
-class MirroredLegs:
+class MirroredLegs(Legs):
     """Legs whose axes meet, one the mirror image of the other."""
 
     def __init__(self, leg: LegGeometry) -> None:
         """Prepare for the left leg's lengths and axes."""
-        self._leg = leg
+        super().__init__(leg, [np.ones((2, 1))] * 2)
         # A positive turn about an axis that points down turns the toes inward.
         self._outward = np.copysign(1.0, leg.yaw_axis[2])
 
-    def angles(
-        self,
-        ankle_m: FloatArray,
-        toe_out_rad: FloatArray,
-        tilt_rad: FloatArray,
-        ankle_rad: FloatArray,
+    def _level(
+        self, ankle_m: FloatArray, toe_out_rad: FloatArray, tilt_rad: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Angles (6, n) of the left and of the right leg; see `Legs`."""
         angles = inverse(self._leg, self._outward * toe_out_rad, ankle_m, tilt_rad)
-        left, right = angles[:, 0], angles[:, 1] * np.reshape(MIRROR, (6, 1))
-        left[4:] += ankle_rad[:, 0]
-        right[4:] += ankle_rad[:, 1]
-        return left, right
+        return angles[:, 0], angles[:, 1] * np.reshape(MIRROR, (6, 1))
 
 
-class TwoChains:
+class TwoChains(Legs):
     """Legs of any six joints each."""
 
     def __init__(self, leg: LegGeometry, chains: tuple[LegChain, LegChain]) -> None:
@@ -75,28 +88,19 @@ class TwoChains:
           leg: the leg with axes that meet which is most like the left one.
           chains: the left and the right leg.
         """
-        self._leg = leg
+        super().__init__(leg, [chain.signs[4:, None] for chain in chains])
         self._solver = ChainLegs(chains, leg.thigh_m + leg.tibia_m)
-        self._signs = [chain.signs[4:, None] for chain in chains]
 
-    def angles(
-        self,
-        ankle_m: FloatArray,
-        toe_out_rad: FloatArray,
-        tilt_rad: FloatArray,
-        ankle_rad: FloatArray,
+    def _level(
+        self, ankle_m: FloatArray, toe_out_rad: FloatArray, tilt_rad: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Angles (6, n) of the left and of the right leg; see `Legs`."""
         start = inverse(self._leg, toe_out_rad, ankle_m, tilt_rad)
         start[[0, 1, 5], 1] *= -1.0
         places = np.moveaxis(ankle_m, 0, -1).copy()
         places[1, :, 1] *= -1.0
         turn = toe_out_rad * np.array([[1.0], [-1.0]])
         found = self._solver.angles(start, places, _foot_rotation(turn, tilt_rad))
-        left, right = found[:, 0], found[:, 1]
-        left[4:] += self._signs[0] * ankle_rad[:, 0]
-        right[4:] += self._signs[1] * ankle_rad[:, 1]
-        return left, right
+        return found[:, 0], found[:, 1]
 
 
 def _foot_rotation(turn_rad: FloatArray, tilt_rad: FloatArray) -> FloatArray:

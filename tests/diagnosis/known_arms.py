@@ -14,7 +14,6 @@ LEAN = Rules(
     others=2,
     beam=1,
     growths=2,
-    paired=10,
     pairs=3,
     finished=3,
     swaps=2,

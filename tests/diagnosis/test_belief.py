@@ -22,14 +22,14 @@ def test_what_does_nearly_as_well_may_be_the_truth():
     near, far = 100 + 0.9 * TIED_NATS, 100 + 1.1 * TIED_NATS
     tied = found(ARM, (100.0, VISCOUS), (near, COULOMB), (far, GAIN))
     assert confusable(tied, placed(VISCOUS)) == (COULOMB_AT,)
-    assert alternatives(tied) == ((COULOMB_AT,),)
+    assert alternatives(tied, "effects") == ((COULOMB_AT,),)
 
 
 def test_where_no_model_is_exact_more_is_tolerated():
     """Residuals three times as energetic as noise tell a third."""
     near, far = 300 + 2.7 * TIED_NATS, 300 + 3.3 * TIED_NATS
     tied = found(ARM, (300.0, VISCOUS), (near, COULOMB), (far, GAIN))
-    assert alternatives(tied) == ((COULOMB_AT,),)
+    assert alternatives(tied, "effects") == ((COULOMB_AT,),)
 
 
 def test_more_values_must_do_better():
@@ -46,7 +46,9 @@ def test_of_a_pair_each_effect_has_its_own_rivals():
     pair = found(ARM, (100.0, VISCOUS, GAIN), (102.0, COULOMB, GAIN))
     assert confusable(pair, placed(VISCOUS)) == (COULOMB_AT,)
     assert confusable(pair, placed(GAIN)) == ()
-    assert alternatives(pair) == ((COULOMB_AT, EffectAt("servo_gain", "shoulder")),)
+    assert alternatives(pair, "effects") == (
+        (COULOMB_AT, EffectAt("servo_gain", "shoulder")),
+    )
 
 
 def test_probability_grows_with_the_gap():
@@ -80,4 +82,4 @@ def test_a_gap_counts_less_where_the_best_model_is_wrong():
 
 def test_where_nothing_is_believed_there_are_no_others():
     nothing = Found(102.0, 100.0, {1: []}, 0)
-    assert alternatives(nothing) == ()
+    assert alternatives(nothing, "none") == ()

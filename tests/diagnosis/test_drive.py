@@ -88,6 +88,19 @@ def test_position_targets_go_before_torques_and_targets_before_measurements():
                 np.testing.assert_allclose(values, np.full((1, 1, 2), wanted))
 
 
+def test_ends_of_steps_are_what_holds_there():
+    """Of a jump within a step both sides, and the mean says when it was."""
+    command = np.array([[0, 10], [1, 20], [2, 30], [3, 40.0]])
+    drive = Drive([arm_run([0, 1, 2, 3], command_rad=command)], np.zeros(1), 0.5)
+    before, after = drive.ends(np.array([[0.25], [0.75], [2.5]]))
+    np.testing.assert_allclose(before[:, 0], [[0, 10], [0, 10], [2, 30]])
+    np.testing.assert_allclose(after[:, 0], [[0, 10], [1, 20], [3, 40]])
+    asked, _ = drive.at(np.array([[0.75]]))
+    np.testing.assert_allclose(asked[0, 0], [0.5, 15])
+    torques = arm_run(np.arange(3.0), torque_nm=np.ones((3, 2)))
+    assert Drive([torques], np.zeros(1), 0.1).ends(np.array([[1.0]])) is None
+
+
 def test_torques_are_late_too():
     plant = plant_of(WHEEL)
     trace = trace_of(plant, np.arange(3.0), command_torque_nm=[0.0, 1.0, 2.0])

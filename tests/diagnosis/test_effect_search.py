@@ -54,6 +54,27 @@ def test_one_effect_is_found_with_its_value(truth):
     assert found.nothing > 2 * found.floor
 
 
+def test_two_effects_that_hide_each_other_are_found_together():
+    """A servo that is stiffer, and a forearm that is heavier: they sag as before."""
+    truth = ("servo_gain", "elbow", 1.3), ("payload_mass", "lower", 0.12)
+    _, found = searched(*truth)
+    assert found.chosen == 2
+    assert found.winner.keys == {"servo_gain@elbow", "payload_mass@lower"}
+    values = {placed.effect: placed.values[0] for placed in found.winner.model}
+    assert values["servo_gain"] == pytest.approx(1.3, rel=0.03)
+    assert values["payload_mass"] == pytest.approx(0.12, rel=0.1)
+
+
+def test_a_servo_that_is_much_too_weak():
+    """It drops its arm: it can do far less than the motion should have taken."""
+    search, _ = searched()
+    least_nm = 0.6 * float(search.usage.torque_nm[0])
+    _, found = searched(("torque_limit", "shoulder", least_nm))
+    (placed,) = found.winner.model
+    assert placed.key == "torque_limit@shoulder"
+    assert placed.values[0] == pytest.approx(least_nm, rel=0.02)
+
+
 def test_two_effects_are_found_together():
     truth = ("servo_gain", "elbow", 0.9), ("coulomb_friction", "shoulder", 0.1)
     _, found = searched(*truth)
@@ -126,6 +147,12 @@ def test_shares_of_what_is_above_the_noise():
     assert found.closed(best) == pytest.approx(0.9)
     assert found.winner is best
     assert Found(90.0, 100.0, {1: [best]}, 0).closed(best) == 0.0
+    # an effect that hardly shows in the selection data, and much in the others
+    both = Found(250.0, 100.0, {1: [best]}, 1, nothing_fit=1e4, floor_fit=200.0)
+    assert best.fit.energy == 0
+    assert both.closed(best) == pytest.approx((50 + 1e4) / (150 + 9800))
+    here = Found(1100.0, 100.0, {1: [best]}, 1, nothing_fit=1.0, floor_fit=0.0)
+    assert here.closed(best) == pytest.approx(901 / 1001)
     assert Found(90.0, 100.0, {1: [best]}, 0).winner is None
 
 

@@ -100,6 +100,42 @@ def test_fits_side_by_side_are_as_alone():
     assert fit_all(predictor, []) == []
 
 
+def test_a_followed_jacobian_leads_to_the_same_values_for_less(monkeypatch):
+    """One replay a step instead of one more for each value."""
+    effects = ("servo_gain", "elbow", 0.8), ("viscous_friction", "shoulder", 0.5)
+    predictor = predictor_of(*effects, noise_rad=NOISE_RAD)
+    start = (
+        Placed("servo_gain", "elbow", (1.0,)),
+        Placed("viscous_friction", "shoulder", (0.05,)),
+    )
+    asked = []
+    residuals = predictor.residuals
+
+    def counted(models, exactly):
+        asked.append(len(models))
+        return residuals(models, exactly)
+
+    monkeypatch.setattr(predictor, "residuals", counted)
+    (exact,) = fit_all(predictor, [start])
+    steps, asked[:] = len(asked), []
+    (followed,) = fit_all(predictor, [start], followed=True)
+    assert asked[0] == 3
+    assert set(asked[1:]) == {1}
+    assert len(asked) <= steps + 2
+    assert followed.energy == pytest.approx(exact.energy, abs=3)
+    for found, wanted in zip(followed.model, exact.model, strict=True):
+        assert found.values == pytest.approx(wanted.values, rel=0.02)
+
+
+def test_columns_of_some_effects():
+    effects = ("servo_gain", "elbow", 0.8), ("viscous_friction", "shoulder", 0.5)
+    predictor = predictor_of(*effects, noise_rad=NOISE_RAD)
+    start = tuple(Placed(name, place, (value,)) for name, place, value in effects)
+    (fit,) = fit_all(predictor, [start], steps=1)
+    np.testing.assert_array_equal(fit.jacobian_of(fit.model[1:]), fit.jacobian[:, 1:])
+    assert fit.jacobian_of(()).shape == (len(fit.residual), 0)
+
+
 def test_values_stay_within_their_bounds():
     """Negative friction would explain a joint that moves too well."""
     predictor = predictor_of(("servo_damping", "elbow", 0.5), noise_rad=NOISE_RAD)

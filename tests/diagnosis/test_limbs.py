@@ -86,8 +86,10 @@ def test_parts_move_as_they_do_in_the_whole(arms, model):
     trace = moved(arms)
     names = tuple(f"position.{joint}" for joint in arms.joints)
     channels = Channels(names, np.full(4, 1e-3))
-    by_parts = Predictor(arms, [trace], channels).predict([(), model])
-    (whole,) = replay([Run.of(trace)], variants_of(arms, [(), model]))
+    predictor = Predictor(arms, [trace], channels)
+    by_parts = predictor.predict([(), model])
+    variants = variants_of(arms, [(), model])
+    (whole,) = replay([Run.of(trace)], variants, predictor.step_s)
     np.testing.assert_allclose(by_parts, stacked(whole, channels), atol=1e-9)
 
 

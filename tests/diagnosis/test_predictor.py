@@ -43,6 +43,14 @@ def test_calibration_takes_out_what_the_step_costs():
     assert rms(predictor) < 0.05
 
 
+def test_another_step_is_of_the_same_traces():
+    plant, trace = measured(8.0, 0.2, noise_rad=0.0)
+    predictor = Predictor(plant, [trace], CHANNELS)
+    finer = predictor.stepped(predictor.step_s / 4)
+    assert finer.traces == predictor.traces
+    assert rms(finer) == pytest.approx(rms(predictor) / 4, rel=0.1)
+
+
 def test_of_a_right_model_only_noise_is_left():
     plant, trace = measured(8.0, 1.0, NOISE_RAD)
     predictor = Predictor(plant, [trace], CHANNELS)

@@ -45,6 +45,7 @@ NONE = [-1, 2, 0, -2, 1, 0, -1, 1]
     [
         (STEADY, NONE, 1),
         (STEADY, [-50] * 8, 1),
+        ([800, 400, 200, 50, 30, 20, 300, 90], NONE, 1),  # at some far more
         (STEADY, STEADY[::-1], 0),
         (WILD, NONE, 0),
         (STEADY, WILD, 0),

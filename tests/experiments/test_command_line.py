@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from experiments.command_line import VERBS, one_line
+from experiments.command_line import VERBS, main, one_line
 from walk_engine import gaits
 
 
@@ -64,22 +64,42 @@ def bad_input(tmp_path):
     }
 
 
-@pytest.mark.slow
-def test_bad_input_gets_one_line_and_status_2(bad_input, tmp_path):
+def test_bad_input_gets_one_line_and_status_2(bad_input, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     for case, (arguments, expected) in bad_input.items():
-        done = groundwalk(*arguments(), folder=tmp_path)
-        assert done.returncode == 2, (case, done)
-        assert done.stdout == "", case
-        assert done.stderr.count("\n") == 1, (case, done.stderr)
-        assert expected in done.stderr, (case, done.stderr)
+        words = ["groundwalk", *map(str, arguments())]
+        monkeypatch.setattr(sys, "argv", words)
+        with pytest.raises(SystemExit) as stop:
+            main()
+        said = capsys.readouterr()
+        assert stop.value.code == 2, (case, said)
+        assert said.out == "", case
+        assert said.err.count("\n") == 1, (case, said)
+        assert expected in said.err, (case, said)
     assert [p.name for p in (tmp_path / "taken").iterdir()] == ["mine.txt"]
     assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize("case", ["verb", "folder"])
+def test_the_command_itself_says_no_more(bad_input, tmp_path, case):
+    """As a process of its own, with all that is said while its code is imported."""
+    arguments, expected = bad_input[case]
+    done = groundwalk(*arguments(), folder=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert expected in line
 
 
 def test_help_names_every_verb(tmp_path):
     done = groundwalk("--help", folder=tmp_path)
     assert done.returncode == 0
     assert all(verb in done.stdout for verb in VERBS)
+
+
+def test_help_shows_a_verbs_own_options_before_those_of_all_runs(tmp_path):
+    said = groundwalk("transfer", "toy", "--help", folder=tmp_path).stdout
+    places = [said.index(f"--{name}") for name in ("episodes", "seed", "out", "json")]
+    assert places == sorted(places)
 
 
 def test_good_input_is_not_refused(tmp_path):

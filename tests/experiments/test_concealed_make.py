@@ -1,5 +1,6 @@
 import hashlib
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -31,10 +32,20 @@ def contents(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
-@pytest.mark.usefixtures("pendulums")
-def test_a_set_has_its_layout_and_a_sealed_truth(tmp_path, capsys):
-    folder = tmp_path / "set"
-    digest = make(folder)
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Folders of sets of pendulums by their number of cases; they stay as they are."""
+    folder = tmp_path_factory.mktemp("concealed")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(concealed_draw, "PLANTS", {"pendulum": 1.0})
+        for cases in (1, 2):
+            make(folder / str(cases), cases)
+    return {cases: folder / str(cases) for cases in (1, 2)}
+
+
+def test_a_set_has_its_layout_and_a_sealed_truth(made, capsys):
+    folder = made[2]
+    digest = make(folder)  # that it is made tells the hash
     sealed = (folder / "sealed" / "truth.json").read_bytes()
     assert hashlib.sha256(sealed).hexdigest() == digest
     assert digest in capsys.readouterr().out
@@ -62,7 +73,7 @@ def test_a_set_has_its_layout_and_a_sealed_truth(tmp_path, capsys):
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("pendulums")
-def test_a_killed_run_goes_on_to_the_same_bits(tmp_path, monkeypatch):
+def test_a_killed_run_goes_on_to_the_same_bits(made, tmp_path, monkeypatch):
     real = concealed_make.make_case
 
     def killed(cases, parts, seed, number):
@@ -76,16 +87,19 @@ def test_a_killed_run_goes_on_to_the_same_bits(tmp_path, monkeypatch):
     assert not (tmp_path / "broken" / "sealed.sha256").exists()
     monkeypatch.setattr(concealed_make, "make_case", real)
     make(tmp_path / "broken")
-    make(tmp_path / "whole")
-    assert contents(tmp_path / "broken") == contents(tmp_path / "whole")
-    alone = contents(tmp_path / "whole" / "cases" / "case_000")
-    make(tmp_path / "first", cases=1)
-    assert contents(tmp_path / "first" / "cases" / "case_000") == alone
+    assert contents(tmp_path / "broken") == contents(made[2])
 
 
-@pytest.mark.usefixtures("pendulums")
-def test_another_set_is_not_touched(tmp_path):
-    make(tmp_path / "set", cases=1)
+def test_a_case_does_not_depend_on_how_many_there_are(made):
+    alone, first, second = (
+        contents(made[cases] / "cases" / name)
+        for cases, name in ((1, "case_000"), (2, "case_000"), (2, "case_001"))
+    )
+    assert alone == first != second
+
+
+def test_another_set_is_not_touched(made, tmp_path):
+    shutil.copytree(made[1], tmp_path / "set")
     before = contents(tmp_path / "set")
     with pytest.raises(RunFolderError, match="another set"):
         make(tmp_path / "set", cases=1, seed=5)

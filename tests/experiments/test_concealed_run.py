@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 from diagnosis.verdict import Verdict
+from experiments import concealed_run
 from experiments.concealed_run import ConcealedRun, answer_all
 from groundwalk.errors import BadValueError, RunFolderError
 
@@ -39,15 +40,18 @@ def test_every_case_gets_its_own_answer(folder):
     }
 
 
-def test_an_answer_that_is_there_is_kept(folder):
+def test_an_answer_that_is_there_is_kept(folder, in_this_process):
+    in_this_process(concealed_run)
     answer_all(folder, ANSWERS, noted, seed=5, threads=1)
     (folder / ANSWERS / "case_001.json").unlink()
     answer_all(folder, ANSWERS, noted, seed=6, threads=1)
     assert [text[0][-1] for text in answers(folder).values()] == ["5", "6", "5"]
 
 
-def test_a_failure_is_raised_and_loses_no_answer(folder):
+def test_a_failure_is_raised_and_loses_no_answer(folder, in_this_process, monkeypatch):
+    in_this_process(concealed_run)
     answer_all(folder, ANSWERS, noted, seed=5, threads=1)
+    monkeypatch.undo()  # the failure is one in a process of its own
     (folder / ANSWERS / "case_002.json").unlink()
     with pytest.raises(BadValueError, match="case_002 is broken"):
         answer_all(folder, ANSWERS, broken, seed=5, threads=1)

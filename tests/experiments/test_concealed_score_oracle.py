@@ -8,12 +8,12 @@ import pytest
 
 from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import Estimate, Found
+from experiments.concealed_reading import read_case
 from experiments.concealed_score_oracle import (
     Oracle,
     answer_key,
     consult,
     log_score_gain,
-    read_case,
 )
 from experiments.concealed_score_truth import TrueCase
 from groundwalk.errors import RunFolderError

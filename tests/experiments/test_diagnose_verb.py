@@ -17,7 +17,7 @@ def recording(tmp_path_factory):
     hidden = ("servo_gain@swing:factor=0.9",)
     record(
         Record(
-            robot="pendulum", motion="multisine", hidden=hidden, duration=12.0, out=path
+            robot="pendulum", motion="multisine", hidden=hidden, duration=6.0, out=path
         )
     )
     return path

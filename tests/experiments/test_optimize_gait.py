@@ -5,7 +5,6 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from experiments.optimize_gait import OptimizeGait, search
@@ -24,7 +23,7 @@ def script(*arguments):
 def history_of(tmp_path, name, **settings):
     config = OptimizeGait(population=6, generations=2, **settings)
     folder = RunFolder(tmp_path / name)
-    search(config, folder, np.random.SeedSequence(config.seed))
+    search(config, folder)
     return (folder.path / "history.json").read_bytes()
 
 
@@ -165,9 +164,8 @@ def test_the_history_says_what_the_search_did(tmp_path):
 def test_a_damaged_checkpoint_is_named(tmp_path):
     folder = RunFolder(tmp_path)
     folder.write_bytes("checkpoint.pkl", b"\x80\x04 cut off")
-    seed = np.random.SeedSequence(1)
     with pytest.raises(RunFolderError, match=r"checkpoint\.pkl is damaged"):
-        search(OptimizeGait(population=6, generations=2), folder, seed)
+        search(OptimizeGait(population=6, generations=2), folder)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import pytest
 from made_up_diagnoses import KINDS
 
 from diagnosis.verdict import Estimate, Found, Pulse, Recordings
+from experiments import real_robots
 from experiments.diagnosis_console import console_lines
 from experiments.diagnosis_report_text import answer
 from experiments.real_robots import RealRobots, main
@@ -165,6 +166,26 @@ def test_the_console_stays_short():
     lines = console_lines(many, [])
     assert len(lines) <= 10
     assert ("", "and 18 more: the report has them all") in lines
+
+
+def test_the_report_is_the_one_that_judges(tmp_path, monkeypatch, capsys):
+    """The diagnosis wrote its own before; it is kept beside."""
+
+    def diagnosed(config):
+        folder = RunFolder.create("diagnose", config)
+        folder.write_text("report.html", "the diagnosis' own")
+        return folder, verdict()
+
+    monkeypatch.setattr(real_robots, "run_diagnosis", diagnosed)
+    recordings = tmp_path / ROBOTS["emps"].folder
+    recordings.mkdir()
+    (recordings / "one.parquet").touch()
+    main(RealRobots("emps", data=tmp_path, out=tmp_path / "run"))
+    told = capsys.readouterr().out
+    assert ROBOTS["emps"].title in (tmp_path / "run" / "report.html").read_text()
+    assert (tmp_path / "run" / "diagnosis.html").read_text() == "the diagnosis' own"
+    assert "report.html" in told
+    assert "diagnosis.html" in told
 
 
 @pytest.mark.parametrize("name", ROBOTS)

@@ -188,11 +188,10 @@ def test_the_nao_study_names_its_best_gait_and_the_goal():
 def test_a_studys_page_has_claims_after_the_answer(tmp_path):
     folder = RunFolder.create("transfer-nao", TransferNao(out=tmp_path / "run"))
     claims = [Claim("it works", False, "no")]
-    write_transfer_page(folder, "Q?", claims, ["more"], ["An answer."], "other.html")
+    write_transfer_page(folder, "Q?", claims, ["more"], ["An answer."])
     page = (tmp_path / "run" / "result.md").read_text()
     assert page.startswith("# Q?\n\nAn answer.\n\n- **does not hold**: it works: no\n")
-    assert "<strong>does not hold</strong>" in (folder.path / "other.html").read_text()
-    assert not folder.has("report.html")
+    assert "<strong>does not hold</strong>" in (folder.path / "report.html").read_text()
 
 
 # Where it comes from

@@ -1,23 +1,19 @@
 import json
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
 
 from experiments import run_folder
 from experiments.report_origin import Origin
 from experiments.run_folder import CONFIG, RunFolder, open_run
+from experiments.run_options import RunOptions
 from groundwalk.errors import BadValueError, RunFolderError
 
 
 @dataclass(frozen=True)
-class Config:
+class Config(RunOptions):
     size: int = 3
     names: tuple[str, ...] = ("a",)
-    seed: int = 1
-    out: Path | None = None
-    resume: Path | None = None
-    json: bool = False
 
 
 def test_a_run_describes_itself(tmp_path):

@@ -18,7 +18,7 @@ from experiments.transfer_nao_page import (
 from experiments.transfer_nao_study import START
 from experiments.walk_data import FLAT_TICKS, GaitCloud, on_lumps
 from experiments.walk_groundings import GAT, NONE, SGAT, UNEVEN
-from experiments.walk_places import LUMPS_M, Places, RealCourse, SimPlace
+from experiments.walk_places import LUMPS_M, Places, RealCourse, SimPlace, world_at
 from experiments.walk_records import RealWalks
 from experiments.walk_tuning import Grounding
 from groundwalk.errors import BadValueError, UnknownNameError
@@ -137,7 +137,7 @@ def test_a_diagnosis_corrects_every_sim_of_a_grounding(tmp_path, diagnosed, kind
     places = Places(correction=late(tmp_path / "found") if diagnosed else None)
     for place in (places.sim(), places.sim(0.005), places.sim(LUMPS_M)):
         seeds = np.random.SeedSequence(1).spawn(2)
-        world = place.world(robots.get("nao"), place.grounds(seeds), seeds)
+        world = world_at(place, robots.get("nao"), place.grounds(seeds), seeds)
         assert type(world) is kind
         assert (world.options.noise is None) == (place.lumps_m == 0)
 

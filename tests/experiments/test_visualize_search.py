@@ -123,8 +123,7 @@ def run_search(path, **settings):
         **settings,
     )
     folder = RunFolder.create("optimize-gait", config)
-    of_search, _ = np.random.SeedSequence(config.seed).spawn(2)
-    search(config, folder, of_search)
+    search(config, folder)
     return folder
 
 

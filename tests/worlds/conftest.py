@@ -8,6 +8,7 @@ import pytest
 import terrain
 import worlds
 from worlds import WorldOptions
+from worlds.rerun_log import write_rrd
 
 SETTLE_TICKS = 150
 
@@ -126,3 +127,11 @@ def topple(nao, crouch):
         for joint, angle in (("Hip", -0.8), ("Knee", 0.0), ("Ankle", 0.8)):
             pose[nao.joints.index(f"{side}{joint}Pitch")] = angle
     return pose
+
+
+@pytest.fixture(scope="module")
+def file(walk, tmp_path_factory):
+    """A Rerun file that holds nothing but the scene `walk` of the module that asks."""
+    path = tmp_path_factory.mktemp("rerun") / "walk.rrd"
+    write_rrd(path, [walk])
+    return path

@@ -17,17 +17,24 @@ from worlds.hidden_effects import Hidden
 NOTHING = "viscous_friction@LKneePitch:coefficient=0"
 
 
-def walked_m(*hidden, robots_n=2, threads=0, limit_s=3.0):
+def walked_m(*hidden, robots_n=2, threads=1):
+    """(robots_n,) how far the first robots of a crowd come in 2 s."""
     options = real_options(*hidden, threads=threads)
     seeds = np.random.SeedSequence(1).spawn(robots_n)
     grounds = [terrain.make("flat", 0)] * robots_n
     world = worlds.make("real", robots.get("nao"), grounds, seeds, options)
     try:
         vectors = np.tile(gaits.get("walk2014").to_vector(), (robots_n, 1))
-        rules = TrialRules(limit_s=limit_s, start_spread_rad=0.01)
+        rules = TrialRules(limit_s=2.0, start_spread_rad=0.01)
         return walk_trials(world, vectors, rules, seeds).distance_m
     finally:
         world.close()
+
+
+@pytest.fixture(scope="module")
+def nothing_m():
+    """Way of three robots, in two processes, with nothing hidden."""
+    return walked_m(NOTHING, robots_n=3, threads=2)
 
 
 def real_options(*hidden, **changes):
@@ -36,21 +43,19 @@ def real_options(*hidden, **changes):
 
 
 @pytest.mark.slow
-def test_with_nothing_hidden_it_walks_as_the_real_world_does():
-    np.testing.assert_allclose(walked_m(NOTHING), walked_m(), rtol=0.1)
+def test_with_nothing_hidden_it_walks_as_the_real_world_does(nothing_m):
+    np.testing.assert_allclose(nothing_m[:2], walked_m(), rtol=0.1)
 
 
 @pytest.mark.slow
-def test_what_is_hidden_tells():
+def test_what_is_hidden_tells(nothing_m):
     late = walked_m("speed_limit@LKneePitch:speed=1", "speed_limit@RKneePitch:speed=1")
-    assert (np.abs(late - walked_m(NOTHING)) > 0.05).all()
+    assert (np.abs(late - nothing_m[:2]) > 0.05).all()
 
 
 @pytest.mark.slow
-def test_bits_do_not_depend_on_how_many_robots_and_processes_there_are():
-    alone = walked_m(NOTHING, robots_n=1, threads=1, limit_s=1.0)
-    among = walked_m(NOTHING, robots_n=3, threads=2, limit_s=1.0)
-    assert alone[0] == among[0]
+def test_bits_do_not_depend_on_how_many_robots_and_processes_there_are(nothing_m):
+    assert walked_m(NOTHING, robots_n=1)[0] == nothing_m[0]
 
 
 @pytest.mark.slow

@@ -1,5 +1,6 @@
 """The PyBullet world: its processes, its robot, and how it walks beside the sim."""
 
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -19,6 +20,14 @@ from worlds import End, WorldOptions
 from worlds.bullet_robot import BulletRobot
 
 PATIENCE_S = 120
+
+
+@pytest.fixture(scope="module", autouse=True)
+def processes_of_their_own():
+    """Not those that all other tests have: see `quick_processes`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("worlds.real.multiprocessing", multiprocessing)
+        yield
 
 
 @pytest.fixture

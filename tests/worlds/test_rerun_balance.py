@@ -28,13 +28,6 @@ def walk():
     return scene(ground=make("waves", 1), columns=columns, end="fall")
 
 
-@pytest.fixture(scope="module")
-def file(walk, tmp_path_factory):
-    path = tmp_path_factory.mktemp("rerun") / "walk.rrd"
-    write_rrd(path, [walk])
-    return path
-
-
 def points_m(file, name):
     return components(file, f"/sim/balance/{name}", "Points3D:positions", 3)
 

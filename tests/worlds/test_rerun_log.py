@@ -29,13 +29,6 @@ def walk():
     return scene(ground=make("waves", 1), end="fall", world="real", gait={"speed": 0.2})
 
 
-@pytest.fixture(scope="module")
-def file(walk, tmp_path_factory):
-    path = tmp_path_factory.mktemp("rerun") / "walk.rrd"
-    write_rrd(path, [walk])
-    return path
-
-
 def test_rerun_finds_nothing_wrong_with_the_file(file, tmp_path):
     assert rerun("rrd", "verify", file).returncode == 0
     half = tmp_path / "half.rrd"

@@ -1,0 +1,51 @@
+"""What makes tests of whole studies short."""
+
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+
+import pytest
+
+from experiments.trials import TrialRules
+
+SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
+TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
+"""What is learned of real begins after 3 s: see `walk_data.FLAT_TICKS`."""
+
+
+@pytest.fixture
+def in_this_process(monkeypatch):
+    """Function: let a module do its work here, not in processes of their own.
+
+    Those take longer to begin than small work takes.
+    """
+
+    def patched(module):
+        monkeypatch.setattr(
+            module, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
+        )
+
+    return patched
+
+
+@pytest.fixture
+def short_walks(monkeypatch):
+    """Walks of the NAO studies that end soon: where they lead to does not matter."""
+    from experiments.evaluation import Study
+    from experiments.grounded_sim import walk_in_sim
+    from experiments.walk_data import walk
+
+    def short_walk(place, robot, vectors, seed, exploration_rad=(0.0,), rules=SHORT):
+        return walk(place, robot, vectors, seed, exploration_rad, rules)
+
+    short = {
+        "walk_records.ON_COURSE": TO_THE_LUMPS,
+        "walk_records.walk": short_walk,
+        "walk_groundings.ON_COURSE": SHORT,
+        "walk_tuning.ON_COURSE": SHORT,
+        "walk_tuning.RATED": SHORT,
+        "transfer_nao_falls.walk": short_walk,
+        "transfer_nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
+        "transfer_nao_study.Study": partial(Study, rules=SHORT),
+    }
+    for name, value in short.items():
+        monkeypatch.setattr(f"experiments.{name}", value)
