@@ -10,10 +10,11 @@ from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 
-_LEAST_WHOLE, _LEAST_WHOLE_IF_LONG = 3, 4
+_LEAST_WHOLE, _LEAST_WHOLE_IF_LONG = 3, 6
 _LONG_S = 8.0
-"""From this many recordings on, whole ones are set aside. Of three, each of a motion of
-its own, one would be left to fit: if they are long enough, all are cut instead."""
+"""From this many recordings on, whole ones are set aside. Of a few, each of a motion of
+its own, what one shows would be fitted, or judged, or tested, but never all of it: if
+they are long enough, all are cut instead."""
 _SHARE = 0.25
 _GAP_S = 0.2
 _TWICE_S = 20.0
@@ -44,7 +45,7 @@ class Split:
 def split(traces: Sequence[Trace]) -> Split:
     """Set traces aside; the same traces are always split alike.
 
-    With four or more, or three short ones, whole traces are, such that what moves in
+    With six or more, or three short ones, whole traces are, such that what moves in
     those set aside moves in the others, too. Otherwise, or where that cannot be, each
     is cut into contiguous parts, 0.2 s apart, in the order that leaves the most motion
     to fit.

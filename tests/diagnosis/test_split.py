@@ -122,10 +122,20 @@ def test_both_ways_of_a_motion_that_repeats_itself_are_fitted():
         assert 0.3 < forward < 0.7
 
 
-@pytest.mark.parametrize(("duration_s", "cut"), [(7.0, False), (9.0, True)])
-def test_three_recordings_are_cut_if_they_are_long(duration_s, cut):
-    result = split([trace(name, duration_s) for name in "abc"])
-    assert (len(result.fit) > 1) is cut
-    if cut:
-        for part in (result.fit, result.select, result.test):
-            assert {one.name[0] for one in part} == {"a", "b", "c"}
+@pytest.mark.parametrize(
+    ("every", "duration_s", "cut"),
+    [
+        ("abc", 7.0, False),
+        ("abc", 9.0, True),
+        ("abcde", 7.0, False),
+        ("abcde", 9.0, True),
+        ("abcdef", 9.0, False),
+    ],
+)
+def test_a_few_recordings_are_cut_if_they_are_long(every, duration_s, cut):
+    result = split([trace(name, duration_s) for name in every])
+    parts = (result.fit, result.select, result.test)
+    names_of = [{one.name[0] for one in part} for part in parts]
+    assert all(names == set(every) for names in names_of) is cut
+    if not cut:
+        assert sum(len(names) for names in names_of) == len(every)
