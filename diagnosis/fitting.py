@@ -268,7 +268,8 @@ def _fit(
 
     low, high = coordinates.bounds()
     course = _Course(coordinates, nudges, followed, ask)
-    x = np.clip(coordinates.of(coordinates.model), low + 1e-9, high - 1e-9)
+    inside = [1e-9 * np.maximum(1.0, np.abs(bound)) for bound in (low, high)]
+    x = np.clip(coordinates.of(coordinates.model), low + inside[0], high - inside[1])
     if jacobian is not None:
         course.begin(x, jacobian)
     held = HOLD * np.eye(len(x))

@@ -143,6 +143,17 @@ def test_values_stay_within_their_bounds():
     assert 0 <= fit.model[0].values[0] < 1e-4
 
 
+def test_a_start_at_a_bound_takes_a_known_jacobian():
+    """The more of a scale a bound is, the farther inside it SciPy begins."""
+    predictor = predictor_of(("armature", "elbow", 0.02), noise_rad=NOISE_RAD)
+    parameter = effect("armature").parameters(predictor.plant, "elbow")[0]
+    start = (Placed("armature", "elbow", (parameter.high,)),)
+    (fit,) = fit_all(predictor, [start], steps=1)
+    (again,) = fit_all(predictor, [start], followed=True, jacobians=[fit.jacobian])
+    assert again.model[0].values[0] < parameter.high
+    assert again.energy < fit.energy
+
+
 @pytest.mark.parametrize("name", sorted(EFFECTS))
 def test_coordinates_there_and_back(name):
     """Steps of a coordinate are small and leave no value out."""
