@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from diagnosis.audit_result import Audit
-from diagnosis.belief import confusable, probability, twins
+from diagnosis.belief import confusable, gap, probability, twins
 from diagnosis.effect import Placed
 from diagnosis.estimates import estimates
 from diagnosis.fitting import Fit as FittedModel
@@ -21,9 +21,9 @@ MOST_LEFT = 0.5
 """... unless what it leaves is below so large a part of the noise's own energy."""
 
 
-UNSURE, WEAK = 0.5, 4.0
-"""An effect that is less probable may as well be another; so many times the least gain
-of a search is a weak reason to believe it all the same."""
+UNSURE_NATS, WEAK = 3.0, 4.0
+"""With a smaller gap to models without it an effect may as well be another; so many
+times the least gain of a search is a weak reason to believe it all the same."""
 
 
 def sure(searched: Searched, least_gain: float) -> Searched:
@@ -38,10 +38,10 @@ def sure(searched: Searched, least_gain: float) -> Searched:
     winner = searched.winner
     if winner is None or searched.chosen == 1:
         return searched
-    least = min(probability(searched, placed) for placed in winner.model)
+    least = min(gap(searched, placed) for placed in winner.model)
     smaller = searched.best[searched.chosen - 1][0]
     weak = smaller.selected - winner.selected < WEAK * least_gain
-    if least >= UNSURE or not weak or not smaller.keys < winner.keys:
+    if least >= UNSURE_NATS or not weak or not smaller.keys < winner.keys:
         return searched
     return sure(replace(searched, chosen=searched.chosen - 1), least_gain)
 
@@ -60,7 +60,8 @@ def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
     if left > MOST_LEFT * searched.floor and closed < LEAST_CLOSED:
         return "unknown"
     still = set(plant.joints) - audited.moving
-    if searched.winner and not {one.place for one in searched.winner.model} <= still:
+    at_rest = still | plant.at_rest(still)
+    if searched.winner and not {one.place for one in searched.winner.model} <= at_rest:
         return "effects"
     return "not_identifiable" if still else "none"
 

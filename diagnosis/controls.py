@@ -1,58 +1,123 @@
 """Two controls: the right physics elsewhere, and other physics at the right place."""
 
+from collections.abc import Collection
+from dataclasses import dataclass
+
 import numpy as np
 
 from diagnosis.effect import Placed
-from diagnosis.fitting import fit_all
-from diagnosis.library import EFFECTS
+from diagnosis.fitting import Fit, fit_all
+from diagnosis.library import EFFECTS, grown_from
 from diagnosis.predictor import Model, Predictor
-from diagnosis.search_result import Judged, keys_of
 
 MOST = 4
+STEPS = 4
 
 
-def wrong_places(predictor: Predictor, model: Model) -> Model | None:
-    """The same effects at the wrong places that do best, refitted; None if none is."""
-    options = [
-        tuple(
-            Placed(placed.effect, place, placed.values) if other is placed else other
-            for other in model
-        )
-        for placed in model
-        for place in EFFECTS[placed.effect].places(predictor.plant, predictor.traces)
-        if place != placed.place
-    ]
-    return _best(predictor, model, options)
+@dataclass(frozen=True, eq=False)
+class Controls:
+    """What a model would be without its main effect, and with another in its stead.
 
-
-def wrong_effects(
-    predictor: Predictor, model: Model, tried: list[Judged], confusable: set[str]
-) -> Model | None:
-    """Other effects at the right places that do best; None if none was tried.
-
-    Args:
-      predictor: of the data to fit to.
-      model: that is believed.
-      tried: other models, already fitted.
-      confusable: keys of effects that explain the same; they are no control.
+    Attributes:
+      without: the other effects, refitted.
+      wrong_place: with the same effect at the other place that does best; None where it
+        has no other.
+      wrong_effect: with another effect at the same place, drawn by lot; None where no
+        other can be there.
     """
-    places = sorted(placed.place for placed in model)
-    others = [
-        judged.model
-        for judged in tried
-        if sorted(placed.place for placed in judged.model) == places
-        and judged.keys != keys_of(model)
-        and not judged.keys & confusable
+
+    without: Model
+    wrong_place: Model | None
+    wrong_effect: Model | None
+
+    @classmethod
+    def of(
+        cls,
+        predictor: Predictor,
+        model: Model,
+        alike: Collection[str],
+        rng: np.random.Generator,
+    ) -> "Controls":
+        """Fit all of them.
+
+        Args:
+          predictor: of the data to fit to.
+          model: that is believed, of one effect at least.
+          alike: "effect@place" of what explains the same; that is no control.
+          rng: draws the lot.
+        """
+        main, rest = _main(predictor, model)
+        return cls(
+            rest,
+            _best(predictor, rest, _elsewhere(predictor, main)),
+            _best(predictor, rest, _by_lot(predictor, main, rest, alike, rng)),
+        )
+
+
+def _main(predictor: Predictor, model: Model) -> tuple[Placed, Model]:
+    """The effect without which most is left, and the others without it."""
+    if len(model) == 1:
+        return model[0], ()
+    rests = [tuple(one for one in model if one is not main) for main in model]
+    fits = _fitted(predictor, rests)
+    worst = max(range(len(model)), key=lambda i: fits[i].energy)
+    return model[worst], fits[worst].model
+
+
+def _elsewhere(predictor: Predictor, main: Placed) -> list[Placed]:
+    return [
+        Placed(main.effect, place, main.values)
+        for place in EFFECTS[main.effect].places(predictor.plant, predictor.traces)
+        if place != main.place
     ]
-    return others[0] if others else None
 
 
-def _best(predictor: Predictor, model: Model, options: list[Model]) -> Model | None:
-    """The option that fits best, of those that first look best."""
-    options = [option for option in options if len(keys_of(option)) == len(model)]
-    if not options:
+def _by_lot(
+    predictor: Predictor,
+    main: Placed,
+    rest: Model,
+    alike: Collection[str],
+    rng: np.random.Generator,
+) -> list[Placed]:
+    """One of the effects that can be there, of typical size; none if there is none.
+
+    With as many values as the main one, if there are such.
+    """
+    plant, traces = predictor.plant, predictor.traces
+    others = [
+        Placed(
+            name,
+            main.place,
+            tuple(p.typical for p in kind.parameters(plant, main.place)),
+        )
+        for name, kind in EFFECTS.items()
+        if main.place in kind.places(plant, traces)
+    ]
+    barred = {main.key, *alike, *(one.key for one in rest)}
+    others = [
+        one
+        for one in others
+        if not (one.key in barred or _contains(one, main) or _contains(main, one))
+    ]
+    equal = [one for one in others if len(one.values) == len(main.values)]
+    choice = equal or others
+    return [choice[int(rng.integers(len(choice)))]] if choice else []
+
+
+def _contains(one: Placed, other: Placed) -> bool:
+    return one.key in (grown.key for grown in grown_from(other))
+
+
+def _best(predictor: Predictor, rest: Model, options: list[Placed]) -> Model | None:
+    """With the option that fits best, of those that first look best."""
+    taken = {placed.key for placed in rest}
+    models = [(*rest, one) for one in options if one.key not in taken]
+    if not models:
         return None
-    residuals = predictor.residuals(options)
-    order = np.argsort((residuals**2).sum(axis=1))[:MOST]
-    fits = fit_all(predictor, [options[int(i)] for i in order], 4, followed=True)
-    return min(fits, key=lambda fit: fit.energy).model
+    energies = (predictor.residuals(models) ** 2).sum(axis=1)
+    likely = [models[int(i)] for i in np.argsort(energies)[:MOST]]
+    return min(_fitted(predictor, likely), key=lambda fit: fit.energy).model
+
+
+def _fitted(predictor: Predictor, models: list[Model]) -> list[Fit]:
+    return fit_all(predictor, models, STEPS, followed=True)

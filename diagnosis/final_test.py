@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from diagnosis.belief import confusable
+from diagnosis.belief import confusable, twins
 from diagnosis.ceiling import ceiling_errors
-from diagnosis.controls import wrong_effects, wrong_places
+from diagnosis.controls import Controls
 from diagnosis.predictor import Model, Predictor
 from diagnosis.search_result import Found
 from diagnosis.surprise import channel_rms
@@ -33,24 +33,19 @@ class FinalTest:
           test: of the test data, likewise.
           searched: what the search came to.
           model: that is believed, fitted to `both`.
-          seed: of the flexible regression.
+          seed: of the flexible regression, and of the lot that draws a control.
         """
-        tried = searched.best.get(searched.chosen, [])
-        others = {
-            f"{at.name}@{at.place}"
-            for placed in (searched.winner.model if searched.winner else ())
-            for at in confusable(searched, placed)
-        }
         self._test = test
         self._errors = {"nominal": _error(nominal[1], ())}
         self._errors["corrected"] = _error(test, model)
+        regression, lot = seed.spawn(2)
         if model:
-            elsewhere = wrong_places(both, model)
-            other = wrong_effects(both, model, tried, others)
-            for name, control in (("wrong_place", elsewhere), ("wrong_effect", other)):
+            alike = _alike(both, searched, model)
+            controls = Controls.of(both, model, alike, np.random.default_rng(lot))
+            for name, control in vars(controls).items():
                 if control is not None:
                     self._errors[name] = _error(test, control)
-        self._errors["ceiling"] = ceiling_errors(*nominal, seed)
+        self._errors["ceiling"] = ceiling_errors(*nominal, regression)
 
     def fit(self) -> Fit:
         """For `Verdict.fit`."""
@@ -68,6 +63,15 @@ class FinalTest:
             key: float(np.sqrt(np.mean(rms**2))) for key, rms in self._errors.items()
         }
         return Fit(floor=1.0, channels=channels, **every)
+
+
+def _alike(both: Predictor, searched: Found, model: Model) -> set[str]:
+    """Keys ("effect@place") of all that may be one of the model's."""
+    return {
+        f"{at.name}@{at.place}"
+        for placed in model
+        for at in (*confusable(searched, placed), *twins(both.plant, placed))
+    }
 
 
 def _error(test: Predictor, model: Model) -> FloatArray:

@@ -3,7 +3,7 @@
 import contextlib
 from collections.abc import Iterator
 
-from diagnosis.effect import Effect
+from diagnosis.effect import Effect, Placed
 from diagnosis.effects.armature import Armature
 from diagnosis.effects.backlash import Backlash
 from diagnosis.effects.com_offset import ComOffset
@@ -75,6 +75,11 @@ def effect(name: str) -> Effect:
     if name not in EFFECTS:
         raise UnknownNameError("effect", name, EFFECTS)
     return EFFECTS[name]
+
+
+def grown_from(placed: Placed) -> tuple[Placed, ...]:
+    """Effects at the same place that contain this one: where to begin with each."""
+    return tuple(one for kind in EFFECTS.values() for one in kind.grown_from(placed))
 
 
 @contextlib.contextmanager

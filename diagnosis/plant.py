@@ -1,5 +1,6 @@
 """The nominal model of a robot, as the diagnosis replays it."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -72,6 +73,22 @@ class Plant:
         carried = [i for i in range(1, model.nbody) if _carries(model, own, i)]
         carrying = [i for i in range(1, model.nbody) if _carries(model, i, own)]
         return frozenset(model.body(i).name for i in (*carried, *carrying))
+
+    def at_rest(self, still: Collection[str]) -> frozenset[str]:
+        """The bodies that no joint moves as long as some of the joints are still."""
+        if self.base == "floating":
+            return frozenset()
+        moved = [
+            int(self.model.joint(name).bodyid[0])
+            for name in self.joints
+            if name not in still
+        ]
+        return frozenset(
+            name
+            for name in self.bodies
+            for body in [int(self.model.body(name).id)]
+            if not any(one == body or _carries(self.model, one, body) for one in moved)
+        )
 
 
 def _carries(model: "mujoco.MjModel", body: int, other: int) -> bool:

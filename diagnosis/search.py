@@ -56,12 +56,15 @@ class Search:
         self.signatures = signatures(self.fit, (), self.usage, intervals)
         starts = Starts(self.fit, self.signatures, self.rules)
         best = {1: self.judged(starts.alone(residual))}
-        chosen, size, energy = 0, 1, nothing
+        chosen, size, energy, fitted = 0, 1, nothing, self._nothing_fit
         while best.get(size):
-            if self.worth(energy, best[size][0].selected, nothing):
+            first = best[size][0]
+            # what fits the selection data by chance gains little where it was fitted
+            seen = fitted - first.fit.energy > self.least_gain
+            if seen and self.worth(energy, first.selected, nothing):
                 chosen = size
                 best[size] = self._refined(best[size])
-                energy = best[size][0].selected
+                energy, fitted = best[size][0].selected, best[size][0].fit.energy
             # two together may explain what each alone does not: a gap that rattles
             # without its friction, say
             elif size > 1 or nothing < self.rules.suspicious * self.floor:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.effect import Placed
-from diagnosis.library import EFFECTS
+from diagnosis.library import EFFECTS, grown_from
 from diagnosis.predictor import Model, Predictor
 from diagnosis.screening import Guess, Screen, stretched
 from diagnosis.search_result import Judged, Rules, keys_of
@@ -207,6 +207,5 @@ def grown(model: Model) -> list[Model]:
     return [
         tuple(grown if other is placed else other for other in model)
         for placed in model
-        for kind in EFFECTS.values()
-        for grown in kind.grown_from(placed)
+        for grown in grown_from(placed)
     ]

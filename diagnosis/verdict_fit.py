@@ -16,14 +16,16 @@ class Errors:
       corrected: of the sim with the effects found.
       floor: what the noise alone makes.
       ceiling: what a flexible regression without physics reaches.
-      wrong_place: of the same effects, fitted at wrong places.
-      wrong_effect: of wrong effects, fitted at the right places.
+      without: of the effects found, refitted without the one that closes most.
+      wrong_place: of that one at the other place that does best, and the rest.
+      wrong_effect: of another effect at its place, drawn by lot, and the rest.
     """
 
     nominal: float
     corrected: float
     floor: float
     ceiling: float | None = None
+    without: float | None = None
     wrong_place: float | None = None
     wrong_effect: float | None = None
 

@@ -1,25 +1,30 @@
-"""`groundwalk concealed run`: diagnose every case without looking at its truth."""
+"""`groundwalk concealed run`: answer every case without looking at its truth."""
 
 import multiprocessing
 import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 import tyro
 
+from diagnosis.baselines import BASELINES
 from diagnosis.diagnose import diagnose
+from diagnosis.split import split
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.concealed_reading import read_case
+from experiments.concealed_score_truth import ANSWERS
+from experiments.concealed_score_truth import BASELINES as BASELINE_ANSWERS
 from experiments.progress import progress
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text
 
-ANSWERS, CASES = "answers", "cases"
+CASES = "cases"
 
 
 @dataclass(frozen=True)
@@ -28,11 +33,13 @@ class ConcealedRun:
 
     Attributes:
       folder: the set.
+      by: what answers: the diagnosis, or one of the baselines it is compared with.
       seed: every random number follows from it and the case's name.
       threads: cases at a time, each in a process of its own; 0 for one per core.
     """
 
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
+    by: Literal["diagnosis", "sysid", "bic", "sparse"] = "diagnosis"
     seed: int = 1
     threads: int = 0
 
@@ -45,8 +52,14 @@ class ConcealedRun:
 
 
 def main(config: ConcealedRun) -> None:
-    """Diagnose what has no answer yet."""
-    answer_all(config.folder, ANSWERS, diagnosed, config.seed, config.threads)
+    """Answer what has no answer yet."""
+    kind, answer = ANSWERS, diagnosed
+    if config.by != "diagnosis":
+        kind, answer = (
+            f"{BASELINE_ANSWERS}/{config.by}",
+            partial(by_baseline, config.by),
+        )
+    answer_all(config.folder, kind, answer, config.seed, config.threads)
 
 
 Answer = Callable[[Path, int], Verdict]
@@ -56,7 +69,7 @@ Answer = Callable[[Path, int], Verdict]
 def answer_all(
     folder: Path, kind: str, answer: Answer, seed: int, threads: int
 ) -> None:
-    """Write the missing answers of a kind.
+    """Write the missing answers of a kind; a case that fails does not stop the others.
 
     Args:
       folder: the set.
@@ -64,6 +77,9 @@ def answer_all(
       answer: a function of a module, so that processes find it.
       seed: of every case.
       threads: processes; 0 for one per core.
+
+    Raises:
+      Exception: what the first case that failed has raised, once all others are done.
     """
     cases = sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
     missing = [case for case in cases if not _path(folder, kind, case).exists()]
@@ -75,14 +91,22 @@ def answer_all(
         ProcessPoolExecutor(workers, mp_context=context) as pool,
     ):
         asked = {pool.submit(answer, case, seed): case for case in missing}
+        failures: dict[str, BaseException] = {}
         try:
             for future in as_completed(asked):
                 case = asked[future]
-                write_text(_path(folder, kind, case), future.result().to_json())
-                bar.advance(case.name)
+                failure = future.exception()
+                if failure is None:
+                    write_text(_path(folder, kind, case), future.result().to_json())
+                    bar.advance(case.name)
+                else:
+                    failures[case.name] = failure
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+    for name, failure in failures.items():
+        failure.add_note(f"in {name}; without an answer: {', '.join(failures)}")
+        raise failure
 
 
 def diagnosed(case: Path, seed: int) -> Verdict:
@@ -91,6 +115,16 @@ def diagnosed(case: Path, seed: int) -> Verdict:
     try:
         plant, traces, reference = read_case(case)
         return diagnose(plant, traces, own, reference=reference).verdict
+    except BadRecordingError as error:
+        return Verdict(kind="not_identifiable", limits=(str(error),))
+
+
+def by_baseline(name: str, case: Path, seed: int) -> Verdict:
+    """A baseline's verdict, from what a diagnosis learns from; none uses the seed."""
+    try:
+        plant, traces, _ = read_case(case)
+        parts = split(traces)
+        return BASELINES[name](plant, [*parts.fit, *parts.select])
     except BadRecordingError as error:
         return Verdict(kind="not_identifiable", limits=(str(error),))
 

@@ -167,15 +167,21 @@ def _closed(oracle: Oracle, method: str) -> float | None:
 def _controls(
     verdict: Verdict | None, closed: float | None
 ) -> tuple[float | None, float | None]:
-    """What the controls close, scaled from the answer's own held-out errors."""
+    """What the controls close, as a part of what the effect closes that they replace.
+
+    From the answer's own held-out errors; an answer that closes nothing has none.
+    """
     fit = verdict.fit if verdict else None
-    if fit is None or closed is None or fit.corrected >= fit.nominal:
+    if fit is None or closed is None:
+        return None, None
+    without = fit.nominal if fit.without is None else fit.without
+    if fit.corrected >= without:
         return None, None
 
     def share(error: float | None) -> float | None:
         if error is None:
             return None
-        part = closed * (fit.nominal - error) / (fit.nominal - fit.corrected)
+        part = closed * (without - error) / (without - fit.corrected)
         return min(max(part, -_BOUND), _BOUND)
 
     return share(fit.wrong_place), share(fit.wrong_effect)

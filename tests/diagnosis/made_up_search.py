@@ -11,6 +11,7 @@ VALUES = {
     "coulomb_friction": (0.1,),
     "servo_gain": (0.8,),
     "armature": (0.01,),
+    "payload_mass": (0.1,),
     "stribeck_friction": (0.1, 0.1, 0.1),
 }
 

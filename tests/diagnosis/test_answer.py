@@ -11,6 +11,7 @@ from diagnosis.search_result import Found
 
 ARM = arm()
 ALL, ELBOW_STILL = frozenset({"shoulder", "elbow"}), frozenset({"shoulder"})
+SHOULDER_STILL = frozenset({"elbow"})
 OPEN = "not_identifiable"
 
 
@@ -62,6 +63,10 @@ def nothing(energy):
             ELBOW_STILL,
             "effects",
         ),
+        (found(ARM, (101.0, "payload_mass@lower")), ELBOW_STILL, "effects"),
+        (found(ARM, (101.0, "payload_mass@lower")), SHOULDER_STILL, "effects"),
+        (found(ARM, (101.0, "payload_mass@upper")), SHOULDER_STILL, OPEN),
+        (found(ARM, (101.0, "payload_mass@lower")), frozenset(), OPEN),
         (found(ARM, (5000.0, "viscous_friction@elbow")), ALL, "unknown"),
         (found(ARM, (120.0, "viscous_friction@elbow"), nothing=140.0), ALL, "effects"),
         (nothing(101.0), ALL, "none"),
@@ -70,5 +75,5 @@ def nothing(energy):
     ],
 )
 def test_kinds(searched, moving, wanted):
-    """What a joint that never moves lacks has a name only if another one lacks it."""
+    """What no moving joint shows is named only together with what one shows."""
     assert kind(searched, moving) == wanted

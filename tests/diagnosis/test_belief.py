@@ -4,7 +4,7 @@ import pytest
 from made_up_search import found, judged, placed
 from made_up_traces import arm
 
-from diagnosis.belief import TIED_NATS, alternatives, confusable, probability
+from diagnosis.belief import MOST, TIED_NATS, alternatives, confusable, probability
 from diagnosis.search_result import VALUE_NATS, Found
 from diagnosis.verdict import EffectAt
 
@@ -55,7 +55,7 @@ def test_probability_grows_with_the_gap():
     gaps = [sure((100.0, VISCOUS), (100.0 + gap, COULOMB)) for gap in (0, 5, 50, 5000)]
     assert gaps == sorted(gaps)
     assert gaps[0] < 0.5
-    assert gaps[-1] > 0.95
+    assert 0.95 < gaps[-1] < MOST
 
 
 @pytest.mark.parametrize("rival", [COULOMB, ELSEWHERE])
@@ -70,8 +70,8 @@ def test_smaller_models_are_rivals_too():
     pairs = found(ARM, (100.0, VISCOUS, GAIN), (150.0, COULOMB, GAIN))
     single = {1: [judged(ARM, 104.0, VISCOUS)]}
     known = Found(1e4, 100.0, {**single, **pairs.best}, 2)
-    assert probability(pairs, placed(GAIN)) > 0.99
-    assert probability(known, placed(GAIN)) < 0.5
+    assert probability(pairs, placed(GAIN)) > 0.97
+    assert probability(known, placed(GAIN)) < 0.6
     assert probability(known, placed(VISCOUS)) == probability(pairs, placed(VISCOUS))
 
 

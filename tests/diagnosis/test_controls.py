@@ -2,16 +2,19 @@
 
 import numpy as np
 import pytest
-from made_up_search import judged
 from made_up_traces import arm, recorded
 
-from diagnosis.controls import wrong_effects, wrong_places
+from diagnosis.controls import Controls
 from diagnosis.effect import Placed
 from diagnosis.predictor import Channels, Predictor
 
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, 4e-4))
 TRUTH = Placed("servo_gain", "elbow", (0.8,))
 PLANT = arm()
+
+
+def controls(predictor, *model, alike=(), seed=1):
+    return Controls.of(predictor, model, alike, np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="module")
@@ -28,38 +31,60 @@ def energy(predictor, model):
 
 
 def test_the_same_effect_elsewhere_does_its_best_and_is_worse(predictor):
-    model = wrong_places(predictor, (TRUTH,))
-    (placed,) = model
+    found = controls(predictor, TRUTH)
+    assert found.without == ()
+    (placed,) = found.wrong_place
     assert placed.key == "servo_gain@shoulder"
     assert placed.values != TRUTH.values
     unfitted = Placed("servo_gain", "shoulder", TRUTH.values)
-    assert energy(predictor, model) < energy(predictor, (unfitted,))
-    assert energy(predictor, model) > 20 * energy(predictor, (TRUTH,))
+    assert energy(predictor, (placed,)) < energy(predictor, (unfitted,))
+    assert energy(predictor, (placed,)) > 20 * energy(predictor, (TRUTH,))
 
 
-def test_of_a_pair_one_effect_moves(predictor):
-    model = (TRUTH, Placed("servo_gain", "shoulder", (1.01,)))
-    assert wrong_places(predictor, model) is None  # each other's place is taken
-    other = Placed("viscous_friction", "shoulder", (0.01,))
-    keys = {placed.key for placed in wrong_places(predictor, (TRUTH, other))}
-    assert keys == {"servo_gain@elbow", "viscous_friction@elbow"}
+def test_of_a_pair_the_main_effect_is_replaced(predictor):
+    friction = Placed("viscous_friction", "shoulder", (0.01,))
+    for pair in ((TRUTH, friction), (friction, TRUTH)):
+        found = controls(predictor, *pair)
+        assert [one.key for one in found.without] == [friction.key]
+        keys = [one.key for one in found.wrong_place]
+        assert keys == [friction.key, "servo_gain@shoulder"]
+        kept, other = found.wrong_effect
+        assert kept.key == friction.key
+        assert other.place == "elbow"
+        assert other.effect != "servo_gain"
 
 
 def test_what_has_one_place_has_no_wrong_one(predictor):
     latency = Placed("command_latency", "commands", (0.01,))
-    assert wrong_places(predictor, (latency,)) is None
+    found = controls(predictor, latency)
+    assert found.wrong_place is None
+    assert found.wrong_effect is None
+    both_shoulders = Placed("servo_gain", "shoulder", (1.01,))
+    assert controls(predictor, TRUTH, both_shoulders).wrong_place is None
 
 
-def test_the_best_other_effect_at_the_place(predictor):
-    tried = [
-        judged(PLANT, 100.0, "servo_gain@elbow"),
-        judged(PLANT, 102.0, "armature@elbow"),
-        judged(PLANT, 110.0, "viscous_friction@shoulder"),
-        judged(PLANT, 120.0, "viscous_friction@elbow"),
-        judged(PLANT, 130.0, "coulomb_friction@elbow"),
-    ]
-    model = tried[0].model
-    assert wrong_effects(predictor, model, tried, set()) == tried[1].model
-    tied = {"armature@elbow"}
-    assert wrong_effects(predictor, model, tried, tied) == tried[3].model
-    assert wrong_effects(predictor, model, tried[:1], set()) is None
+def test_another_effect_is_drawn_by_lot(predictor):
+    """With as many values as the true one, and none that explains the same."""
+    drawn = {
+        controls(predictor, TRUTH, seed=seed).wrong_effect[0].key for seed in range(12)
+    }
+    assert len(drawn) > 3
+    assert TRUTH.key not in drawn
+    alike = {"armature@elbow", "torque_limit@elbow", "viscous_friction@elbow"}
+    others = {
+        controls(predictor, TRUTH, alike=alike, seed=seed).wrong_effect[0]
+        for seed in range(12)
+    }
+    assert not alike & {one.key for one in others}
+    assert {len(one.values) for one in others} == {1}
+    for one in others:
+        assert energy(predictor, (one,)) > 5 * energy(predictor, (TRUTH,))
+
+
+def test_what_contains_an_effect_is_no_other_effect(predictor):
+    dry = Placed("coulomb_friction", "elbow", (0.1,))
+    worn = Placed("stribeck_friction", "elbow", (0.1, 0.05, 0.1))
+    for one, other in ((dry, worn), (worn, dry)):
+        for seed in range(12):
+            found = controls(predictor, one, seed=seed)
+            assert found.wrong_effect[0].key != other.key

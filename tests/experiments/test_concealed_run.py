@@ -1,10 +1,15 @@
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from diagnosis.servo import Servo
+from diagnosis.split import split
+from diagnosis.trace import Trace
 from diagnosis.verdict import Verdict
 from experiments import concealed_run
-from experiments.concealed_run import ConcealedRun, answer_all
+from experiments.concealed_run import ConcealedRun, answer_all, main
+from experiments.concealed_score_truth import read_baselines
 from groundwalk.errors import BadValueError, RunFolderError
 
 ANSWERS = "answers"
@@ -16,7 +21,14 @@ def noted(case: Path, seed: int) -> Verdict:
 
 
 def broken(case: Path, seed: int) -> Verdict:
-    raise BadValueError(f"{case.name} is broken")
+    if case.name == "case_001":
+        raise BadValueError(f"{case.name} is broken")
+    return noted(case, seed)
+
+
+def made_up_trace(name: str) -> Trace:
+    time_s = np.arange(0.0, 4.0, 0.02)
+    return Trace(name, time_s, np.sin(time_s)[:, None], Servo.ideal(1))
 
 
 @pytest.fixture
@@ -48,14 +60,33 @@ def test_an_answer_that_is_there_is_kept(folder, in_this_process):
     assert [text[0][-1] for text in answers(folder).values()] == ["5", "6", "5"]
 
 
-def test_a_failure_is_raised_and_loses_no_answer(folder, in_this_process, monkeypatch):
-    in_this_process(concealed_run)
-    answer_all(folder, ANSWERS, noted, seed=5, threads=1)
-    monkeypatch.undo()  # the failure is one in a process of its own
-    (folder / ANSWERS / "case_002.json").unlink()
-    with pytest.raises(BadValueError, match="case_002 is broken"):
+def test_a_failure_is_raised_and_loses_no_answer(folder):
+    with pytest.raises(BadValueError, match="case_001 is broken") as raised:
         answer_all(folder, ANSWERS, broken, seed=5, threads=1)
-    assert len(answers(folder)) == 2
+    assert list(answers(folder)) == ["case_000", "case_002"]
+    assert "without an answer: case_001" in str(raised.value.__notes__)
+
+
+def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkeypatch):
+    """From what a diagnosis learns from; what is kept for its test stays unseen."""
+    in_this_process(concealed_run)
+    traces = [made_up_trace(name) for name in "abcdef"]
+    monkeypatch.setattr(concealed_run, "read_case", lambda case: (None, traces, []))
+    seen = []
+
+    def answer(plant, some):
+        seen.append(sorted(trace.name for trace in some))
+        return Verdict("none")
+
+    monkeypatch.setattr(concealed_run, "BASELINES", {"sparse": answer})
+    main(ConcealedRun(folder, by="sparse", threads=1))
+    parts = split(traces)
+    learned = sorted(one.name for one in (*parts.fit, *parts.select))
+    assert len(learned) < len(traces)
+    assert seen == 3 * [learned]
+    names = [f"case_{number:03d}" for number in range(3)]
+    assert set(read_baselines(folder, names)["sparse"]) == set(names)
+    assert not (folder / ANSWERS).exists()
 
 
 def test_a_folder_without_cases_is_refused(tmp_path):
