@@ -1,5 +1,6 @@
 """Searches on recordings whose truth is known, and the sizes they can see."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -92,6 +93,25 @@ def test_where_nothing_is_nothing_is_found():
     assert found.winner is None
     assert found.nothing == pytest.approx(found.floor, rel=0.4)
     assert found.best[1]  # it did look
+
+
+@pytest.mark.parametrize(("gained", "chosen"), [(0.5, 0), (2.0, 1)])
+def test_what_was_fitted_must_show_it_too(monkeypatch, gained, chosen):
+    """Of many models some do well on a quarter of the data by chance."""
+    search, _ = searched()
+    nothing = 0.5 * float(np.sum(search.fit.residuals([()])[0] ** 2))
+    kept_aside = search.energies([()])[0]
+
+    def lucky(starts, jacobians=None):
+        one = judged(PLANT, kept_aside - 3 * search.least_gain, "armature@elbow")
+        energy = nothing - gained * search.least_gain
+        fit = replace(one.fit, residual=np.sqrt([2 * energy]))
+        return [replace(one, fit=fit)]
+
+    monkeypatch.setattr(search, "judged", lucky)
+    monkeypatch.setattr(search, "_refined", lambda best: best)
+    monkeypatch.setattr(search, "_larger", lambda *_: [])
+    assert search.run().chosen == chosen
 
 
 @pytest.mark.slow
