@@ -6,10 +6,10 @@ from diagnosis.audit_result import Finding
 from diagnosis.plant import Plant
 from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
 
 _ABOVE, _FAR_ABOVE = 1.5, 20.0
 """Times the servo's limit."""
-_GRAVITY_M_S2 = 9.81
 _IN_G = (0.7, 1.4)
 _FASTEST_RAD_S = 35.0
 """Gyroscopes of robots measure up to 2000 degrees a second."""
@@ -43,11 +43,11 @@ def imu_findings(trace: Trace) -> list[Finding]:
     found = []
     if trace.accelerometer_m_s2 is not None:
         norms = _sizes(np.linalg.norm(trace.accelerometer_m_s2, axis=1))
-        norm = float(np.median(norms)) if len(norms) else _GRAVITY_M_S2
+        norm = float(np.median(norms)) if len(norms) else GRAVITY_M_S2
         if _IN_G[0] < norm < _IN_G[1]:
             text = (
                 f"accelerometer of {trace.name} shows {norm:.3g} where gravity is "
-                f"{_GRAVITY_M_S2} m/s^2; is it in g?"
+                f"{GRAVITY_M_S2} m/s^2; is it in g?"
             )
             found.append(Finding("refuse", text, trace.name, "accelerometer"))
     if trace.gyroscope_rad_s is not None:

@@ -12,10 +12,8 @@ import numpy as np
 from experiments.concealed_places import LEAST_LEVER_M
 from experiments.concealed_setting import Setting
 from groundwalk.arrays import FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
 from worlds.hidden_effects import Hidden
-
-GRAVITY_M_S2 = 9.81
-
 
 Maker = Callable[[Setting], dict[str, float]]
 

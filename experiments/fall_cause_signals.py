@@ -7,13 +7,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
 from robots import biped
 from robots.sole import contact_points
 from worlds.forward_kinematics import LinkPoses, link_poses
 from worlds.recording_columns import SUPPORT
 from worlds.scene import Scene
-
-GRAVITY_M_S2 = 9.81
 
 
 @dataclass(frozen=True, eq=False)

@@ -119,7 +119,7 @@ def _fit(verdict: Verdict) -> list[str]:
     if fit is None:
         return ["Nothing was kept out."]
     columns = ["channel", "unit", "as it was", "corrected", "noise", "regression"]
-    columns += ["effects elsewhere", "other effects"]
+    columns += ["effect elsewhere", "wrong effect"]
     every = {
         **{name: (one, one.unit) for name, one in fit.channels.items()},
         "all": (fit, "noise"),

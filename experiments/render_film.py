@@ -19,7 +19,7 @@ from worlds.camera import Image
 from worlds.scene import Scene
 from worlds.scene_colours import FALL, SKY, accent
 from worlds.scene_picture import SceneCamera
-from worlds.world import End
+from worlds.world import FALLS
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -34,7 +34,6 @@ _AFTER_FALL_S = 0.7
 _TITLE_PX = 26
 _TEXT_PX = 15
 _INK = (40, 44, 52)
-_FALLS = (End.FALL, End.DIVERGED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +73,7 @@ class Film:
         shown_s = min(time_s, float(times_s[-1]))
         label = f"{end}, {shown_s:.1f} s" if end else f"{shown_s:.1f} s"
         name = scene.name.replace("/", ", ")
-        return _with_title(picture, name, label, FALL if end in _FALLS else _INK)
+        return _with_title(picture, name, label, FALL if end in FALLS else _INK)
 
     def shown_s(self, scenes: Sequence[Scene]) -> tuple[float, float]:
         """First and last moment that is shown of these scenes."""
@@ -95,7 +94,7 @@ def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
     falls_s = [
         last_s
         for scene, last_s in zip(scenes, lasts_s, strict=True)
-        if scene.recording.metadata.end in _FALLS
+        if scene.recording.metadata.end in FALLS
     ]
     if falls_s:
         last_s = min(falls_s) + min(_AFTER_FALL_S, duration_s / 4)

@@ -15,10 +15,11 @@ from experiments.fall_cause import fall_cause
 from experiments.recorder import Recorder, servo_gains
 from experiments.terrain_stress_families import Place, leg_length_m
 from experiments.trials import TrialRules, walk_trials
+from groundwalk.gravity import GRAVITY_M_S2
 from robots import Description
 from terrain import TerrainSpec
 from walk_engine import Gait
-from worlds import End, RecordingMetadata
+from worlds import FALLS, End, RecordingMetadata
 from worlds.scene import Scene
 
 COURSE_LEGS = 8.0
@@ -31,8 +32,6 @@ BEGIN_LEGS = (0.8, 1.6)
 """How far from the start the ground may begin to be what it is, in leg lengths."""
 
 START_SPREAD_RAD = 0.01
-_GRAVITY_M_S2 = 9.81
-
 Row = tuple[str, int]
 """Name of a gait, and number of its trial."""
 
@@ -60,7 +59,7 @@ class Trial:
     @property
     def fell(self) -> bool:
         """Whether the robot fell; physics that blew up counts as a fall."""
-        return self.end in (End.FALL, End.DIVERGED)
+        return self.end in FALLS
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +83,7 @@ def rules_of(description: Description) -> TrialRules:
     """A course of 8 legs' length, in a time that grows as a pendulum's period does."""
     leg_m = leg_length_m(description)
     return TrialRules(
-        limit_s=round(LIMIT_PENDULUMS * math.sqrt(leg_m / _GRAVITY_M_S2), 2),
+        limit_s=round(LIMIT_PENDULUMS * math.sqrt(leg_m / GRAVITY_M_S2), 2),
         course_m=COURSE_LEGS * leg_m,
         start_spread_rad=START_SPREAD_RAD,
     )

@@ -11,7 +11,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots import biped
 from walk_engine import Gait, Velocity, WalkEngine
-from worlds import TICK_S, End, World
+from worlds import FALLS, TICK_S, End, World
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Trials:
     @property
     def fell(self) -> BoolArray:
         """(n,) whether the robot fell; physics that blew up counts as a fall."""
-        return np.array([end in (End.FALL, End.DIVERGED) for end in self.ended])
+        return np.array([end in FALLS for end in self.ended])
 
 
 def walk_trials(

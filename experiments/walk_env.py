@@ -21,7 +21,7 @@ from robots import Description
 from terrain import Heightfield
 from walk_engine import PARAMETERS, Gait
 from walk_engine.gait import from_unit
-from worlds import End, World, WorldOptions
+from worlds import FALLS, World, WorldOptions
 
 if TYPE_CHECKING:
     from sgat.action_transformer import Transformer
@@ -165,7 +165,7 @@ class WalkEnv(Environment):
             reward = self._walk_to_the_end()
         else:
             reward = self._tick(self._residual_rad * asked)
-        fell = self._episode.ended in (End.FALL, End.DIVERGED)
+        fell = self._episode.ended in FALLS
         terminated = fell or self._action == "gait"
         truncated = self._episode.is_over and not terminated
         return self._seen(), reward, terminated, truncated, self._info()

@@ -12,9 +12,8 @@ import math
 from dataclasses import dataclass
 
 from groundwalk.errors import BadValueError
+from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Motor
-
-GRAVITY_M_S2 = 9.81
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,10 @@ from worlds.recording import Recording
 from worlds.recording_files import read_recording, write_recording
 from worlds.recording_metadata import RecordingMetadata, ServoGains
 from worlds.sensor_noise import SensorNoise
-from worlds.world import TICK_S, End, World, WorldOptions
+from worlds.world import FALLS, TICK_S, End, World, WorldOptions
 
 __all__ = [
+    "FALLS",
     "TICK_S",
     "WORLDS",
     "End",

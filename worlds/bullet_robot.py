@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from groundwalk.arrays import FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
 from robots.sole import sensor_shares
 from robots.urdf import urdf
@@ -19,7 +20,6 @@ from worlds.servo_twin import ServoTwin
 from worlds.soft_ground import FootSpring, soften_bullet
 from worlds.world import WorldOptions
 
-GRAVITY_M_S2 = 9.81
 _OUT_OF_REACH_M = 100.0
 
 

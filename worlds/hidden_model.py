@@ -8,6 +8,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
+from groundwalk.gravity import GRAVITY_M_S2
 from terrain import Heightfield, Lumps
 from worlds.hidden_effects import Hidden
 from worlds.hidden_plant import HiddenPlant
@@ -17,7 +18,6 @@ from worlds.quiet_mujoco import quiet_mujoco
 if TYPE_CHECKING:
     import mujoco
 
-GRAVITY_M_S2 = 9.81
 _GROUND_M = 3.0
 _BUMP_WAVELENGTH_M = 0.2
 

@@ -23,7 +23,7 @@ from worlds.rerun_columns import ColumnLog
 from worlds.scene import Scene
 from worlds.scene_balance import Balance, balance, loaded_feet
 from worlds.scene_traces import MEASURED_SUPPORT, SIDEWAYS, Trace
-from worlds.world import End
+from worlds.world import FALLS
 
 if TYPE_CHECKING:
     import rerun as rr
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 _LIFT_M = 0.002
 """Above the ground, to be seen."""
 _POINT_M, _LINE_M = 0.008, 0.003
-_FALLS = (End.FALL, End.DIVERGED)
 
 
 def write_balance(log: ColumnLog, scene: Scene) -> None:
@@ -126,7 +125,7 @@ def _write_fall(log: ColumnLog, scene: Scene, found: Balance) -> None:
 
     end = scene.recording.metadata.end
     place_m = found.below_m[-1]
-    if end not in _FALLS or not np.isfinite(place_m).all():
+    if end not in FALLS or not np.isfinite(place_m).all():
         return
     strip_m = fall_ring(place_m, scene.ground)
     text = f"{end} at {scene.recording.time_s[-1]:.2f} s"

@@ -21,11 +21,11 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import ConvexHull
 
 from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
 from worlds.forward_kinematics import LinkPoses
 from worlds.scene import SIDES, Scene
 
-GRAVITY_M_S2 = 9.81
 LOADED_PART = 0.05
 """A foot carries the robot if it feels more than this part of its weight."""
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from groundwalk.arrays import FloatArray
 from worlds.scene import Scene
-from worlds.world import End
+from worlds.world import FALLS
 
 
 class SearchWalk(NamedTuple):
@@ -23,7 +23,7 @@ class SearchWalk(NamedTuple):
     @property
     def fell(self) -> bool:
         """Whether the robot fell; physics that blew up counts as a fall."""
-        return self.scene.recording.metadata.end in (End.FALL, End.DIVERGED)
+        return self.scene.recording.metadata.end in FALLS
 
 
 class SearchHistory(NamedTuple):

@@ -10,13 +10,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
 from robots.sole import contact_points
 
 if TYPE_CHECKING:
     import mujoco
 
-GRAVITY_M_S2 = 9.81
 DAMPING_RATIO = 0.1
 """Of critical, for the whole robot on one foot."""
 

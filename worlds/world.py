@@ -26,6 +26,10 @@ class End(enum.StrEnum):
     LEFT_GROUND = "left the ground"
 
 
+FALLS = (End.FALL, End.DIVERGED)
+"""Ends that are falls: physics that blew up counts as one."""
+
+
 @dataclass(frozen=True)
 class WorldOptions:
     """How a world computes and what it does to signals.

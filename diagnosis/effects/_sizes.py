@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from groundwalk.gravity import GRAVITY_M_S2
+
 if TYPE_CHECKING:
     from diagnosis.plant import Plant
 
@@ -78,7 +80,7 @@ def mass_kg(plant: "Plant") -> float:
 
 def weight_n(plant: "Plant") -> float:
     """What the plant weighs on Earth, also where its model has no gravity."""
-    return 9.81 * mass_kg(plant)
+    return GRAVITY_M_S2 * mass_kg(plant)
 
 
 def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
@@ -88,7 +90,7 @@ def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
     model, data = plant.model, _reference(plant)
     number = model.joint(joint).id
     body = int(model.jnt_bodyid[number])
-    weight = 9.81 * float(model.body_subtreemass[body])
+    weight = GRAVITY_M_S2 * float(model.body_subtreemass[body])
     if model.jnt_type[number] == mujoco.mjtJoint.mjJNT_SLIDE:
         return weight
     arm = data.subtree_com[body] - data.xanchor[number]

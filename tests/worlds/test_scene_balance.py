@@ -3,12 +3,13 @@ import numpy as np
 import pytest
 from rrd_files import NAO, SENSORS, TICKS, scene, walk_columns
 
+from groundwalk.gravity import GRAVITY_M_S2
 from robots.mjcf import mujoco_spec
 from worlds.mujoco_model import add_ground
 from worlds.recording import Recording
 from worlds.recording_metadata import RecordingMetadata
 from worlds.scene import Scene
-from worlds.scene_balance import GRAVITY_M_S2, balance, loaded_feet
+from worlds.scene_balance import balance, loaded_feet
 
 STANDING_M = 0.085 + 0.1 + 0.1029 + 0.04511
 ABOUT = RecordingMetadata("nao", "floating", "a test")
