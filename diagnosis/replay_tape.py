@@ -78,6 +78,7 @@ class Tape:
         at = (1 - t[..., None]) * total[low] + t[..., None] * total[low + 1]
         before, after = np.r_[0, : len(at) - 1], np.r_[1 : len(at), len(at) - 1]
         lasted_s = (since_s[after] - since_s[before])[:, None, None]
+        lasted_s = np.where(lasted_s > 0, lasted_s, np.inf)  # a run of one row
         return np.asarray(((at[after] - at[before]) / lasted_s).transpose(1, 0, 2))
 
     def _joints_at(

@@ -100,6 +100,15 @@ def test_velocities_are_those_of_the_positions():
     assert np.abs(truth[:, 1]).max() > 1
 
 
+def test_one_row_is_where_it_began():
+    """Of a window's last row, say; nothing lasts, so that no torque has a mean."""
+    plant = wheel()
+    run = commanded(plant, np.zeros(1), np.zeros(1), position_rad=0.1)
+    (found,) = replay([run], variants_of(plant, [()]), 1e-3)
+    assert found.position_rad[0] == pytest.approx(np.array([[0.1]]))
+    assert found.servo_nm[0] == pytest.approx(np.zeros((1, 1)))
+
+
 def test_a_missing_command_is_the_one_before_it():
     plant = wheel()
     gaps = COMMAND.copy()
