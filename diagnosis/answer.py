@@ -21,7 +21,7 @@ MOST_LEFT = 0.5
 """... unless what it leaves is below so large a part of the noise's own energy."""
 
 
-UNSURE_NATS, WEAK = 3.0, 4.0
+UNSURE_NATS, WEAK = 15.0, 4.0
 """With a smaller gap to models without it an effect may as well be another; so many
 times the least gain of a search is a weak reason to believe it all the same."""
 
@@ -54,10 +54,13 @@ def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
       plant: nominal.
       audited: says which joints moved.
     """
-    energy = searched.winner.selected if searched.winner else searched.nothing
-    left = energy - searched.floor
+    selected, fitted = searched.nothing, searched.nothing_fit
+    if searched.winner:
+        selected, fitted = searched.winner.selected, searched.winner.fit.energy
+    much = selected > (1 + MOST_LEFT) * searched.floor
+    much |= fitted > (1 + MOST_LEFT) * searched.floor_fit
     closed = searched.closed(searched.winner) if searched.winner else 0.0
-    if left > MOST_LEFT * searched.floor and closed < LEAST_CLOSED:
+    if much and closed < LEAST_CLOSED:
         return "unknown"
     still = set(plant.joints) - audited.moving
     at_rest = still | plant.at_rest(still)

@@ -26,7 +26,7 @@ from diagnosis.regimes import mismatch
 from diagnosis.search import Search
 from diagnosis.search_result import Found as Searched
 from diagnosis.search_result import Rules
-from diagnosis.simpler import simpler
+from diagnosis.simpler import needed, simpler
 from diagnosis.surprise import surprises
 from diagnosis.torque_drive import DriveBy
 from diagnosis.trace import Trace
@@ -112,13 +112,17 @@ def diagnose(
     share = 1 - searched.closed(winner) if winner else 1.0
     final = FinalTest((data.learned, data.test), both, test, searched, model, seed)
     fit = final.fit()
-    limits = (*surprises(data.learned, left, fit), *audited.limits, *ready.said)
+    surprised = surprises(data.learned, left, fit)
+    rest = (both, left, share)
+    if kind == "none" and surprised:
+        kind, rest = "unknown", (data.test, data.test.residuals([()])[0], 1.0)
+    limits = (*surprised, *audited.limits, *ready.said)
     verdict = Verdict(
         kind=kind,
         effects=effects_of(both, searched, refitted) if kind != "none" else (),
         alternatives=others,
         smallest_detectable=_detectable(search, kind),
-        unexplained=unexplained(both, left, share) if kind == "unknown" else None,
+        unexplained=unexplained(*rest) if kind == "unknown" else None,
         limits=(*limits, *(said_of(standing) if standing else ())),
         mismatch=mismatch(data.learned, wrong),
         pulses=ready.pulses,
@@ -146,7 +150,7 @@ def _searched(search: Search, audited: Audit) -> Searched:
     """What single effects explain, or whole kinds of them if these do not."""
     plant = search.fit.plant
     searched = compared(search, search.run())
-    searched = proven(search, simpler(search, searched))
+    searched = proven(search, needed(search, simpler(search, searched)))
     searched = sure(searched, search.least_gain)
     # on feet, models of whole kinds would take an hour
     if plant.base == "fixed" and kind_of(searched, plant, audited) == "unknown":

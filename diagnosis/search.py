@@ -19,6 +19,8 @@ from diagnosis.starts import Starts, grown
 from diagnosis.usage import Usage
 from groundwalk.arrays import FloatArray
 
+PUSH = "external_force"
+
 
 class Search:
     """One search; keeps what several steps need."""
@@ -65,6 +67,7 @@ class Search:
                 chosen = size
                 best[size] = self._refined(best[size])
                 energy, fitted = best[size][0].selected, best[size][0].fit.energy
+                starts = self._starts_from(best[size][0])
             # two together may explain what each alone does not: a gap that rattles
             # without its friction, say
             elif size > 1 or nothing < self.rules.suspicious * self.floor:
@@ -92,6 +95,15 @@ class Search:
             rules.least_share * (before - self.floor),
             rules.least_of_all * (nothing - self.floor),
         )
+
+    def _starts_from(self, leader: Judged) -> Starts:
+        """Starts that also know of pushes that show once the leader is known."""
+        left = leader.fit.residual
+        _, *bursts = push_intervals(self.fit, left)
+        pushes: list[Signature] = []
+        if bursts:
+            pushes = signatures(self.fit, leader.model, self.usage, bursts, (PUSH,))
+        return Starts(self.fit, [*self.signatures, *pushes], self.rules)
 
     def _larger(
         self, starts: Starts, best: Sequence[Judged], residual: FloatArray

@@ -52,7 +52,7 @@ class Rules:
     least_gain: float = 15.0
     least_pattern: float = 0.15
     least_share: float = 0.3
-    least_of_all: float = 0.001
+    least_of_all: float = 0.0001
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""An answer with a simpler effect in the stead of one that contains it."""
+"""An answer without what it does not need."""
 
 from dataclasses import replace
 
@@ -31,6 +31,32 @@ def simpler(search: Search, found: Found) -> Found:
     others = [other for other in found.best[found.chosen] if other.keys != judged.keys]
     best = {**found.best, found.chosen: [judged, *others]}
     return replace(found, best=best)
+
+
+def needed(search: Search, found: Found) -> Found:
+    """What a search came to, less the effects without which it does as well.
+
+    While models grow, an effect may stand for what is still wrong with another, and be
+    left over once that one has found its place.
+
+    Args:
+      search: that has run.
+      found: what it came to.
+    """
+    while found.winner is not None and found.chosen > 1:
+        winner = found.winner
+        rests = [
+            tuple(one for one in winner.model if one is not placed)
+            for placed in winner.model
+        ]
+        kept = [judged.model for judged in search.judged(rests)]
+        best = min(fairly(search, kept), key=lambda judged: judged.selected)
+        if search.worth(best.selected, winner.selected, found.nothing):
+            break
+        size = found.chosen - 1
+        others = [one for one in found.best.get(size, []) if one.keys != best.keys]
+        found = replace(found, chosen=size, best={**found.best, size: [best, *others]})
+    return found
 
 
 def _without_peak(placed: Placed) -> Placed:

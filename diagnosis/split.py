@@ -48,7 +48,7 @@ def split(traces: Sequence[Trace]) -> Split:
     With six or more, or three short ones, whole traces are, such that what moves in
     those set aside moves in the others, too. Otherwise, or where that cannot be, each
     is cut into contiguous parts, 0.2 s apart, in the order that leaves the most motion
-    to fit.
+    to fit; no two traces next to each other are cut alike.
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
@@ -141,10 +141,19 @@ def _covered(taken: FloatArray, rest: FloatArray) -> float:
 
 
 def _cut(traces: Sequence[Trace]) -> Split:
-    """Parts of each trace in the order that covers the test's motion best."""
+    """Parts of each trace in the order that covers the test's motion best.
+
+    Each trace begins one part later in that order: what happens in all of them at the
+    same time, such as a push or what a drift has come to, is then fitted in some and
+    judged in others.
+    """
     best, chosen = -np.inf, list[tuple[Trace, int]]()
     for order in sorted(set(permutations((FIT, FIT, SELECT, TEST)))):
-        parts = [part for trace in traces for part in _parts(trace, order)]
+        parts = [
+            part
+            for k, trace in enumerate(traces)
+            for part in _parts(trace, _rotated(order, k))
+        ]
         motion = [
             np.stack([_motion(part) for part, use in parts if use == wanted])
             for wanted in (FIT, SELECT, TEST)
@@ -162,6 +171,11 @@ def _cut(traces: Sequence[Trace]) -> Split:
             for wanted in (FIT, SELECT, TEST)
         )
     )
+
+
+def _rotated(order: tuple[int, ...], by: int) -> tuple[int, ...]:
+    by %= len(order)
+    return order[by:] + order[:by]
 
 
 def _parts(trace: Trace, order: tuple[int, ...]) -> list[tuple[Trace, int]]:

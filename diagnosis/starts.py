@@ -13,6 +13,9 @@ from diagnosis.search_result import Judged, Rules, keys_of
 from diagnosis.signatures import Signature
 from groundwalk.arrays import FloatArray
 
+FEW_JOINTS = 6
+"""Of robots with no more all effects are fitted, each where it looks best."""
+
 STRETCHES = (0.4, 1.0, 2.5)
 """Of a guess, tried before it is fitted."""
 
@@ -94,12 +97,14 @@ class Starts:
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
         """The best guesses, and the best place of each effect that comes close."""
+        few = len(self._fit.plant.joints) <= FEW_JOINTS
+        most = len(EFFECTS) if few else self._rules.singles
         short = [
             guess.model for guess in ranked[: self._rules.singles - self._rules.others]
         ]
         named = {model[0].effect for model in short}
         for guess in ranked[len(short) :]:
-            if len(short) == self._rules.singles:
+            if len(short) == most:
                 break
             if guess.model[0].effect not in named:
                 short.append(guess.model)

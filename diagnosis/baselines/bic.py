@@ -39,7 +39,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     residual = predictor.residuals([()])[0]
     found = signatures(predictor, (), Usage.of(plant, traces))
     guesses = Screen(predictor, found).singles(residual)[:CANDIDATES]
-    fits = fit_all(predictor, [guess.model for guess in guesses])
+    fits = fit_all(predictor, [guess.model for guess in guesses], followed=True)
     samples = int(predictor.scored.sum())
     criteria = np.array(
         [float(residual @ residual), *(criterion(fit, samples) for fit in fits)]
@@ -57,7 +57,8 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         for fit, value in zip(fits, criteria[1:], strict=True)
         if fit is not fits[best] and value < criteria[best + 1] + CONFUSABLE
     ]
-    placed, spans = fits[best].model[0], intervals(fits[best])
+    (fit,) = fit_all(predictor, [fits[best].model])  # with a Jacobian of its own
+    placed, spans = fit.model[0], intervals(fit)
     named = found_effect(plant, placed, spans, weights[best + 1], close)
     spent_s = time.monotonic() - begun_s
     return Verdict("effects", (named,), recordings=recordings, seconds=spent_s)

@@ -1,5 +1,6 @@
 """Verdicts on searches that are made up."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -72,6 +73,8 @@ def nothing(energy):
         (nothing(101.0), ALL, "none"),
         (nothing(101.0), ELBOW_STILL, OPEN),
         (nothing(300.0), ALL, "unknown"),
+        (replace(nothing(101.0), nothing_fit=150.0, floor_fit=200.0), ALL, "none"),
+        (replace(nothing(101.0), nothing_fit=900.0, floor_fit=200.0), ALL, "unknown"),
     ],
 )
 def test_kinds(searched, moving, wanted):

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -87,6 +88,17 @@ def test_two_effects_are_found_together():
     assert found.best[2][0].selected < found.best[1][0].selected - 100
 
 
+def test_a_push_that_another_effect_outshouts():
+    """It stands out only from what the weak servo leaves."""
+    push = ("external_force", "lower", 0.0, 3.0, 3.0, 1.5, 0.2)
+    _, found = searched(("servo_gain", "elbow", 0.6), push)
+    assert found.chosen == 2
+    assert found.winner.keys == {"servo_gain@elbow", "external_force@lower"}
+    values = {placed.effect: placed.values for placed in found.winner.model}
+    assert values["servo_gain"][0] == pytest.approx(0.6, rel=0.02)
+    assert values["external_force"][3:] == pytest.approx((1.5, 0.2), abs=0.05)
+
+
 def test_where_nothing_is_nothing_is_found():
     _, found = searched()
     assert found.chosen == 0
@@ -110,6 +122,8 @@ def test_what_was_fitted_must_show_it_too(monkeypatch, gained, chosen):
 
     monkeypatch.setattr(search, "judged", lucky)
     monkeypatch.setattr(search, "_refined", lambda best: best)
+    starts = SimpleNamespace(swapped=lambda leader: [])
+    monkeypatch.setattr(search, "_starts_from", lambda leader: starts)
     monkeypatch.setattr(search, "_larger", lambda *_: [])
     assert search.run().chosen == chosen
 

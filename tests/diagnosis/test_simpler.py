@@ -4,7 +4,7 @@ import pytest
 
 from diagnosis.effect import Placed
 from diagnosis.search_result import Found, Judged
-from diagnosis.simpler import simpler
+from diagnosis.simpler import needed, simpler
 
 PEAKED = Placed("stribeck_friction", "elbow", (1.0, 4.0, 0.1))
 DRY = Placed("coulomb_friction", "elbow", (3.0,))
@@ -66,3 +66,39 @@ def test_what_has_no_peak_is_not_fitted_again(before):
     some = search(1.0, least=20.0)
     assert simpler(some, before) is before
     assert some.asked == []
+
+
+def leaving_out(energies):
+    """A search to which each model, by its effects' names, is worth so much."""
+
+    def fitted(starts):
+        return [judged(start, energies[start[0].effect]) for start in starts]
+
+    def worth(before, after, nothing):
+        return before - after > 20.0
+
+    return SimpleNamespace(judged=fitted, worth=worth)
+
+
+@pytest.mark.parametrize(("alone", "chosen"), [(105.0, 1), (140.0, 2)])
+def test_an_effect_without_which_the_rest_does_as_well_is_left_out(
+    monkeypatch, alone, chosen
+):
+    """Dry friction stood for a drag at the wrong place; the drag has moved since."""
+    energies = {"coulomb_friction": 900.0, "viscous_friction": alone}
+    monkeypatch.setattr(
+        "diagnosis.simpler.fairly",
+        lambda search, models: [judged(m, energies[m[0].effect]) for m in models],
+    )
+    before = found((DRY, OIL))
+    after = needed(leaving_out(energies), before)
+    assert after.chosen == chosen
+    if chosen == 1:
+        assert after.winner.model == (OIL,)
+    else:
+        assert after is before
+
+
+def test_one_effect_alone_is_needed():
+    alone = found((DRY,))
+    assert needed(search(100.0, least=1e9), alone) is alone

@@ -83,6 +83,17 @@ def test_parts_of_one_recording_do_not_touch():
     assert seconds(result.select) == pytest.approx(seconds(result.test), rel=0.02)
 
 
+def test_what_happens_at_one_time_is_fitted_and_judged():
+    """A push that comes in every recording, or what a drift has come to."""
+    result = split([trace(f"t{k}", 10) for k in range(4)])
+    for moment_s in (1.0, 4.0, 6.0, 9.0):
+        uses = [
+            sum(one.time_s[0] < moment_s < one.time_s[-1] for one in part)
+            for part in (result.fit, result.select, result.test)
+        ]
+        assert uses == [2, 1, 1]
+
+
 def test_parts_are_ordered_for_their_motion():
     """The second joint moves in the last half alone; fit must have some of it."""
     whole = trace("one", 12)
