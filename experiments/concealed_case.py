@@ -4,6 +4,7 @@ import json
 import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +16,14 @@ from experiments.concealed_draw import (
     drawn_effects,
     drawn_sensors,
 )
+from experiments.concealed_information import drawn_nats, ease_that_tells, nats
 from experiments.concealed_motion import CaseMotion
 from experiments.concealed_reading import PLANT_FILE, RECORDINGS, REFERENCE
 from groundwalk.errors import GroundwalkError
 from groundwalk.files import write_text
 from worlds.hidden_effects import Hidden
 from worlds.hidden_run import Run, run_hidden
-from worlds.hidden_scales import scales
+from worlds.hidden_scales import Scales, scales
 from worlds.hidden_sensors import HiddenSensors, hidden_recording
 from worlds.recording_files import write_recording
 from worlds.recording_metadata import RecordingMetadata
@@ -83,7 +85,8 @@ class _Maker:
         self._sort = CaseSort.drawn(np.random.default_rng([seed, number]))
         self._noise = rng(0)
         self._ground = np.random.SeedSequence([seed, number, attempt, 1])
-        self._effects_rng = rng(2)
+        self._drawing = partial(rng, 2)
+        self._nats = drawn_nats(rng(5))
         sensors, jitter_s = drawn_sensors(self._sort.kind, rng(3))
         self._sensors: HiddenSensors = sensors
         self._motion = CaseMotion.drawn(
@@ -104,20 +107,48 @@ class _Maker:
             nominal = [self._move(0, (), "mujoco", _SCALE_STEP_S).run]
         if not all(run.ok for run in nominal):
             return False
-        self._hidden = drawn_effects(
-            self._sort,
-            motion.plant,
-            scales(motion.plants[0], nominal),
-            motion.places,
-            motion.duration_s,
-            self._effects_rng,
-        )
+        self._hidden = self._concealed(scales(motion.plants[0], nominal))
         for number in range(len(motion.names)):
             made = self._move(number, self._hidden.effects, engine)
             self._runs.append(made)
             if not made.run.ok:
                 return False
         return True
+
+    def _concealed(self, does: Scales) -> Concealed:
+        """What is hidden; one effect on a fixed base tells as much as was drawn.
+
+        On feet two runs part by chance, whatever is hidden: there sizes are drawn.
+        """
+        motion = self._motion
+
+        def drawn(ease: float | None = None) -> Concealed:
+            return drawn_effects(
+                self._sort,
+                motion.plant,
+                does,
+                motion.places,
+                motion.duration_s,
+                self._drawing(),
+                ease,
+            )
+
+        if self._sort.kind != "single" or motion.plant.floating:
+            return drawn()
+        nominal = self._trials(())
+        ease = ease_that_tells(
+            self._nats,
+            lambda one: nats(nominal, self._trials(drawn(one).effects), self._sensors),
+            drawn().ease,
+        )
+        return drawn(ease)
+
+    def _trials(self, effects: Sequence[Hidden]) -> list[Run]:
+        """All recordings' runs, in steps that are good enough to size effects."""
+        return [
+            self._move(number, effects, self._sort.engine, _SCALE_STEP_S).run
+            for number in range(len(self._motion.names))
+        ]
 
     def _move(
         self,

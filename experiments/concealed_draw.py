@@ -116,6 +116,7 @@ def drawn_effects(
     joints: Sequence[int],
     duration_s: float,
     rng: np.random.Generator,
+    ease: float | None = None,
 ) -> Concealed:
     """What is hidden in a case.
 
@@ -126,10 +127,12 @@ def drawn_effects(
       joints: where effects may be.
       duration_s: of the recordings.
       rng: draws all of it.
+      ease: how easy it is to see; drawn where None.
     """
-    ease = float(rng.uniform())
+    drawn = float(rng.uniform())
     if sort.kind in ("pair", "triple"):
-        ease = _COMPOUND_EASE + (1 - _COMPOUND_EASE) * ease
+        drawn = _COMPOUND_EASE + (1 - _COMPOUND_EASE) * drawn
+    ease = drawn if ease is None else ease
     if sort.kind != "unexcited":
         joints = [j for j in joints if scales.asked_rad[j] > LEAST_MOTION_RAD]
     there = {name: spots(name, plant, scales, joints) for name in KINDS}

@@ -1,0 +1,82 @@
+"""Sizes by information: what runs tell, and the ease at which they tell so much."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from experiments.concealed_information import (
+    LEVELS,
+    MOST_EASE,
+    MOST_TRIALS,
+    NEAR,
+    drawn_nats,
+    ease_that_tells,
+    nats,
+)
+from worlds.hidden_sensors import HiddenSensors
+
+SENSORS = HiddenSensors(quantum_rad=0.0, encoder_rad=0.001)
+
+
+def run(encoder_rad, first=2, ok=True):
+    clock = SimpleNamespace(first=first)
+    return SimpleNamespace(encoder_rad=encoder_rad, clock=clock, ok=ok)
+
+
+def test_half_the_squared_difference_in_units_of_noise():
+    """The log-likelihood ratio of two Gaussians that differ in their mean."""
+    was = np.zeros((12, 3))
+    now = was.copy()
+    now[:, 1] = 0.002  # two standard deviations in each of ten rows
+    assert nats([run(was)], [run(now)], SENSORS) == pytest.approx(0.5 * 10 * 4)
+    both = nats([run(was), run(was)], [run(now), run(was)], SENSORS)
+    assert both == pytest.approx(0.5 * 0.5 * 10 * 4)
+
+
+def test_rounding_is_noise_and_what_blows_up_tells_everything():
+    was, now = np.zeros((12, 1)), np.full((12, 1), 0.002)
+    coarse = HiddenSensors(quantum_rad=0.001 * math.sqrt(12), encoder_rad=0.001)
+    assert nats([run(was)], [run(now)], coarse) == pytest.approx(0.5 * 10 * 4 / 2)
+    assert nats([run(was)], [run(now, ok=False)], SENSORS) == math.inf
+
+
+@pytest.mark.parametrize("slope", [3.0, 6.0, 14.0])
+@pytest.mark.parametrize("wanted", [2.0, 50.0, 1e4])
+def test_the_ease_is_found(slope, wanted):
+    calls = []
+
+    def told(ease):
+        calls.append(ease)
+        return math.exp(5.0 + slope * ease + 0.3 * math.sin(3 * ease))
+
+    ease = ease_that_tells(wanted, told, first=0.7)
+    inside = math.exp(5.0 - slope) < wanted < math.exp(5.0 + slope)
+    off = abs(math.log(told(ease) / wanted))
+    assert len(calls) <= MOST_TRIALS + 1
+    if inside:
+        assert off < NEAR
+
+
+def test_where_nothing_tells_so_much_the_most_is_taken():
+    ease = ease_that_tells(1e5, lambda ease: 3.0 * math.exp(ease), first=0.2)
+    assert ease == MOST_EASE
+
+
+def test_what_tells_nothing_when_small_does_not_mislead():
+    """A limit that is not reached, a stop that is not touched."""
+
+    def told(ease):
+        return 0.0 if ease < 0.4 else math.exp(20 * (ease - 0.4))
+
+    assert 0.4 < ease_that_tells(50.0, told, first=0.9) < 0.9
+
+
+def test_levels_come_as_often_as_they_should():
+    rng = np.random.default_rng(0)
+    drawn = np.array([drawn_nats(rng) for _ in range(4000)])
+    for (low, high), share in LEVELS.items():
+        found = np.mean((low <= drawn) & (drawn < high))
+        assert found == pytest.approx(share, abs=0.03)
+    assert sum(LEVELS.values()) == pytest.approx(1.0)
