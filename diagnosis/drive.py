@@ -66,7 +66,7 @@ class Drive:
         # variants without a delay of their own share their commands
         self._delays_s, self._which = np.unique(delay_s, return_inverse=True)
         self._step_s = step_s
-        traces = [run.trace for run in runs]
+        traces = [run.whole or run.trace for run in runs]
         self._commands = [_held(trace, _command_rad(trace)) for trace in traces]
         self._torques = [_held(trace, _torque_nm(trace)) for trace in traces]
         self._added = [_held(trace, trace.added_nm) for trace in traces]

@@ -45,6 +45,7 @@ class Limb:
             trace=run.trace.of(columns),
             position_rad=run.position_rad[columns],
             velocity_rad_s=run.velocity_rad_s[columns],
+            whole=run.whole and run.whole.of(columns),
         )
 
     def channels(self, whole: Channels) -> tuple[Channels, list[int]]:

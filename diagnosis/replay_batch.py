@@ -63,8 +63,11 @@ class ReplayBatch:
     def _start(self, runs: Sequence[Run], variants: Variants) -> None:
         n, plant = self.n // self.count, self.plant
         measured = np.tile([run.position_rad for run in runs], (n, 1))
-        self.qpos[:, plant.qpos] = measured - self.laws.joints["offset_rad"]
-        self.qvel[:, plant.dofs] = np.tile([run.velocity_rad_s for run in runs], (n, 1))
+        velocity = np.tile([run.velocity_rad_s for run in runs], (n, 1))
+        # what is measured now, the joints have left behind
+        late_s = np.repeat(variants.signals.sensor_delay_s, self.count)[:, None]
+        start = measured + late_s * velocity - self.laws.joints["offset_rad"]
+        self.qpos[:, plant.qpos], self.qvel[:, plant.dofs] = start, velocity
         bases = [run.base for run in runs if run.base is not None]
         if bases:
             base = np.tile(bases, (n, 1))

@@ -86,7 +86,7 @@ class Tape:
     ) -> tuple[FloatArray, FloatArray]:
         """Positions and velocities in between.
 
-        Of (n,) rows at (n, T) times since the start; before it the start holds.
+        Of (n,) rows at (n, T) times since the start; before it speeds were as then.
         """
         low, t = self._between(time_s)
         row = rows[:, None]
@@ -94,7 +94,9 @@ class Tape:
             (self._position[step, row], self._velocity[step, row])
             for step in (low, low + 1)
         )
-        return hermite(before, after, self._batch.step_s, t)
+        position, velocity = hermite(before, after, self._batch.step_s, t)
+        before_s = np.minimum(time_s, 0.0)[..., None]
+        return position + before_s * self._velocity[0, row], velocity
 
     def _linear(
         self, values: FloatArray, rows: IntArray, time_s: FloatArray

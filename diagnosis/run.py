@@ -35,12 +35,15 @@ class Run:
       velocity_rad_s: (j,) likewise.
       base: (13,) of a floating base at the start: position (3), orientation (4), linear
         velocity (3, world frame), angular velocity (3, body frame).
+      whole: what the trace is a window of, if it is one: commands of before it may
+        arrive late.
     """
 
     trace: Trace
     position_rad: FloatArray
     velocity_rad_s: FloatArray
     base: FloatArray | None = None
+    whole: Trace | None = None
 
     @classmethod
     def of(cls, trace: Trace) -> "Run":
@@ -88,6 +91,7 @@ def runs_of(plant: Plant, trace: Trace) -> list[Run]:
             position[first],
             velocity[first],
             None if base is None else base[first],
+            trace,
         )
         for first, last in zip(starts, ends, strict=True)
     ]

@@ -37,7 +37,7 @@ LEAST_SHARE = 0.1
 PATIENCE = 2
 """... or so many kinds together."""
 
-MUCH_BETTER = 0.4
+MUCH_BETTER = 0.25
 """Part of what the best small model leaves that must go for so many effects."""
 
 
