@@ -30,6 +30,9 @@ Model = tuple[Placed, ...]
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
 """Of replays, by the plant's base; the shorter ones where the longest is too wrong."""
 
+STIFF = frozenset({"joint_elasticity"})
+"""Effects that need shorter steps than all others."""
+
 WARM_UP_S = 0.4
 """Not scored: the start state is known to the sensors' noise only."""
 
@@ -83,6 +86,7 @@ class Predictor:
         )
         self._scored = np.isfinite(self._measured) & ~self._warming()[:, None]
         self._correction = np.zeros((sum(rows), c))
+        self._fine_correction = self._correction
         self._ends = np.cumsum(rows).tolist()
         self._doubt: StartDoubt | None = None
         self._standing = standing
@@ -110,7 +114,9 @@ class Predictor:
             self._standing,
         )
         ends = [0, *self._ends]
-        some._correction = self._correction[ends[first] : ends[last]]
+        own = slice(ends[first], ends[last])
+        some._correction = self._correction[own]
+        some._fine_correction = self._fine_correction[own]
         if self._doubt is not None:
             runs = self._first_run[first], self._first_run[last]
             some._doubt = self._doubt.part(*runs)
@@ -136,6 +142,7 @@ class Predictor:
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
         )
         self._correction = 2 * finer - fine - coarse
+        self._fine_correction = 2 * (finer - fine)
         self._doubt = self._start_doubt(model)
         # of the first order, twice the finer less the fine is left with the second
         left = (finer - fine) - (fine - coarse) / 2
@@ -184,8 +191,22 @@ class Predictor:
         return measured_of(self.traces[index], self.channels)
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c), the traces' rows one after another."""
-        return self._replayed(models, self.step_s) + self._correction
+        """(n, rows, c), the traces' rows one after another.
+
+        Models with a spring between motor and link take half the step: what it stores
+        and gives back is lost in a step that its motor swings in.
+        """
+        stiff = [any(placed.effect in STIFF for placed in one) for one in models]
+        predicted = np.empty((len(models), *self._correction.shape))
+        for is_stiff, step_s, correction in (
+            (False, self.step_s, self._correction),
+            (True, self.step_s / 2, self._fine_correction),
+        ):
+            rows = [i for i, one in enumerate(stiff) if one is is_stiff]
+            if rows:
+                some = self._replayed([models[i] for i in rows], step_s)
+                predicted[rows] = some + correction
+        return predicted
 
     def exact(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c), each with the integrator's error as it is at that model.

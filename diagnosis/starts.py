@@ -23,6 +23,10 @@ LIMITS = frozenset({"torque_limit", "speed_limit"})
 LIMITED = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
 """Likewise of limits: who is weaker than his load drops it, which no slope tells."""
 
+SPRUNG = "joint_elasticity"
+STIFFER = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
+"""Likewise of its stiffness: between two of its resonances no slope leads to either."""
+
 
 class Starts:
     """What to fit next, by guesses of first order and by what is known to be alike."""
@@ -93,6 +97,9 @@ class Starts:
         if placed.effect in LIMITS:
             limit, *rest = placed.values
             return [replace(placed, values=(k * limit, *rest)) for k in LIMITED]
+        if placed.effect == SPRUNG:
+            stiffness, *rest = placed.values
+            return [replace(placed, values=(k * stiffness, *rest)) for k in STIFFER]
         return [stretched(self._fit.plant, placed, k) for k in STRETCHES]
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
