@@ -78,6 +78,25 @@ def test_calibration_at_one_model_serves_others(pendulum):
     assert np.sqrt(np.mean(difference**2)) > 0
 
 
+def test_a_stiff_spring_takes_shorter_steps(monkeypatch):
+    """What a joint without one needs would be half the noise off."""
+    spring = (Placed("joint_elasticity", "elbow", (800.0, 0.2)),)
+    plant = arm()
+    trace = recorded(plant, duration_s=2.0)
+    truth = Predictor(plant, [trace], CHANNELS, step_s=5e-4)
+    truth.calibrate(spring)
+    predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
+    predictor.calibrate()
+
+    def wrong():
+        found = predictor.predict([(), spring])[1] - truth.predict([spring])[0]
+        return float(np.sqrt(np.mean((found[20:] / NOISE_RAD) ** 2)))
+
+    assert wrong() < 0.15
+    monkeypatch.setattr("diagnosis.predictor.STIFF", frozenset())
+    assert wrong() > 0.4
+
+
 def test_what_is_missing_or_early_is_not_scored(pendulum):
     plant, trace = pendulum
     position = trace.position_rad.copy()
