@@ -10,7 +10,7 @@ RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
 STUDIES := toy cliff inverted-pendulum half-cheetah nao-falls
 # Cases whose truth is sealed. The seed is the first six digits of the commit at which the
-# diagnosis was frozen (326dc48), so that nobody has chosen it.
+# diagnosis was frozen (326dc48), so that nobody has chosen it; what is changed takes another.
 CONCEALED := $(RESULTS)/concealed
 SEALED := 3304900
 # What the real NAO of results-diagnosed-gait lacks against its model.

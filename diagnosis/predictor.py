@@ -31,7 +31,7 @@ STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
 """Of replays, by the plant's base; the shorter ones where the longest is too wrong."""
 
 STIFF = frozenset({"joint_elasticity"})
-"""Effects that need shorter steps than all others."""
+"""Springs: effects that need shorter steps than all others; stiffness comes first."""
 
 WARM_UP_S = 0.4
 """Not scored: the start state is known to the sensors' noise only."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.effect import Placed
 from diagnosis.library import EFFECTS, grown_from
-from diagnosis.predictor import Model, Predictor
+from diagnosis.predictor import STIFF, Model, Predictor
 from diagnosis.screening import Guess, Screen, stretched
 from diagnosis.search_result import Judged, Rules, keys_of
 from diagnosis.signatures import Signature
@@ -23,9 +23,8 @@ LIMITS = frozenset({"torque_limit", "speed_limit"})
 LIMITED = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
 """Likewise of limits: who is weaker than his load drops it, which no slope tells."""
 
-SPRUNG = "joint_elasticity"
 STIFFER = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
-"""Likewise of its stiffness: between two of its resonances no slope leads to either."""
+"""Likewise of springs: between two resonances no slope leads to either."""
 
 
 class Starts:
@@ -97,7 +96,7 @@ class Starts:
         if placed.effect in LIMITS:
             limit, *rest = placed.values
             return [replace(placed, values=(k * limit, *rest)) for k in LIMITED]
-        if placed.effect == SPRUNG:
+        if placed.effect in STIFF:
             stiffness, *rest = placed.values
             return [replace(placed, values=(k * stiffness, *rest)) for k in STIFFER]
         return [stretched(self._fit.plant, placed, k) for k in STRETCHES]

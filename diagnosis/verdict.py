@@ -51,7 +51,7 @@ class Verdict:
       kind: "effects": these are missing. "none": nothing that the data show. "unknown":
         something that no effect of the library explains. "not_identifiable": something
         may be missing that these data cannot name.
-      effects: what was found, the largest first; beside an "unknown" rest there may be
+      effects: what was found, the surest first; beside an "unknown" rest there may be
         some that are sure.
       alternatives: other answers that these data do not rule out, each of them whole.
       smallest_detectable: the least that these data could have shown, by

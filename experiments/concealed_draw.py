@@ -88,7 +88,7 @@ class CaseSort:
 
 @dataclass(frozen=True, eq=False)
 class Concealed:
-    """What is hidden in a case, and how easy it is to see, from 0 to 1."""
+    """What is hidden in a case, and how easy it is to see, at most 1."""
 
     effects: tuple[Hidden, ...]
     ease: float

@@ -10,6 +10,8 @@ from diagnosis.trace_reading import read_traces
 from groundwalk.errors import RunFolderError
 
 RECORDINGS, REFERENCE, PLANT_FILE = "recordings", "reference", "plant.json"
+ANSWERS, BASELINE_ANSWERS = "answers", "baselines"
+"""Folders of a set: of the diagnosis' verdicts, and with one for each baseline."""
 
 
 def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:

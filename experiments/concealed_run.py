@@ -17,9 +17,7 @@ from diagnosis.diagnose import diagnose
 from diagnosis.split import split
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
-from experiments.concealed_reading import read_case
-from experiments.concealed_score_truth import ANSWERS
-from experiments.concealed_score_truth import BASELINES as BASELINE_ANSWERS
+from experiments.concealed_reading import ANSWERS, BASELINE_ANSWERS, read_case
 from experiments.progress import progress
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text

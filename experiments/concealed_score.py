@@ -14,13 +14,13 @@ import tyro
 from diagnosis.verdict import Found, Verdict
 from experiments.command_line import run_verb
 from experiments.concealed_make import CASES
+from experiments.concealed_reading import ANSWERS
 from experiments.concealed_score_figure import draw_score
 from experiments.concealed_score_marks import NAMED_KINDS, mark
 from experiments.concealed_score_measures import measures
 from experiments.concealed_score_oracle import Oracle, answer_key, consult
 from experiments.concealed_score_page import score_report, score_rows
 from experiments.concealed_score_truth import (
-    ANSWERS,
     TrueCase,
     Truth,
     read_answers,

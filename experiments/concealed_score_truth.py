@@ -9,9 +9,8 @@ from pathlib import Path
 from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import Verdict
 from experiments.concealed_make import HASH, SEALED, TRUTH
+from experiments.concealed_reading import BASELINE_ANSWERS
 from groundwalk.errors import BadValueError, RunFolderError
-
-ANSWERS, BASELINES = "answers", "baselines"
 
 
 @dataclass(frozen=True)
@@ -107,6 +106,6 @@ def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
 
 def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Verdict]]:
     """The verdicts of all baselines that answered, by their names."""
-    parent = folder / BASELINES
+    parent = folder / BASELINE_ANSWERS
     found = sorted(path for path in parent.glob("*") if path.is_dir())
     return {path.name: read_answers(path, names) for path in found}

@@ -18,7 +18,7 @@ class Span(NamedTuple):
     hard: float
 
     def at(self, ease: float) -> float:
-        """The size at an ease from 0 (hard) to 1, even in its logarithm."""
+        """The size at an ease, 0 (hard) to 1 or below, even in its logarithm."""
         return float(self.hard * (self.easy / self.hard) ** ease)
 
 
@@ -30,7 +30,7 @@ class Setting:
       plant: the robot.
       scales: what it does with nothing hidden.
       spot: where.
-      ease: from 0, hard, to 1, easy.
+      ease: from 0, hard, to 1, easy; below 0 harder still.
       duration_s: of the recordings.
       rng: draws signs, directions and times.
     """

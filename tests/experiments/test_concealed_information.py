@@ -57,6 +57,8 @@ def test_the_ease_is_found(slope, wanted):
     assert len(calls) <= MOST_TRIALS + 1
     if inside:
         assert off < NEAR
+    else:
+        assert abs(ease) == MOST_EASE
 
 
 def test_where_nothing_tells_so_much_the_most_is_taken():
