@@ -49,14 +49,14 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
       number: of the case.
 
     Raises:
-      GroundwalkError: the robot fell whatever was drawn.
+      GroundwalkError: whatever was drawn, the robot fell or nothing could be told.
     """
     for attempt in range(_ATTEMPTS):
         maker = _Maker(seed, number, attempt)
         if maker.run():
             break
     else:
-        raise GroundwalkError(f"case {number} of seed {seed}: every attempt fell")
+        raise GroundwalkError(f"case {number} of seed {seed}: every attempt failed")
     name = case_name(number)
     partial = cases / f".{name}.partial"
     shutil.rmtree(partial, ignore_errors=True)
@@ -97,7 +97,7 @@ class _Maker:
         self._hidden: Concealed | None = None
 
     def run(self) -> bool:
-        """Compute everything; False if the robot fell."""
+        """Compute everything; False if the robot fell, or no size tells as drawn."""
         motion = self._motion
         engine = self._sort.engine
         if motion.plant.floating:
@@ -108,6 +108,8 @@ class _Maker:
         if not all(run.ok for run in nominal):
             return False
         self._hidden = self._concealed(scales(motion.plants[0], nominal))
+        if self._hidden is None:
+            return False
         for number in range(len(motion.names)):
             made = self._move(number, self._hidden.effects, engine)
             self._runs.append(made)
@@ -115,7 +117,7 @@ class _Maker:
                 return False
         return True
 
-    def _concealed(self, does: Scales) -> Concealed:
+    def _concealed(self, does: Scales) -> Concealed | None:
         """What is hidden; one effect on a fixed base tells as much as was drawn.
 
         On feet two runs part by chance, whatever is hidden: there sizes are drawn.
@@ -141,7 +143,7 @@ class _Maker:
             lambda one: nats(nominal, self._trials(drawn(one).effects), self._sensors),
             drawn().ease,
         )
-        return drawn(ease)
+        return None if ease is None else drawn(ease)
 
     def _trials(self, effects: Sequence[Hidden]) -> list[Run]:
         """All recordings' runs, in steps that are good enough to size effects."""

@@ -22,9 +22,12 @@ LEVELS = {
 }
 """Least and most nats per recording of a level, and how often it is drawn."""
 
-LEAST_EASE, MOST_EASE = -1.0, 1.0
+LEAST_EASE, MOST_EASE = -2.0, 1.0
 NEAR = math.log(1.3)
-MOST_TRIALS = 6
+FAR = math.log(3.0)
+MOST_TRIALS = 8
+_LEAST_NATS, _MOST_NATS = 0.1, 1e9
+_INNER = 0.1
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
@@ -51,11 +54,13 @@ def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) ->
 
 def ease_that_tells(
     wanted: float, told: Callable[[float], float], first: float
-) -> float:
-    """The ease at which so much is told, nearly.
+) -> float | None:
+    """The ease at which so much is told, nearly; None if no size tells it.
 
     By secants of the logarithm over the ease, in which sizes are even: what is told
-    goes with a size's square, so that these are nearly straight.
+    goes with a size's square, so that these are nearly straight. They stay between
+    trials that told too little and too much, since a limit or an end stop tells
+    nothing at all until it is reached.
 
     Args:
       wanted: nats per recording.
@@ -66,21 +71,37 @@ def ease_that_tells(
     tried: dict[float, float] = {}
     ease = first
     for _ in range(MOST_TRIALS):
-        tried[ease] = math.log(min(max(told(ease), 1e-6), 1e12)) - goal
+        tried[ease] = math.log(min(max(told(ease), _LEAST_NATS), _MOST_NATS)) - goal
         if abs(tried[ease]) < NEAR:
             break
-        ease = _next(tried)
+        ease = _next(tried, math.log(_LEAST_NATS) - goal)
         if ease in tried:
             break
-    return min(tried, key=lambda one: abs(tried[one]))
+    best = min(tried, key=lambda one: abs(tried[one]))
+    return best if abs(tried[best]) < FAR else None
 
 
-def _next(tried: dict[float, float]) -> float:
-    """Where the line through the two best trials is right, within the range."""
-    best, *others = sorted(tried, key=lambda one: abs(tried[one]))
+def _next(tried: dict[float, float], nothing: float) -> float:
+    """Where the line through the two best trials is right, within the range.
+
+    Halfway where that is not well between too little and too much, or where the little
+    is nothing at all, of which no line can be drawn.
+    """
+
+    def off(one: float) -> tuple[float, float]:
+        return abs(tried[one]), one * math.copysign(1.0, tried[one])
+
+    best, *others = sorted(tried, key=off)
     slope = 6.0  # a size grows twentyfold from hard to easy, so that nats do 400-fold
     if others:
         rise = (tried[others[0]] - tried[best]) / (others[0] - best)
         slope = rise if rise > 1.0 else slope
+    low = max((one for one in tried if tried[one] < 0), default=None)
+    high = min((one for one in tried if tried[one] > 0), default=None)
     ease = best - tried[best] / slope
+    if low is not None and high is not None and low < high:
+        margin = _INNER * (high - low)
+        inside = low + margin <= ease <= high - margin
+        if tried[low] <= nothing or not inside:
+            ease = (low + high) / 2
     return min(max(ease, LEAST_EASE), MOST_EASE)

@@ -1,5 +1,7 @@
 """What a verdict says, in sentences."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from diagnosis.verdict import Fit, Found, Verdict
@@ -20,6 +22,9 @@ from experiments.diagnosis_report_places import (
 )
 from experiments.diagnosis_report_pulses import pulse_sentences
 from experiments.diagnosis_report_words import effect_words
+
+MANY = 3
+"""Places of one effect from which on they are told together."""
 
 BADGES = {
     "effects": "missing physics found",
@@ -52,8 +57,42 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
         first, before = _unknown(verdict), "besides, "
     elif verdict.kind == "not_identifiable":
         first, before = _open(verdict), "this much is sure: "
-    found = [before + finding(effect, changed) for effect in verdict.effects]
+    found = [before + each for each in findings(verdict.effects, changed)]
     return [*first, *map(sentence, found), *pulses, *_gain(verdict)]
+
+
+def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
+    """A clause for each effect; one for all places of an effect that is at many.
+
+    Args:
+      effects: the surest first.
+      changed: whether the question was what has changed.
+    """
+    clauses, told = [], set[str]()
+    for effect in effects:
+        alike = [one for one in effects if one.name == effect.name]
+        if len(alike) < MANY or any(one.when.kind != "always" for one in alike):
+            clauses.append(finding(effect, changed))
+        elif effect.name not in told:
+            told.add(effect.name)
+            clauses.append(_at_many(alike))
+    return clauses
+
+
+def _at_many(alike: Sequence[Found]) -> str:
+    """Least and most of an effect's first value, and where they are."""
+    name = next(iter(alike[0].parameters))
+    order = sorted(alike, key=lambda one: one.parameters[name].value)
+
+    def value(effect: Found) -> str:
+        one = effect.parameters[name]
+        alone = estimate_text(replace(one, low=one.value, high=one.value))
+        return f"about {alone} at {place_words(effect.place)}"
+
+    return (
+        f"{effect_words(alike[0].name).label} at {len(alike)} places, "
+        f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
+    )
 
 
 def finding(effect: Found, changed: bool = False) -> str:

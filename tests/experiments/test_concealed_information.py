@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from experiments.concealed_information import (
+    FAR,
+    LEAST_EASE,
     LEVELS,
     MOST_EASE,
     MOST_TRIALS,
@@ -52,27 +54,31 @@ def test_the_ease_is_found(slope, wanted):
         return math.exp(5.0 + slope * ease + 0.3 * math.sin(3 * ease))
 
     ease = ease_that_tells(wanted, told, first=0.7)
-    inside = math.exp(5.0 - slope) < wanted < math.exp(5.0 + slope)
-    off = abs(math.log(told(ease) / wanted))
-    assert len(calls) <= MOST_TRIALS + 1
-    if inside:
-        assert off < NEAR
-    else:
-        assert abs(ease) == MOST_EASE
+    assert len(calls) <= MOST_TRIALS
+    if told(LEAST_EASE) < wanted < told(MOST_EASE):
+        assert ease is not None
+        assert abs(math.log(told(ease) / wanted)) < NEAR
+    elif ease is not None:
+        assert ease in (LEAST_EASE, MOST_EASE)
+        assert abs(math.log(told(ease) / wanted)) < FAR
 
 
-def test_where_nothing_tells_so_much_the_most_is_taken():
-    ease = ease_that_tells(1e5, lambda ease: 3.0 * math.exp(ease), first=0.2)
-    assert ease == MOST_EASE
+def test_where_no_size_tells_so_much_there_is_none():
+    assert ease_that_tells(1e5, lambda ease: 3.0 * math.exp(ease), first=0.2) is None
+    assert ease_that_tells(1.0, lambda ease: 1e4 * math.exp(ease), first=0.2) is None
 
 
-def test_what_tells_nothing_when_small_does_not_mislead():
+@pytest.mark.parametrize("wanted", [5.0, 50.0, 2000.0])
+@pytest.mark.parametrize("first", [-0.5, 0.3, 0.9])
+def test_what_tells_nothing_when_small_does_not_mislead(wanted, first):
     """A limit that is not reached, a stop that is not touched."""
 
     def told(ease):
         return 0.0 if ease < 0.4 else math.exp(20 * (ease - 0.4))
 
-    assert 0.4 < ease_that_tells(50.0, told, first=0.9) < 0.9
+    ease = ease_that_tells(wanted, told, first)
+    assert ease is not None
+    assert abs(math.log(told(ease) / wanted)) < FAR
 
 
 def test_levels_come_as_often_as_they_should():

@@ -1,10 +1,11 @@
 import re
+from dataclasses import replace
 from string import Formatter
 
 import numpy as np
 import pytest
 
-from diagnosis.verdict import Amount, ChannelFit, EffectAt, Estimate, Fit, Found
+from diagnosis.verdict import Amount, ChannelFit, EffectAt, Estimate, Fit, Found, When
 from experiments.diagnosis_report_figures import CLOSE_UP_S, close_up
 from experiments.diagnosis_report_numbers import (
     amount_text,
@@ -20,7 +21,7 @@ from experiments.diagnosis_report_series import (
     by_error,
     rms,
 )
-from experiments.diagnosis_report_text import finding
+from experiments.diagnosis_report_text import finding, findings
 from experiments.diagnosis_report_words import WORDS, effect_words
 from groundwalk.errors import BadValueError, UnknownNameError
 
@@ -218,3 +219,27 @@ def test_series_that_do_not_fit_together_are_refused(time_s, of):
     assert ReportSeries("a", np.arange(5.0), channels(a=1.0)).name == "a"
     with pytest.raises(BadValueError, match="series 'a'"):
         ReportSeries("a", time_s, of)
+
+
+def friction(place, torque):
+    value = Estimate(torque, torque * 0.9, torque * 1.1, "N m")
+    return Found("coulomb_friction", place, {"torque": value}, 0.9)
+
+
+def test_one_effect_at_many_places_is_told_once():
+    at_three = [friction("A", 0.5), friction("B", 0.2), friction("C", 0.3)]
+    assert findings(at_three) == [
+        "dry friction at 3 places, torque from about 0.2 N m at the joint B to about "
+        "0.5 N m at the joint A"
+    ]
+    assert [clause.count("has dry friction") for clause in findings(at_three[:2])] == [
+        1,
+        1,
+    ]
+
+
+def test_what_comes_and_goes_is_told_one_by_one():
+    fading = replace(friction("C", 0.3), when=When("drift", 1.0, 2.0))
+    told = findings([friction("A", 0.5), friction("B", 0.2), fading])
+    assert len(told) == 3
+    assert told[2].endswith("growing from 1 to 2 s")
