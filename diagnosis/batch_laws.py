@@ -47,7 +47,8 @@ class BatchLaws:
         self._rotor_kg_m2 = self._rotors()
         self._batch.set_const()
         self._servos = BatchServos(batch, plant, servos, joints)
-        self._friction = BatchFriction(batch, plant, joints, step_s)
+        damping = self._servos.damping_nm_s_rad
+        self._friction = BatchFriction(batch, plant, joints, damping, step_s)
         # most variants have none of these laws: they cost nothing then
         self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
         loose = bool(joints["gap_rad"].any())

@@ -74,6 +74,11 @@ class BatchServos:
         reach = self.law["limit"] / np.maximum(self._full_kp, LEAST_KP)
         return np.asarray(JUMP * reach)
 
+    @property
+    def damping_nm_s_rad(self) -> FloatArray:
+        """(rows, j) of servos, motors and joints: all that is viscous."""
+        return np.asarray(self.law["kd"] + self._damping[:, self._dofs])
+
     def equal(
         self, mean_rad: FloatArray, ends: Ends, angle: FloatArray, velocity: FloatArray
     ) -> FloatArray:

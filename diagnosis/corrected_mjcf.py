@@ -75,6 +75,8 @@ def _write_fields(
     compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
 ) -> None:
     """Put the only row of some variants into a model."""
+    import mujoco
+
     for name, values in variants.fields.items():
         *holder, last = name.split(".")
         target = compiled.opt if holder else compiled
@@ -83,9 +85,11 @@ def _write_fields(
             value[...] = values[0]
         else:
             setattr(target, last, type(value)(values[0]))
+    mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
     one, joints = _OneModel(compiled), vars(variants.joints)
-    BatchServos(one, variants.plant, [servo], joints)
-    BatchFriction(one, variants.plant, joints, step_s)
+    servos = BatchServos(one, variants.plant, [servo], joints)
+    damping = servos.damping_nm_s_rad
+    BatchFriction(one, variants.plant, joints, damping, step_s)
 
 
 def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:

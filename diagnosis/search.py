@@ -61,16 +61,16 @@ class Search:
         chosen, size, energy, fitted = 0, 1, nothing, self._nothing_fit
         while best.get(size):
             first = best[size][0]
-            # what fits the selection data by chance gains little where it was fitted
-            seen = fitted - first.fit.energy > self.least_gain
-            if seen and self.worth(energy, first.selected, nothing):
+            gains = fitted - first.fit.energy, energy - first.selected
+            shows = self._shows(*gains) or (size == 1 and self._hints(*gains))
+            if shows and self._matters(energy, first.selected, nothing):
                 chosen = size
                 best[size] = self._refined(best[size])
                 energy, fitted = best[size][0].selected, best[size][0].fit.energy
                 starts = self._starts_from(best[size][0])
             # two together may explain what each alone does not: a gap that rattles
             # without its friction, say
-            elif size > 1 or nothing < self.rules.suspicious * self.floor:
+            elif size > chosen + 1 or energy < self.rules.suspicious * self.floor:
                 break
             larger = self._larger(starts, best[size], residual)
             size += 1
@@ -89,12 +89,34 @@ class Search:
 
     def worth(self, before: float, after: float, nothing: float) -> bool:
         """Whether a step from one energy to another is to be believed."""
+        enough = before - after > self.least_gain
+        return enough and self._matters(before, after, nothing)
+
+    def _matters(self, before: float, after: float, nothing: float) -> bool:
+        """Whether a step takes away enough of what there is to explain."""
         rules = self.rules
         return before - after > max(
-            self.least_gain,
             rules.least_share * (before - self.floor),
             rules.least_of_all * (nothing - self.floor),
         )
+
+    def _shows(self, fitted: float, selected: float) -> bool:
+        """Whether gains on both kinds of data are enough, each for itself.
+
+        What fits the selection data by chance gains little where it was fitted.
+        """
+        return min(fitted, selected) > self.least_gain
+
+    def _hints(self, fitted: float, selected: float) -> bool:
+        """Whether they are enough together, as one effect on a fixed base may show.
+
+        A joint need not move as much in the selection data as in the others. On feet
+        two runs part by chance, and much is gained in some that is lost in others.
+        """
+        share = self.fit.scored.sum() / self.select.scored.sum()
+        enough = fitted + selected > (1 + share) * self.least_gain
+        both = fitted > self.least_gain and selected > self.rules.least_hint
+        return bool(enough and both and self.fit.plant.base == "fixed")
 
     def _starts_from(self, leader: Judged) -> Starts:
         """Starts that also know of pushes that show once the leader is known."""

@@ -28,6 +28,7 @@ class Rules:
         effect alone is of use; below it a search ends ...
       promising: ... where no guess gains this part of the least gain.
       least_gain: log-likelihood that an effect must gain on the selection data.
+      least_hint: the same for one that gains much more on the fitting data.
       least_pattern: and as much as a pattern of this rms [noise] would: below it is
         what integrators and clocks do wrong.
       least_share: and this share of the energy above the noise that the best model so
@@ -50,6 +51,7 @@ class Rules:
     suspicious: float = 1.5
     promising: float = 0.5
     least_gain: float = 15.0
+    least_hint: float = 3.0
     least_pattern: float = 0.15
     least_share: float = 0.3
     least_of_all: float = 0.0001
@@ -71,6 +73,11 @@ class Judged:
     def model(self) -> Model:
         """The effects."""
         return self.fit.model
+
+    @property
+    def energy(self) -> float:
+        """On fitting and selection data together."""
+        return self.fit.energy + self.selected
 
     @property
     def keys(self) -> frozenset[str]:

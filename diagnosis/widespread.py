@@ -8,8 +8,6 @@ Here whole kinds are added, each at all joints where it explains something.
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
 from diagnosis.joint_wise import joint_wise
@@ -50,7 +48,8 @@ def widespread(search: Search, found: Found) -> Found:
     """
     best: Judged | None = None
     model: Model = ()
-    residual, energy = search.fit.residuals([()])[0], found.nothing
+    residual, energy = search.fit.residuals([()])[0], found.nothing_fit + found.nothing
+    floor = found.floor_fit + found.floor
     waited = 0
     for _ in range(MOST_KINDS):
         signs = signatures(search.fit, model, search.usage, (), KINDS)
@@ -60,8 +59,8 @@ def widespread(search: Search, found: Found) -> Found:
         if tried is None:
             break
         model, residual = tried.model, tried.fit.residual
-        if energy - tried.selected >= LEAST_SHARE * (energy - search.floor):
-            best, energy, waited = tried, tried.selected, 0
+        if energy - tried.energy >= LEAST_SHARE * (energy - floor):
+            best, energy, waited = tried, tried.energy, 0
         else:  # it may take another kind to bring out what this one is good for
             waited += 1
         if waited == PATIENCE:
@@ -83,12 +82,17 @@ def widespread(search: Search, found: Found) -> Found:
 
 
 def _best(search: Search, starts: Sequence[Model]) -> Judged | None:
-    """The best of some models on the selection data; only that one is fitted well."""
+    """The best of some models; only that one is fitted well.
+
+    On fitting and selection data together: so few values are hardly fitted by chance,
+    and what one joint shows in one motion may be in no other.
+    """
     if not starts:
         return None
     rough = fit_all(search.fit, starts, search.rules.first_steps, nudges_of=joint_wise)
     energies = search.energies([fit.model for fit in rough])
-    start = rough[int(np.argmin(energies))].model
+    judged = [Judged(*both) for both in zip(rough, energies, strict=True)]
+    start = min(judged, key=lambda one: one.energy).model
     (fit,) = fit_all(search.fit, [start], nudges_of=joint_wise)
     return Judged(fit, search.energies([fit.model])[0])
 

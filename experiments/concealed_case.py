@@ -56,7 +56,9 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
         if maker.run():
             break
     else:
-        raise GroundwalkError(f"case {number} of seed {seed}: every attempt failed")
+        raise GroundwalkError(
+            f"case {number} of seed {seed}: every attempt fell, or told too little"
+        )
     name = case_name(number)
     partial = cases / f".{name}.partial"
     shutil.rmtree(partial, ignore_errors=True)

@@ -65,7 +65,7 @@ GOALS = (
     Goal("right effect first, all singles", ("top1", "all")),
     Goal("right effect considered, L1", ("in_set", "L1"), low=0.90),
     Goal("right effect considered, L2", ("in_set", "L2"), low=0.90),
-    Goal("right effect considered, all singles", ("in_set", "all"), low=0.90),
+    Goal("right effect considered, all singles", ("in_set", "all")),
     Goal("effects considered, mean number", ("set_size",)),
     Goal("right place where the effect is right", ("place",), low=0.95),
     Goal("pairs and triples, F1", ("pairs_f1",), low=0.75),

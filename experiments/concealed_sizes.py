@@ -33,11 +33,13 @@ def _viscous(s: Setting) -> dict[str, float]:
 
 
 def _stribeck(s: Setting) -> dict[str, float]:
+    """Its peak at speeds that the joint goes through: else it is Coulomb's."""
     coulomb = s.part(0.1, 0.02) * s.torque_nm
+    part = s.rng.uniform(math.log(0.03), math.log(0.3))
     return {
         "coulomb_torque": coulomb,
-        "extra_torque": s.part(1.0, 0.2) * coulomb,
-        "speed": math.exp(s.rng.uniform(math.log(0.02), math.log(0.5))),
+        "extra_torque": float(s.rng.uniform(0.5, 1.5)) * coulomb,
+        "speed": math.exp(part) * s.speed_rad_s,
     }
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.batch_friction import SOLIMP_FRICTION
+from diagnosis.batch_friction import SOLIMP_FRICTION, stops_in_a_step
 from diagnosis.drive import Held
 from diagnosis.library import effect
 from diagnosis.plant import Plant
@@ -108,7 +108,6 @@ class SysidModels:
         plant = self._plant
         model = copy.copy(plant.model)
         model.opt.timestep = STEP_S
-        model.dof_solimp[:], model.dof_solref[:] = SOLIMP_FRICTION, (2 * STEP_S, 1.0)
         rows, limit = plant.actuators, servo.max_torque_nm
         model.actuator_gainprm[rows, 0] = servo.kp_nm_rad
         model.actuator_biasprm[rows, 1] = -servo.kp_nm_rad
@@ -118,6 +117,10 @@ class SysidModels:
         model.actuator_forcerange[rows] = np.stack([-finite, finite], axis=1)
         emf = servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
         model.dof_damping[plant.dofs] += emf
+        damping = model.dof_damping.copy()
+        damping[plant.dofs] += servo.kd_nm_s_rad
+        model.dof_solimp[:] = SOLIMP_FRICTION
+        model.dof_solref[:] = stops_in_a_step(damping, model.dof_M0, STEP_S)
         return model
 
     def _put(

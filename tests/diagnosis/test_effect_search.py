@@ -205,3 +205,55 @@ def test_residuals_that_are_no_noise_tell_less():
     both = judged(PLANT, 900.0, "armature@elbow", "servo_gain@elbow")
     assert ranked([one, both], 900.0)[0] is both
     assert ranked([one, both], 100.0)[0] is one
+
+
+def test_little_in_the_selection_data_is_enough_if_much_is_fitted():
+    """A joint need not move as much in a part that is short."""
+    truth = ("viscous_friction", "elbow", 0.008)
+    traces = [
+        recorded(PLANT, truth, duration_s=seconds, seed=4, noise_rad=NOISE_RAD)
+        for seconds in (4.0, 1.0)
+    ]
+    search = search_of(*traces)
+    found = search.run()
+    gained = found.nothing - found.winner.selected
+    assert search.rules.least_hint < gained < search.least_gain
+    close = [one.keys for one in found.best[1] if found.worse(one) < 3.0]
+    assert {"viscous_friction@elbow"} in close
+
+
+def test_hints_are_of_both_kinds_of_data_and_of_a_fixed_base():
+    search, _ = searched()
+    least = search.least_gain
+    assert search._hints(1.9 * least, 0.3 * least)
+    assert not search._hints(1.9 * least, 0.05 * least)
+    assert not search._hints(1.2 * least, 0.3 * least)
+    assert not search._hints(0.5 * least, 3.0 * least)
+    floating = SimpleNamespace(
+        fit=SimpleNamespace(plant=SimpleNamespace(base="floating"), scored=np.ones(2)),
+        select=SimpleNamespace(scored=np.ones(2)),
+        least_gain=least,
+        rules=search.rules,
+    )
+    assert not Search._hints(floating, 1.9 * least, 0.3 * least)
+
+
+@pytest.mark.parametrize(("left", "chosen"), [(50.0, 3), (1.1, 1)])
+def test_where_much_is_left_two_more_are_tried_together(monkeypatch, left, chosen):
+    """A gap that rattles without its friction explains little alone."""
+    search, _ = searched()
+    effects = ("armature@elbow", "servo_gain@elbow", "coulomb_friction@elbow")
+    energies = [left * search.floor, 0.9 * left * search.floor, 0.5 * search.floor]
+    models = []
+    for size, energy in enumerate(energies, 1):
+        one = judged(PLANT, energy, *effects[:size])
+        fit = replace(one.fit, residual=np.sqrt([100.0 / size**3]))
+        models.append([replace(one, fit=fit)])
+    grown = iter(models)
+    monkeypatch.setattr(search, "energies", lambda asked: [100 * energies[0]])
+    monkeypatch.setattr(search, "judged", lambda starts: next(grown, []))
+    monkeypatch.setattr(search, "_refined", lambda best: best)
+    monkeypatch.setattr(search, "_larger", lambda *_: [])
+    starts = SimpleNamespace(swapped=lambda leader: [])
+    monkeypatch.setattr(search, "_starts_from", lambda leader: starts)
+    assert search.run().chosen == chosen

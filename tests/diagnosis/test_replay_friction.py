@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from joint_rigs import (
     INERTIA,
+    WHEEL,
     exact,
     integrated,
+    plant_of,
     replayed,
+    run_from,
+    ticks,
+    trace_of,
 )
 from wheel_rig import (
     HINGE,
@@ -94,3 +99,24 @@ def test_viscous_friction_and_armature_are_of_the_joint():
     _, velocity = replayed(plant, run, *effects, step_s=1e-4)
     wanted = 2.0 * np.exp(-0.1 / (INERTIA + 0.03) * TIME_S)
     np.testing.assert_allclose(velocity[:, 0], wanted, atol=1e-3)
+
+
+@pytest.mark.parametrize("emf", [0.0, 0.3])
+@pytest.mark.parametrize("step_s", [0.001, 0.004])
+def test_dry_friction_stops_a_light_joint_with_a_strong_servo(step_s, emf):
+    """Without inertia kd q' = kp (c - q) - T until the servo is within T: then stands.
+
+    Integrators that have damping implicitly let it creep on to the command.
+    """
+    kp, kd, torque, command = 9.0, 0.62, 0.24, 0.24
+    light = WHEEL.replace(str(INERTIA), "1e-5")
+    plant = plant_of(light, kp=kp, kd=kd - emf, emf=emf)
+    time_s = ticks(1.5)
+    run = run_from(trace_of(plant, time_s, command_rad=np.full(len(time_s), command)))
+    friction = ("coulomb_friction", HINGE, torque)
+    found = replayed(plant, run, friction, step_s=step_s)[0][:, 0]
+    rest = command - torque / kp
+    wanted = rest * (1 - np.exp(-kp / kd * time_s))
+    np.testing.assert_allclose(found[20:], wanted[20:], atol=2e-3)
+    free = replayed(plant, run, step_s=step_s)[0][-1, 0]
+    assert free == pytest.approx(command, abs=1e-3)
