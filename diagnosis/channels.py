@@ -33,17 +33,18 @@ class Channels:
     names: tuple[str, ...]
     noise: FloatArray
 
-    def unit(self, index: int) -> str:
-        """Of a channel; for sliding joints read m for rad and N for N m."""
-        name = self.names[index]
-        if name.startswith("base.position"):
-            return "m"
-        kind = name.split(".")[0]
-        return {"torque": "N m", "gyroscope": "rad/s"}.get(kind, "rad")
-
     def of_joint(self, joint: str) -> list[int]:
         """Indices of a joint's own channels."""
         return [i for i, name in enumerate(self.names) if name.endswith(f".{joint}")]
+
+
+def channel_unit(plant: Plant, name: str) -> str:
+    """The unit of a channel, SI and radians."""
+    if name.startswith("base.position"):
+        return "m"
+    kind, _, joint = name.partition(".")
+    unit = {"torque": "N m", "gyroscope": "rad/s"}.get(kind, "rad")
+    return plant.unit(unit, joint)
 
 
 def channels_of(plant: Plant, traces: Sequence[Trace]) -> Channels:

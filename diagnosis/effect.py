@@ -23,7 +23,7 @@ class Parameter:
 
     Attributes:
       name: what it is.
-      unit: SI, radians; for sliding joints read N for N m and m for rad.
+      unit: SI, radians, as it is where joints turn (see `Plant.unit`).
       low: least value that makes sense.
       high: largest value that makes sense.
       neutral: value at which the effect is not there.

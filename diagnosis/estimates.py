@@ -27,13 +27,17 @@ def estimates(predictor: Predictor, fit: Fit) -> list[Mapping[str, Estimate]]:
     x = fit.coordinates.of(fit.model)
     ends = np.array([_values(fit, x + side * Z_80 * deviation) for side in (-1, 1)])
     values = [value for placed in fit.model for value in placed.values]
-    every = [
-        Estimate(value, min(*pair, value), max(*pair, value), parameter.unit)
-        for value, pair, parameter in zip(
-            values, ends.T.tolist(), fit.coordinates.parameters, strict=True
-        )
+    parameters = fit.coordinates.parameters
+    places = [placed.place for placed in fit.model for _ in placed.values]
+    units = [
+        predictor.plant.unit(parameter.unit, place)
+        for parameter, place in zip(parameters, places, strict=True)
     ]
-    names = [parameter.name for parameter in fit.coordinates.parameters]
+    every = [
+        Estimate(value, min(*pair, value), max(*pair, value), unit)
+        for value, pair, unit in zip(values, ends.T.tolist(), units, strict=True)
+    ]
+    names = [parameter.name for parameter in parameters]
     counts = np.cumsum([0, *(len(placed.values) for placed in fit.model)])
     return [
         dict(zip(names[first:last], every[first:last], strict=True))

@@ -4,6 +4,7 @@ import numpy as np
 
 from diagnosis.belief import confusable, twins
 from diagnosis.ceiling import ceiling_errors
+from diagnosis.channels import channel_unit
 from diagnosis.controls import Controls
 from diagnosis.predictor import Model, Predictor
 from diagnosis.search_result import Found
@@ -51,7 +52,7 @@ class FinalTest:
         """For `Verdict.fit`."""
         channels = {
             name: ChannelFit(
-                unit=self._test.channels.unit(i),
+                unit=channel_unit(self._test.plant, name),
                 floor=float(noise),
                 **{key: float(rms[i] * noise) for key, rms in self._errors.items()},
             )

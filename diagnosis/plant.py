@@ -12,6 +12,14 @@ if TYPE_CHECKING:
 
 Base = Literal["fixed", "floating"]
 ROOT = "root"
+_SLIDING = {
+    "rad": "m",
+    "rad/s": "m/s",
+    "N m": "N",
+    "N m/rad": "N/m",
+    "N m s/rad": "N s/m",
+    "kg m^2": "kg",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +63,24 @@ class Plant:
     def actuators(self) -> list[int]:
         """Actuator of each joint."""
         return [int(self.model.actuator(name).id) for name in self.joints]
+
+    @cached_property
+    def slides(self) -> frozenset[str]:
+        """The joints that slide instead of turning."""
+        import mujoco
+
+        kinds = {name: int(self.model.joint(name).type[0]) for name in self.joints}
+        slide = int(mujoco.mjtJoint.mjJNT_SLIDE)
+        return frozenset(name for name, kind in kinds.items() if kind == slide)
+
+    def unit(self, unit: str, place: str) -> str:
+        """A unit at a place: of joints that slide it is metres where others turn.
+
+        Args:
+          unit: as it is where joints turn.
+          place: a joint, or anything else.
+        """
+        return _SLIDING.get(unit, unit) if place in self.slides else unit
 
     @cached_property
     def bodies(self) -> tuple[str, ...]:

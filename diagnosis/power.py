@@ -37,5 +37,7 @@ def smallest_detectable(
         size = abs(tried - first.neutral) or max(map(abs, placed.values))
         least = size * float(np.sqrt(gain / power))
         if placed.key not in sizes or least < sizes[placed.key].value:
-            sizes[placed.key] = Amount(least, first.unit)
+            sizes[placed.key] = Amount(
+                least, predictor.plant.unit(first.unit, placed.place)
+            )
     return sizes

@@ -112,7 +112,7 @@ def _of_joint(
             start_s=float(trace.time_s[first]),
             end_s=float(end_s[last]),
             torque=float(size),
-            unit="N m",
+            unit=plant.unit("N m", plant.joints[column]),
             source=source,
             jumps=jumps,
             felt=felt,

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from diagnosis.bursts import bursts_of
+from diagnosis.channels import channel_unit
 from diagnosis.moving_mean import moving_mean
 from diagnosis.predictor import Predictor
 from diagnosis.verdict import MismatchCell
@@ -47,7 +48,7 @@ def _cell(
     rms = float(np.sqrt(np.mean(own[scored] ** 2))) if scored.any() else 0.0
     return MismatchCell(
         channel=name,
-        unit=channels.unit(index),
+        unit=channel_unit(predictor.plant, name),
         share=share,
         error_rms=rms * noise,
         noise_rms=noise,

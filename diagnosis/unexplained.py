@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from diagnosis.channels import channel_unit
 from diagnosis.moving_mean import moving_mean
 from diagnosis.predictor import Predictor
 from diagnosis.verdict import Unexplained
@@ -38,9 +39,10 @@ def unexplained(
     ]
     name, unit, at, mean, spread = max(curves, key=_explained)
     channel = predictor.channels.names[joint]
-    return Unexplained(
-        float(np.clip(share, 0.0, 1.0)), channel, "rad", name, unit, at, mean, spread
-    )
+    plant, part = predictor.plant, float(np.clip(share, 0.0, 1.0))
+    own = channel_unit(plant, channel)
+    unit = plant.unit(unit, plant.joints[joint])
+    return Unexplained(part, channel, own, name, unit, at, mean, spread)
 
 
 Curve = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]

@@ -14,10 +14,7 @@ PulseSource = Literal["actuator input", "torque sensor", "position sensor"]
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with the interval that holds it in 80 of 100 diagnoses.
-
-    For sliding joints the unit reads N for N m and m for rad.
-    """
+    """A number with the interval that holds it in 80 of 100 diagnoses."""
 
     value: float
     low: float
@@ -149,7 +146,7 @@ class Pulse:
       start_s: in the recording's time.
       end_s: likewise.
       torque: measured less what the servo asked for.
-      unit: of the torque; for sliding joints read N for N m.
+      unit: of the torque.
       source: where it came in. "actuator input": it was real, the motion obeys it.
         "torque sensor": the joint never felt it. "position sensor": the measured
         position jumped, so that the servo seems to be wrong.

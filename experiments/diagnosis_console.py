@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from diagnosis.verdict import EffectAt, Fit, Found, Verdict
@@ -10,15 +11,18 @@ from experiments.diagnosis_report_places import at_words, choice, listing
 from experiments.diagnosis_report_pulses import pulse_sentences
 from experiments.diagnosis_report_text import (
     BADGES,
+    at_many,
     doubts,
     headline,
     next_step,
     parameter_rows,
+    told_together,
 )
 
 _SHOWN_AMOUNTS = 3
 _MOST_FOUND = 3
 """Lines about what was found, pulses among them."""
+_MOST_UNSURE = 2
 
 
 def print_verdict(verdict: Verdict, files: Sequence[Path]) -> None:
@@ -82,7 +86,9 @@ def _verdict(verdict: Verdict) -> str:
 
 def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
     """What was found, or the first of it and how much more there is."""
-    lines = [*map(_found, verdict.effects), *pulse_sentences(verdict.pulses)]
+    groups = told_together(verdict.effects)
+    found = [at_many(group) if len(group) > 1 else _found(group[0]) for group in groups]
+    lines = [*found, *pulse_sentences(verdict.pulses)]
     more = len(lines) - _MOST_FOUND
     for line in lines[:_MOST_FOUND] if more <= 0 else lines[: _MOST_FOUND - 1]:
         yield "found", line
@@ -127,8 +133,10 @@ def _doubt(verdict: Verdict) -> str:
     if verdict.alternatives:
         also = "" if verdict.kind == "not_identifiable" else "also "
         return f"the recordings {also}fit {choice(verdict.alternatives)}"
-    unsure = [effect for effect in verdict.effects if effect.confusable_with]
-    return " ".join(doubts(verdict)) if unsure else ""
+    unsure = tuple(effect for effect in verdict.effects if effect.confusable_with)
+    more = len(unsure) - _MOST_UNSURE
+    shown = doubts(replace(verdict, effects=unsure[:_MOST_UNSURE]))
+    return " ".join([*shown, f"And {more} more."] if more > 0 else shown)
 
 
 def _limits(verdict: Verdict) -> str:

@@ -6,6 +6,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from diagnosis.verdict import Pulse
+from experiments.diagnosis_report_numbers import percent
 from experiments.diagnosis_report_places import place_words
 
 _WAYS = {
@@ -43,7 +44,8 @@ def _amounts(pulses: Sequence[Pulse]) -> str:
 def _evidence(pulse: Pulse) -> str:
     """Which signal jumps, and whether the motion obeys."""
     signal = "position" if pulse.source == "position sensor" else "torque"
-    jumps = f"{pulse.jumps[signal]:.0%} of their edges are in the measured {signal}"
+    jumps = min(max(pulse.jumps[signal], 0.0), 1.0)
+    edges = f"{percent(jumps)} of their edges are in the measured {signal}"
     if signal == "position":
-        return jumps
-    return f"{jumps}, and the motion obeys {pulse.felt:.0%} of them"
+        return edges
+    return f"{edges}, and the motion obeys {percent(min(max(pulse.felt, 0.0), 1.0))}"

@@ -26,6 +26,9 @@ from experiments.diagnosis_report_words import effect_words
 MANY = 3
 """Places of one effect from which on they are told together."""
 
+SHOWN = 0.01
+"""Part of its interval: what is closer to nothing is not shown by the data."""
+
 BADGES = {
     "effects": "missing physics found",
     "none": "nothing missing",
@@ -68,18 +71,24 @@ def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
       effects: the surest first.
       changed: whether the question was what has changed.
     """
-    clauses, told = [], set[str]()
+    return [
+        at_many(group) if len(group) > 1 else finding(group[0], changed)
+        for group in told_together(effects)
+    ]
+
+
+def told_together(effects: Sequence[Found]) -> list[list[Found]]:
+    """Effects in their order, each alone or with all that are alike at other places."""
+    groups: dict[str, list[Found]] = {}
     for effect in effects:
         alike = [one for one in effects if one.name == effect.name]
-        if len(alike) < MANY or any(one.when.kind != "always" for one in alike):
-            clauses.append(finding(effect, changed))
-        elif effect.name not in told:
-            told.add(effect.name)
-            clauses.append(_at_many(alike))
-    return clauses
+        many = len(alike) >= MANY and all(one.when.kind == "always" for one in alike)
+        key = effect.name if many else f"{effect.name}@{effect.place}"
+        groups.setdefault(key, []).append(effect)
+    return [*groups.values()]
 
 
-def _at_many(alike: Sequence[Found]) -> str:
+def at_many(alike: Sequence[Found]) -> str:
     """Least and most of an effect's first value, and where they are."""
     name = next(iter(alike[0].parameters))
     order = sorted(alike, key=lambda one: one.parameters[name].value)
@@ -99,7 +108,9 @@ def finding(effect: Found, changed: bool = False) -> str:
     """A clause: "the left knee (LKneePitch) has play of about 0.030 rad (...) ..."."""
     words = effect_words(effect.name)
     numbers = {
-        name: f"about {estimate_text(one)}" for name, one in effect.parameters.items()
+        name: f"about {estimate_text(one)}"
+        for name, one in effect.parameters.items()
+        if abs(one.value) > SHOWN * (one.high - one.low)
     }
     clause = words.finding.format_map(
         _Words(
@@ -111,14 +122,14 @@ def finding(effect: Found, changed: bool = False) -> str:
         )
     )
     course, start_s, end_s = effect.when.kind, effect.when.start_s, effect.when.end_s
-    if course == "always" or effect.name == "external_force":
+    if course == "always":
         return clause
     doing = "from" if course == "burst" else "growing from"
     return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s"
 
 
 class _Words(dict[str, str]):
-    """Words for a template; a parameter that was not estimated is "some"."""
+    """Words for a template; a parameter that the data do not show is unknown."""
 
     def __init__(self, numbers: dict[str, str], **words: str) -> None:
         super().__init__(numbers | words)
@@ -158,8 +169,8 @@ def _gain(verdict: Verdict) -> list[str]:
     over_all = (
         ""
         if closed is None
-        else f" Over all channels, {percent(max(0.0, closed))} of the error above the "
-        "noise is gone."
+        else f" Over all channels, {percent(min(max(closed, 0.0), 1.0))} of the error "
+        "above the noise is gone."
     )
     return [
         f"With {one} the sim's error in {errors.channel}, on recordings that were kept "

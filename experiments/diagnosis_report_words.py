@@ -183,8 +183,7 @@ WORDS: dict[str, EffectWords] = {
     ),
     "external_force": EffectWords(
         "push from outside",
-        "{body} was pushed with {x} in x, {y} in y and {z} in z, from {start} on, for "
-        "{duration}",
+        "{body} was pushed with {x} in x, {y} in y and {z} in z",
         "A hand, a cable or a collision pushes a body for some time.",
     ),
     "drag": EffectWords(

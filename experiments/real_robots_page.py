@@ -19,8 +19,7 @@ Intervals are of 80 %. "Real less sim" is the rms error on recordings, or parts 
 that neither the fit nor the choice of effects has seen; "regression" is what a flexible
 regression without physics reaches there. "Effect elsewhere" and "wrong effect" replace
 the main effect only. How often such probabilities are right is told by
-[concealed cases](concealed.md); no real robot has told it. For sliding joints read N
-for N m and m for rad.
+[concealed cases](concealed.md); no real robot has told it.
 """
 
 

@@ -35,7 +35,7 @@ def toy(seed, common):
     x = -np.linalg.lstsq(jacobian, noise, rcond=None)[0]
     model = coordinates.model_at(x)
     fit = Fit(model, noise + jacobian @ x, jacobian, coordinates)
-    predictor = SimpleNamespace(block=np.repeat(np.arange(BLOCKS), ROWS))
+    predictor = SimpleNamespace(block=np.repeat(np.arange(BLOCKS), ROWS), plant=PLANT)
     return predictor, fit, x
 
 

@@ -21,7 +21,7 @@ def test_pulses_are_found_where_they_came_in(place, source, felt):
     pulses = pulses_of(sled(), recorded(place))
     assert [pulse.source for pulse in pulses] == [source] * len(PULSES_S)
     for pulse, (start_s, end_s) in zip(pulses, PULSES_S, strict=True):
-        assert (pulse.joint, pulse.recording, pulse.unit) == ("slide", "made up", "N m")
+        assert (pulse.joint, pulse.recording, pulse.unit) == ("slide", "made up", "N")
         assert pulse.start_s == pytest.approx(start_s, abs=0.004)
         assert pulse.end_s == pytest.approx(end_s, abs=0.004)
         assert pulse.torque == pytest.approx(PULSE_N, rel=0.05)

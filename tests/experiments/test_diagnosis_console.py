@@ -70,3 +70,13 @@ def test_a_terminal_gets_the_same_words(capsys, monkeypatch):
     printed = capsys.readouterr().out
     assert "these data cannot tell" in printed
     assert "Nothing [b]moved[/b]" in printed
+
+
+def test_effects_at_many_places_take_one_line_and_few_doubts_are_told():
+    (known,) = made_up.ONE.effects
+    alike = tuple(dataclasses.replace(known, place=place) for place in "ABC")
+    text = text_of(dataclasses.replace(made_up.ONE, effects=alike))
+    assert "play (backlash) at 3 places, gap from about 0.0304 rad" in text
+    assert text.count("do not rule out") == 2
+    assert "And 1 more." in text
+    assert "And" not in text_of(dataclasses.replace(made_up.ONE, effects=alike[:2]))

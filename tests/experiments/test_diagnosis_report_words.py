@@ -59,7 +59,7 @@ ELSEWHERE = {
     "command_latency", "sensor_delay", "gyro_bias", "contact_friction",
     "contact_compliance", "ground_slope", "uneven_ground",
 }  # fmt: skip
-UNSAID = {"end_stop": {"side"}}
+UNSAID = {"end_stop": {"side"}, "external_force": {"start", "duration"}}
 
 
 def test_every_effect_has_words_and_no_other():
@@ -243,3 +243,16 @@ def test_what_comes_and_goes_is_told_one_by_one():
     told = findings([friction("A", 0.5), friction("B", 0.2), fading])
     assert len(told) == 3
     assert told[2].endswith("growing from 1 to 2 s")
+
+
+def test_what_the_data_do_not_show_is_not_given_as_a_number():
+    """A push across an axis that only slides, all the time."""
+    shown, not_shown = Estimate(3.4, 3.1, 3.6, "N"), Estimate(2.0, -598.0, 598.0, "N")
+    force = {"x": shown, "y": not_shown, "z": not_shown}
+    push = Found("external_force", "carriage", force, 0.8)
+    assert finding(push) == (
+        "the body carriage was pushed with about 3.4 N (3.1 to 3.6) in x, an unknown "
+        "amount in y and an unknown amount in z"
+    )
+    shove = replace(push, when=When("burst", 3.1, 3.35))
+    assert finding(shove).endswith("in z, from 3.1 to 3.35 s")

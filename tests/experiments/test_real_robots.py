@@ -150,7 +150,7 @@ def test_parts_of_the_same_recording_are_a_doubt(tmp_path):
     [
         ("actuator input", "came in at the input of the actuator"),
         ("torque sensor", "never felt them"),
-        ("position sensor", "97% of their edges are in the measured position"),
+        ("position sensor", "97 % of their edges are in the measured position"),
     ],
 )
 def test_reports_say_where_pulses_came_in(source, said):
