@@ -14,27 +14,36 @@ import numpy as np
 from worlds.hidden_run import Run
 from worlds.hidden_sensors import HiddenSensors
 
-LEVELS = {
-    (100.0, 1e5): 0.45,
-    (20.0, 100.0): 0.30,
-    (5.0, 20.0): 0.15,
-    (1.0, 5.0): 0.10,
-}
-"""Least and most nats per recording of a level, and how often it is drawn."""
+LEVELS = {"L1": 100.0, "L2": 20.0, "L3": 5.0, "L4": 1.0}
+"""From easy to see to next to invisible; the least nats per recording ..."""
+
+MOST_NATS = 1e5
+"""... and the most of the first."""
+
+SHARES = {"L1": 0.45, "L2": 0.30, "L3": 0.15, "L4": 0.10}
+"""How often a level is drawn."""
 
 LEAST_EASE, MOST_EASE = -2.0, 1.0
 NEAR = math.log(1.3)
 FAR = math.log(3.0)
 MOST_TRIALS = 8
-_LEAST_NATS, _MOST_NATS = 0.1, 1e9
+_LEAST_TOLD, _MOST_TOLD = 0.1, 1e9
 _INNER = 0.1
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
     """A level by its share, then even in the logarithm."""
-    levels = list(LEVELS)
-    low, high = levels[int(rng.choice(len(levels), p=list(LEVELS.values())))]
+    ends = [MOST_NATS, *LEVELS.values()]
+    level = int(rng.choice(len(LEVELS), p=[SHARES[name] for name in LEVELS]))
+    high, low = ends[level], ends[level + 1]
     return float(math.exp(rng.uniform(math.log(low), math.log(high))))
+
+
+def level_of(nats_per_recording: float) -> str:
+    """The first level that is reached, or the last."""
+    *_, last = LEVELS
+    reached = (name for name, least in LEVELS.items() if nats_per_recording >= least)
+    return next(reached, last)
 
 
 def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) -> float:
@@ -71,10 +80,10 @@ def ease_that_tells(
     tried: dict[float, float] = {}
     ease = first
     for _ in range(MOST_TRIALS):
-        tried[ease] = math.log(min(max(told(ease), _LEAST_NATS), _MOST_NATS)) - goal
+        tried[ease] = math.log(min(max(told(ease), _LEAST_TOLD), _MOST_TOLD)) - goal
         if abs(tried[ease]) < NEAR:
             break
-        ease = _next(tried, math.log(_LEAST_NATS) - goal)
+        ease = _next(tried, math.log(_LEAST_TOLD) - goal)
         if ease in tried:
             break
     best = min(tried, key=lambda one: abs(tried[one]))

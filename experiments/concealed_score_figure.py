@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.concealed_score_oracle import LEVELS
+from experiments.concealed_information import LEVELS
 from experiments.figure_file import write_figure
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from experiments.concealed_information import LEVELS
 from experiments.concealed_score_marks import NAMED_KINDS, Mark, by_kind
-from experiments.concealed_score_oracle import LEVELS
 from experiments.intervals import wilson
 
 Figure = dict[str, float | int | None]

@@ -24,12 +24,10 @@ from diagnosis.reference import standing_of
 from diagnosis.split import split
 from diagnosis.trace import Trace
 from diagnosis.verdict import Found
+from experiments.concealed_information import level_of
 from experiments.concealed_reading import read_case
 from experiments.concealed_score_truth import TrueCase
 from groundwalk.arrays import FloatArray, IntArray
-
-LEVELS = {"L1": 100.0, "L2": 20.0, "L3": 5.0, "L4": -np.inf}
-"""From easy to see to next to invisible; the least gain [nats per recording]."""
 
 
 @dataclass(frozen=True)
@@ -53,8 +51,8 @@ class Oracle:
 
     @property
     def level(self) -> str:
-        """The first of `LEVELS` whose least gain is reached."""
-        return next(name for name, least in LEVELS.items() if self.gain >= least)
+        """How easy the case is."""
+        return level_of(self.gain)
 
     def to_json(self) -> str:
         """As text."""

@@ -11,10 +11,13 @@ from experiments.concealed_information import (
     LEAST_EASE,
     LEVELS,
     MOST_EASE,
+    MOST_NATS,
     MOST_TRIALS,
     NEAR,
+    SHARES,
     drawn_nats,
     ease_that_tells,
+    level_of,
     nats,
 )
 from worlds.hidden_sensors import HiddenSensors
@@ -84,7 +87,17 @@ def test_what_tells_nothing_when_small_does_not_mislead(wanted, first):
 def test_levels_come_as_often_as_they_should():
     rng = np.random.default_rng(0)
     drawn = np.array([drawn_nats(rng) for _ in range(4000)])
-    for (low, high), share in LEVELS.items():
-        found = np.mean((low <= drawn) & (drawn < high))
-        assert found == pytest.approx(share, abs=0.03)
-    assert sum(LEVELS.values()) == pytest.approx(1.0)
+    levels = [level_of(nats) for nats in drawn]
+    for name, share in SHARES.items():
+        assert levels.count(name) / len(drawn) == pytest.approx(share, abs=0.03)
+    assert SHARES.keys() == LEVELS.keys()
+    assert sum(SHARES.values()) == pytest.approx(1.0)
+    assert 1.0 <= drawn.min() < drawn.max() <= MOST_NATS
+
+
+@pytest.mark.parametrize(
+    ("told", "level"),
+    [(1e6, "L1"), (100.0, "L1"), (99.0, "L2"), (5.0, "L3"), (2.0, "L4"), (-3.0, "L4")],
+)
+def test_a_level_is_reached_by_its_least(told, level):
+    assert level_of(told) == level
