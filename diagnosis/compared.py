@@ -7,7 +7,7 @@ from diagnosis.effect import Placed
 from diagnosis.fitting import fit_all
 from diagnosis.predictor import Model
 from diagnosis.search import Search
-from diagnosis.search_result import Found, Judged, keys_of, ranked
+from diagnosis.search_result import Found, Judged, keys_of
 from groundwalk.arrays import FloatArray
 
 CLOSE_NATS = 100.0
@@ -33,10 +33,10 @@ def compared(search: Search, found: Found) -> Found:
         search, [one.model for one in close], [one.fit.jacobian for one in close]
     )
     best = replace(
-        found, best={**found.best, found.chosen: ranked([*again, *rest], found.floor)}
+        found, best={**found.best, found.chosen: search.ranked([*again, *rest])}
     )
     more = fairly(search, crossed(best)[: search.rules.compared])
-    every = ranked([*best.best[found.chosen], *more], found.floor)
+    every = search.ranked([*best.best[found.chosen], *more])
     return replace(found, best={**found.best, found.chosen: every})
 
 
@@ -62,8 +62,7 @@ def fairly(
         jacobians=jacobians,
         exactly=True,
     )
-    energies = search.energies([fit.model for fit in fits], exactly=True)
-    return [Judged(*both) for both in zip(fits, energies, strict=True)]
+    return search.judge(fits, exactly=True)
 
 
 def crossed(found: Found) -> list[Model]:

@@ -36,7 +36,10 @@ def proven(search: Search, found: Found) -> Found:
 
 def _is_new(search: Search, less: Model, more: Model) -> bool:
     """Whether a model gains over a smaller one as it would not have done before."""
-    now = _gains(search.select, less, more)
+    # a few seconds each: neither has enough moments for itself
+    now = np.concatenate(
+        [_gains(part, less, more) for part in (search.fit, search.select)]
+    )
     before = np.concatenate([_gains(well, less, more) for well in search.well])
     usual = max(float(before.mean()), 0.0)
     variance = now.var() / len(now) + before.var() / len(before)

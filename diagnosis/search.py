@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.bursts import push_intervals
-from diagnosis.fitting import fit_all
+from diagnosis.fitting import Fit, fit_all
 from diagnosis.predictor import Model, Predictor
 from diagnosis.search_result import Found, Judged, Rules, ranked
 from diagnosis.signatures import Signature, signatures
@@ -45,6 +45,10 @@ class Search:
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.usage = Usage.of(fit.plant, fit.traces)
         self.floor = 0.5 * float(select.scored.sum())
+        self.floor_fit = 0.5 * float(fit.scored.sum())
+        # models of one size fit nothing by chance that others do not; but on feet two
+        # runs part by chance, and what happened before is held against both
+        self._weight = float(fit.plant.base == "fixed" and not well)
         self.signatures: list[Signature] = []
         """Of all effects at all places, once the search has run."""
         self._nothing_fit = np.inf
@@ -77,9 +81,14 @@ class Search:
             best[size] = self.judged(larger)
         if chosen:
             swapped = self.judged(starts.swapped(best[chosen][0]))
-            best[chosen] = _distinct(ranked(best[chosen] + swapped, self.floor))
-        floor_fit = 0.5 * float(self.fit.scored.sum())
-        return Found(nothing, self.floor, best, chosen, self._nothing_fit, floor_fit)
+            best[chosen] = _distinct(self.ranked(best[chosen] + swapped))
+        return Found(
+            nothing, self.floor, best, chosen, self._nothing_fit, self.floor_fit
+        )
+
+    def ranked(self, judged: Sequence[Judged]) -> list[Judged]:
+        """The most plausible first."""
+        return ranked(judged, self.floor + self._weight * self.floor_fit)
 
     @property
     def least_gain(self) -> float:
@@ -158,7 +167,7 @@ class Search:
             again = [*(judged.model for judged in first), *wider]
             known = [None, *(judged.fit.jacobian for judged in first[1:])]
             tried = self.judged(again, [*known, *(None for _ in wider)])
-            best = _distinct(ranked([*tried, *rest], self.floor))
+            best = _distinct(self.ranked([*tried, *rest]))
             if best[0].keys == before.keys or best[0] not in tried:
                 break
         return best
@@ -192,12 +201,20 @@ class Search:
             followed=True,
             jacobians=[fit.jacobian for fit in rough[:count]],
         )
-        fits += rough[count:]
-        energies = self.energies([fit.model for fit in fits])
-        judged = [
-            Judged(fit, energy) for fit, energy in zip(fits, energies, strict=True)
+        return _distinct(self.ranked(self.judge([*fits, *rough[count:]])))
+
+    def judge(self, fits: Sequence[Fit], exactly: bool = False) -> list[Judged]:
+        """What fits come to on the selection data, in their order.
+
+        Args:
+          fits: to the fitting data.
+          exactly: with the integrator's error as it is at each model.
+        """
+        energies = self.energies([fit.model for fit in fits], exactly)
+        return [
+            Judged(fit, energy, self._weight)
+            for fit, energy in zip(fits, energies, strict=True)
         ]
-        return _distinct(ranked(judged, self.floor))
 
     def _worthy(self, energies: Sequence[float]) -> int:
         """How many of the best are worth more steps: none that is far behind.

@@ -64,10 +64,13 @@ class Judged:
     Attributes:
       fit: on the fitting data.
       selected: energy on the selection data: minus the log-likelihood.
+      weight: of the fitting data beside them, where models are compared that may gain
+        something there by chance only: 0 or 1.
     """
 
     fit: Fit
     selected: float
+    weight: float = 0.0
 
     @property
     def model(self) -> Model:
@@ -78,6 +81,11 @@ class Judged:
     def energy(self) -> float:
         """On fitting and selection data together."""
         return self.fit.energy + self.selected
+
+    @property
+    def evidence(self) -> float:
+        """Energy on the data by which it is compared with others."""
+        return self.energy if self.weight else self.selected
 
     @property
     def keys(self) -> frozenset[str]:
@@ -113,7 +121,8 @@ class Found:
     def worse(self, judged: Judged) -> float:
         """Nats by which a model of the chosen size is less plausible than the best."""
         assert self.winner is not None
-        scale = scale_of(self.best[self.chosen], self.floor)
+        floor = self.floor + self.winner.weight * self.floor_fit
+        scale = scale_of(self.best[self.chosen], floor)
         return plausibility(judged, scale) - plausibility(self.winner, scale)
 
     def closed(self, judged: Judged) -> float:
@@ -151,14 +160,14 @@ VALUE_NATS = 2.0
 
 
 def plausibility(judged: Judged, scale: float) -> float:
-    """Energy on the selection data, more for what is rare or has many values.
+    """The evidence's energy, more for what is rare or has many values.
 
     Args:
       judged: a model.
       scale: energy of the best model over that of the noise, at least 1: where no model
         is exact, residuals are larger than the noise and tell less.
     """
-    return judged.selected / scale + sum(
+    return judged.evidence / scale + sum(
         RARE_NATS.get(placed.effect, 0.0) + VALUE_NATS * len(placed.values)
         for placed in judged.model
     )
@@ -166,11 +175,16 @@ def plausibility(judged: Judged, scale: float) -> float:
 
 def scale_of(judged: Sequence[Judged], floor: float) -> float:
     """How much larger than the noise's energy that of the best model is."""
-    least = min((one.selected for one in judged), default=floor)
+    least = min((one.evidence for one in judged), default=floor)
     return max(least / floor, 1.0) if floor > 0 else 1.0
 
 
 def ranked(judged: Sequence[Judged], floor: float) -> list[Judged]:
-    """The most plausible first."""
+    """The most plausible first.
+
+    Args:
+      judged: models.
+      floor: energy that noise alone would leave of the evidence.
+    """
     scale = scale_of(judged, floor)
     return sorted(judged, key=lambda one: plausibility(one, scale))

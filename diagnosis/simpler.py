@@ -50,7 +50,7 @@ def needed(search: Search, found: Found) -> Found:
             for placed in winner.model
         ]
         kept = [judged.model for judged in search.judged(rests)]
-        best = min(fairly(search, kept), key=lambda judged: judged.selected)
+        best = min(fairly(search, kept), key=lambda judged: judged.evidence)
         if search.worth(best.selected, winner.selected, found.nothing):
             break
         size = found.chosen - 1

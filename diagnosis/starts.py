@@ -123,8 +123,10 @@ class Starts:
         What is believed must do well on the former, but a part of the answer may do
         well anywhere.
         """
-        on_all = sorted(best, key=lambda one: one.selected + one.fit.energy)
-        leading = [*best[: self._rules.beam], *on_all[: self._rules.beam]]
+        beam = self._rules.beam
+        on_all = sorted(best, key=lambda one: one.energy)[:beam]
+        selected = sorted(best, key=lambda one: one.selected)[:beam]
+        leading = [*best[:beam], *on_all, *selected]
         return list({one.keys: one for one in leading}.values())
 
     def _growths(self, best: Sequence[Judged]) -> list[Model]:

@@ -15,7 +15,7 @@ from diagnosis.library import EFFECTS
 from diagnosis.predictor import Model
 from diagnosis.screening import Guess, Screen
 from diagnosis.search import Search
-from diagnosis.search_result import Found, Judged, ranked
+from diagnosis.search_result import Found, Judged
 from diagnosis.signatures import signatures
 
 KINDS = tuple(
@@ -72,12 +72,13 @@ def widespread(search: Search, found: Found) -> Found:
     if best is None or left - best.selected < needed:
         return found
     rests = _rests(best.model)
-    without = [
-        Judged(replace(best.fit, model=rest), energy)
-        for rest, energy in zip(rests, search.energies(rests), strict=True)
+    residuals = search.fit.residuals(rests)
+    fits = [
+        replace(best.fit, model=rest, residual=residual)
+        for rest, residual in zip(rests, residuals, strict=True)
     ]
     size = len(best.model)
-    sizes = {size - 1: ranked(without, found.floor), size: [best]}
+    sizes = {size - 1: search.ranked(search.judge(fits)), size: [best]}
     return replace(found, best=sizes, chosen=size)
 
 
@@ -90,11 +91,9 @@ def _best(search: Search, starts: Sequence[Model]) -> Judged | None:
     if not starts:
         return None
     rough = fit_all(search.fit, starts, search.rules.first_steps, nudges_of=joint_wise)
-    energies = search.energies([fit.model for fit in rough])
-    judged = [Judged(*both) for both in zip(rough, energies, strict=True)]
-    start = min(judged, key=lambda one: one.energy).model
-    (fit,) = fit_all(search.fit, [start], nudges_of=joint_wise)
-    return Judged(fit, search.energies([fit.model])[0])
+    start = min(search.judge(rough), key=lambda one: one.energy).model
+    (judged,) = search.judge(fit_all(search.fit, [start], nudges_of=joint_wise))
+    return judged
 
 
 def _without_idle(search: Search, best: Judged) -> Judged:

@@ -207,6 +207,37 @@ def test_residuals_that_are_no_noise_tell_less():
     assert ranked([one, both], 100.0)[0] is one
 
 
+@pytest.mark.parametrize(("weight", "first"), [(0.0, "lucky"), (1.0, "right")])
+def test_what_was_fitted_is_evidence_of_names_too(weight, first):
+    """Of models with as many values none fits more by chance than another."""
+
+    def leaving(fitted, selected, key):
+        one = judged(PLANT, selected, key)
+        fit = replace(one.fit, residual=np.sqrt([2 * fitted]))
+        return replace(one, fit=fit, weight=weight)
+
+    models = {
+        "lucky": leaving(250.0, 97.0, "armature@elbow"),
+        "right": leaving(200.0, 100.0, "servo_gain@elbow"),
+    }
+    best = ranked([*models.values()], 300.0)
+    assert best[0] is models[first]
+    found = Found(400.0, 100.0, {1: best}, 1, nothing_fit=800.0, floor_fit=200.0)
+    gap = {0.0: 3.0, 1.0: 47.0}[weight]
+    assert found.worse(best[1]) == pytest.approx(gap)
+
+
+def test_on_feet_and_with_a_reference_only_the_selection_data_are():
+    search, _ = searched()
+    fit = judged(PLANT, 0.0, "armature@elbow").fit
+    (alone,) = search.judge([fit])
+    assert alone.weight == 1.0
+    before = Search(search.fit, search.select, LEAN, well=[search.select])
+    (beside,) = before.judge([fit])
+    assert beside.weight == 0.0
+    assert beside.evidence == beside.selected
+
+
 def test_little_in_the_selection_data_is_enough_if_much_is_fitted():
     """A joint need not move as much in a part that is short."""
     truth = ("viscous_friction", "elbow", 0.008)

@@ -30,9 +30,9 @@ class Known:
         return found.reshape(len(models), -1)
 
 
-def chosen(now, before, size=1):
+def chosen(now, before, size=1, fit=None):
     best = {1: [SimpleNamespace(model=FIRST)], 2: [SimpleNamespace(model=SECOND)]}
-    search = SimpleNamespace(select=now, well=before)
+    search = SimpleNamespace(fit=fit or now, select=now, well=before)
     return proven(search, Found(0.0, 0.0, best, size)).chosen
 
 
@@ -68,6 +68,14 @@ def test_a_longer_reference_expects_no_more():
     before = Known(first=[10] * 8)
     now = Known(first=[14, 15, 16, 15, 14, 16, 15, 15])
     assert chosen(now, [before]) == chosen(now, [before, before]) == 1
+
+
+@pytest.mark.parametrize(("fitted", "expected"), [([25] * 8, 1), ([-25] * 8, 0)])
+def test_few_moments_of_each_kind_of_data_tell_together(fitted, expected):
+    now = Known(first=[30, 2, 28, -1, 35, 0, 4, 1])
+    before = Known(first=NONE)
+    assert chosen(now, [before], fit=now) == 1
+    assert chosen(now, [before], fit=Known(first=fitted)) == expected
 
 
 def test_without_a_reference_nothing_is_asked():
