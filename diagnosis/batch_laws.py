@@ -103,7 +103,7 @@ class BatchLaws:
             self._servos.fade(time_s)
         position, velocity = self.joint_state()
         if self._friction.varies:
-            self._friction.follow(velocity, self._force[:, self._actuators])
+            self._rub(velocity, 0.0)
         if self._gaps is not None:
             asked_rad, apart = self._gaps.through(asked_rad, position)
             free_nm = np.where(apart, self._gaps.drag_nm(velocity), 0.0)
@@ -135,8 +135,7 @@ class BatchLaws:
             )
             torque_nm = np.where(self._elastic.soft, 0.0, torque_nm)
         if self._friction.varies:
-            driven_nm = self._force[:, self._actuators] + torque_nm
-            self._friction.follow(velocity, driven_nm)
+            self._rub(velocity, torque_nm)
         self._applied[:, self._dofs] = torque_nm
 
     def add_to_joints(self, torque_nm: FloatArray) -> None:
@@ -157,6 +156,15 @@ class BatchLaws:
         """(n R, j) positions on the encoders' side, without offsets."""
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
+
+    def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
+        """Dry friction by speed, and by the torque that the gear carries.
+
+        That is what the motor gives, less what its back-EMF takes.
+        """
+        driven_nm = self._force[:, self._actuators] + added_nm
+        induced_nm = self._servos.law["emf"] * velocity
+        self._friction.follow(velocity, driven_nm - induced_nm)
 
     def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
         velocity = self._qvel[:, self._dofs]

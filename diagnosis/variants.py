@@ -43,7 +43,7 @@ class Joints:
       coulomb_nm: friction torque.
       stribeck_nm: more of it near standstill ...
       stribeck_speed_rad_s: ... until about this speed.
-      load_share: friction torque as a share of the servo's torque.
+      load_share: friction torque as a share of the servo's, back-EMF included.
       spring_nm_rad: stiffness between motor and joint; infinite if there is none.
       spring_damping_nm_s_rad: its damping.
     """

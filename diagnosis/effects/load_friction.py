@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class LoadFriction(JointEffect):
-    """Torque -s |tau| sign(v), with tau the servo's torque.
+    """Torque -s |tau| sign(v), with tau the servo's torque, its back-EMF included.
 
     Source: Dohring, Lee and Newman 1993, "A load-dependent transmission friction
     model"; the same form as in Duclusaud, Passault, Padois and Ly 2024, "Extended

@@ -76,6 +76,17 @@ def test_a_servo_feels_friction_of_its_own_torque():
     np.testing.assert_allclose(found, wanted, atol=3e-3 * wanted[-1])
 
 
+def test_the_gear_carries_what_back_emf_leaves():
+    """I v' = (1 - s) (limit - emf v): none is left at the no-load speed."""
+    share, emf = 0.25, 0.2
+    plant = wheel(kd=0.0, emf=emf, limit=LIMIT)
+    run = commanded(plant, np.full(len(TIME_S), 50.0))
+    found = exact(plant, run, ("load_friction", HINGE, share))[:, 0]
+    lag_s = INERTIA / ((1 - share) * emf)
+    wanted = LIMIT / emf * (TIME_S - lag_s * (1 - np.exp(-TIME_S / lag_s)))
+    np.testing.assert_allclose(found, wanted, atol=3e-3 * wanted[-1])
+
+
 def test_friction_falls_with_speed():
     coulomb, extra, speed, torque = 0.05, 0.06, 0.5, 0.13
     plant, run = driven(np.full(len(TIME_S), torque), velocity_rad_s=0.1)
