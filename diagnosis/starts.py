@@ -23,6 +23,9 @@ LIMITS = frozenset({"torque_limit", "speed_limit"})
 LIMITED = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
 """Likewise of limits: who is weaker than his load drops it, which no slope tells."""
 
+WEAKER = (0.65, 0.8, 0.9, 0.96)
+"""Parts of a servo's own limit that are tried, too."""
+
 STIFFER = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
 """Likewise of springs: between two resonances no slope leads to either."""
 
@@ -94,12 +97,21 @@ class Starts:
     def _sizes(self, placed: Placed) -> list[Placed]:
         """An effect in several sizes. What limits may do so far off its guess."""
         if placed.effect in LIMITS:
-            limit, *rest = placed.values
-            return [replace(placed, values=(k * limit, *rest)) for k in LIMITED]
+            limits = [k * placed.values[0] for k in LIMITED]
+            if placed.effect == "torque_limit":
+                limits += self._weaker(placed.place)
+            return [replace(placed, values=(limit,)) for limit in limits]
         if placed.effect in STIFF:
             stiffness, *rest = placed.values
             return [replace(placed, values=(k * stiffness, *rest)) for k in STIFFER]
         return [stretched(self._fit.plant, placed, k) for k in STRETCHES]
+
+    def _weaker(self, joint: str) -> list[float]:
+        """Limits below the servo's own, which only jumps may reach."""
+        column = self._fit.plant.joints.index(joint)
+        servos = [trace.servo.max_torque_nm[column] for trace in self._fit.traces]
+        most = float(max(servos))
+        return [share * most for share in WEAKER if np.isfinite(most)]
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
         """The best guesses, and the best place of each effect that comes close."""
