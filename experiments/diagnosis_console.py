@@ -134,6 +134,8 @@ def _doubt(verdict: Verdict) -> str:
         also = "" if verdict.kind == "not_identifiable" else "also "
         return f"the recordings {also}fit {choice(verdict.alternatives)}"
     unsure = tuple(effect for effect in verdict.effects if effect.confusable_with)
+    if not unsure:
+        return ""
     more = len(unsure) - _MOST_UNSURE
     shown = doubts(replace(verdict, effects=unsure[:_MOST_UNSURE]))
     return " ".join([*shown, f"And {more} more."] if more > 0 else shown)

@@ -80,3 +80,11 @@ def test_effects_at_many_places_take_one_line_and_few_doubts_are_told():
     assert text.count("do not rule out") == 2
     assert "And 1 more." in text
     assert "And" not in text_of(dataclasses.replace(made_up.ONE, effects=alike[:2]))
+
+
+def test_who_is_sure_has_no_doubts():
+    (known,) = made_up.ONE.effects
+    sure = dataclasses.replace(known, confusable_with=())
+    shown = lines(dataclasses.replace(made_up.ONE, effects=(sure,), alternatives=()))
+    assert "doubt" not in [label for label, _ in shown]
+    assert "doubt" in [label for label, _ in lines(made_up.ONE)]
