@@ -7,6 +7,7 @@ from diagnosis.verdict import Estimate, Found, Pulse, Recordings
 from experiments import real_robots
 from experiments.diagnosis_console import console_lines
 from experiments.diagnosis_report_text import answer
+from experiments.diagnosis_report_words import WORDS
 from experiments.real_robots import RealRobots, main
 from experiments.real_robots_cases import ROBOTS, Published, RealRobot, Sane
 from experiments.real_robots_claims import claims_of
@@ -162,8 +163,14 @@ def test_reports_say_where_pulses_came_in(source, said):
 
 
 def test_the_console_stays_short():
-    many = verdict(effects=tuple(oil(k, k + 1.0) for k in range(20)))
-    lines = console_lines(many, [])
+    alike = tuple(oil(k, k + 1.0) for k in range(20))
+    told = [text for label, text in console_lines(verdict(effects=alike), []) if label]
+    assert sum("viscous friction at 20 places" in text for text in told) == 1
+    names = [*WORDS][:20]
+    many = tuple(
+        replace(one, name=name) for one, name in zip(alike, names, strict=True)
+    )
+    lines = console_lines(verdict(effects=many), [])
     assert len(lines) <= 10
     assert ("", "and 18 more: the report has them all") in lines
 
