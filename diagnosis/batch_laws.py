@@ -160,10 +160,12 @@ class BatchLaws:
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
         """Dry friction by speed, and by the torque that the gear carries.
 
-        That is what the motor gives, less what its back-EMF takes.
+        That is what the motor gives, less what its back-EMF takes; of an elastic joint
+        it is its spring's.
         """
         driven_nm = self._force[:, self._actuators] + added_nm
-        induced_nm = self._servos.law["emf"] * velocity
+        stiff = np.isinf(self.joints["spring_nm_rad"])
+        induced_nm = np.where(stiff, self._servos.law["emf"] * velocity, 0.0)
         self._friction.follow(velocity, driven_nm - induced_nm)
 
     def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:

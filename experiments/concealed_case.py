@@ -60,11 +60,11 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
             f"case {number} of seed {seed}: every attempt fell, or told too little"
         )
     name = case_name(number)
-    partial = cases / f".{name}.partial"
-    shutil.rmtree(partial, ignore_errors=True)
-    maker.write(partial)
+    unfinished = cases / f".{name}.partial"
+    shutil.rmtree(unfinished, ignore_errors=True)
+    maker.write(unfinished)
     write_text(truths / f"{name}.json", json.dumps(maker.truth(), indent=1) + "\n")
-    partial.rename(cases / name)
+    unfinished.rename(cases / name)
 
 
 @dataclass(frozen=True, eq=False)

@@ -82,7 +82,9 @@ def told_together(effects: Sequence[Found]) -> list[list[Found]]:
     groups: dict[str, list[Found]] = {}
     for effect in effects:
         alike = [one for one in effects if one.name == effect.name]
-        many = len(alike) >= MANY and all(one.when.kind == "always" for one in alike)
+        many = len(alike) >= MANY and all(
+            one.when.kind == "always" and one.parameters for one in alike
+        )
         key = effect.name if many else f"{effect.name}@{effect.place}"
         groups.setdefault(key, []).append(effect)
     return [*groups.values()]

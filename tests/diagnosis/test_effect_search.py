@@ -227,7 +227,7 @@ def test_what_was_fitted_is_evidence_of_names_too(weight, first):
     assert found.worse(best[1]) == pytest.approx(gap)
 
 
-def test_on_feet_and_with_a_reference_only_the_selection_data_are():
+def test_beside_a_reference_only_the_selection_data_are():
     search, _ = searched()
     fit = judged(PLANT, 0.0, "armature@elbow").fit
     (alone,) = search.judge([fit])

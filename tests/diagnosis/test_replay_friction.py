@@ -87,6 +87,16 @@ def test_the_gear_carries_what_back_emf_leaves():
     np.testing.assert_allclose(found, wanted, atol=3e-3 * wanted[-1])
 
 
+def test_a_stiff_spring_carries_what_a_rigid_gear_does():
+    """Its torque has lost what back-EMF takes already."""
+    plant = wheel(kd=0.0, emf=0.2, limit=LIMIT, armature=1e-3)
+    run = commanded(plant, np.full(len(TIME_S), 50.0))
+    load, spring = ("load_friction", HINGE, 0.25), ("joint_elasticity", HINGE, 2e3, 2.0)
+    rigid = exact(plant, run, load, step_s=5e-4)[:, 0]
+    elastic = exact(plant, run, load, spring, step_s=5e-4)[:, 0]
+    np.testing.assert_allclose(elastic, rigid, atol=0.02 * rigid[-1])
+
+
 def test_friction_falls_with_speed():
     coulomb, extra, speed, torque = 0.05, 0.06, 0.5, 0.13
     plant, run = driven(np.full(len(TIME_S), torque), velocity_rad_s=0.1)

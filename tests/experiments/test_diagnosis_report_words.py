@@ -238,6 +238,11 @@ def test_one_effect_at_many_places_is_told_once():
     ]
 
 
+def test_effects_without_values_are_told_one_by_one():
+    bare = [Found("coulomb_friction", place, {}, 0.9) for place in "ABC"]
+    assert ["unknown amount" in told for told in findings(bare)] == [True] * 3
+
+
 def test_what_comes_and_goes_is_told_one_by_one():
     fading = replace(friction("C", 0.3), when=When("drift", 1.0, 2.0))
     told = findings([friction("A", 0.5), friction("B", 0.2), fading])
