@@ -46,7 +46,7 @@ class BatchLaws:
             self._expand(name)[:] = np.repeat(values, runs, axis=0)
         self._rotor_kg_m2 = self._rotors()
         self._batch.set_const()
-        self._servos = BatchServos(batch, plant, servos, joints)
+        self._servos = BatchServos(batch, plant, servos, joints, step_s)
         damping = self._servos.damping_nm_s_rad
         self._friction = BatchFriction(batch, plant, joints, damping, step_s)
         # most variants have none of these laws: they cost nothing then
@@ -110,6 +110,7 @@ class BatchLaws:
             self._applied[:, self._dofs] = free_nm
         if self._elastic is not None:
             asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
+        self._servos.limit(asked_rad, position, velocity)
         self._ctrl[:, self._actuators] = asked_rad
 
     def jumps(self, ends: Ends | None) -> list[Ends | None]:

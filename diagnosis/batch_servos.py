@@ -34,6 +34,7 @@ class BatchServos:
         plant: Plant,
         servos: Sequence[Servo],
         joints: Mapping[str, FloatArray],
+        step_s: float,
     ) -> None:
         """Set each run's own servos, times what the variants change of them.
 
@@ -42,6 +43,7 @@ class BatchServos:
           plant: that it simulates.
           servos: of R runs, one after another for each variant.
           joints: `Joints`, rows as the batch has them.
+          step_s: of the physics.
         """
         self._joints, self._actuators = joints, columns(plant.actuators)
         self.fades = bool(joints["fade_1_s"].any())
@@ -62,11 +64,14 @@ class BatchServos:
         self._bias[:, self._actuators, 1] = -kp
         self._bias[:, self._actuators, 2] = -self.law["kd"]
         limited[:, self._actuators] = 1
-        largest = np.minimum(self.law["limit"], UNLIMITED_NM)
-        self._range[:, self._actuators, 0] = -largest
-        self._range[:, self._actuators, 1] = largest
+        self._limit = np.minimum(self.law["limit"], UNLIMITED_NM)
+        self._set_range(self._limit)
         self._dofs = columns(plant.dofs)
         self._damping[:, self._dofs] += self.law["emf"] - plant.servo.back_emf_nm_s_rad
+        inertia = np.asarray(batch.expand("dof_M0"))[:, self._dofs]
+        inertia = inertia + step_s * self._damping[:, self._dofs]
+        self._asked_least = self._limit * (1 + step_s * self.law["kd"] / inertia)
+        self._relaxed = False
 
     @property
     def least_jump_rad(self) -> FloatArray:
@@ -105,6 +110,33 @@ class BatchServos:
         within = (share > 0) & (share < 1) & (np.abs(torque) < limit) & (kp > 0)
         return np.where(jumps & within, target, mean_rad)
 
+    def limit(
+        self, asked_rad: FloatArray, angle: FloatArray, velocity: FloatArray
+    ) -> None:
+        """Let servos be at their limits if they still are when a step ends.
+
+        MuJoCo asks as a step begins, and has no damping of a servo at its limit. But in
+        one step a light joint may become so fast that its damping takes the torque
+        well below: I / (I + step * kd) of it is left, which decides here. Otherwise
+        speeds would jump with what is just at the limit and what is just below.
+
+        Args:
+          asked_rad: targets of the step, (rows, j).
+          angle: of the servos, likewise.
+          velocity: likewise.
+        """
+        kp, kd = self.law["kp"], self.law["kd"]
+        torque = np.abs(kp * (asked_rad - angle) - kd * velocity)
+        free = (torque > self._limit) & (torque < self._asked_least)
+        relaxed = bool(free.any())
+        if relaxed or self._relaxed:
+            self._set_range(np.where(free, UNLIMITED_NM, self._limit))
+        self._relaxed = relaxed
+
+    def _set_range(self, limit: FloatArray) -> None:
+        self._range[:, self._actuators, 0] = -limit
+        self._range[:, self._actuators, 1] = limit
+
     def fade(self, time_s: FloatArray) -> None:
         """Set the stiffness of (R,) times."""
         time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
@@ -122,11 +154,11 @@ class BatchServos:
             (self._gain, 0, stiffness),
             (self._bias, 1, -stiffness),
             (self._bias, 2, -damping - step_s * stiffness),
-            (self._range, 0, -UNLIMITED_NM),
-            (self._range, 1, UNLIMITED_NM),
         ):
             old = field[:, self._actuators, column]
             field[:, self._actuators, column] = np.where(elastic.soft, value, old)
+        self._limit = np.where(elastic.soft, UNLIMITED_NM, self._limit)
+        self._set_range(self._limit)
         self._damping[:, self._dofs] -= np.where(elastic.soft, self.law["emf"], 0.0)
 
 

@@ -87,7 +87,7 @@ def _write_fields(
             setattr(target, last, type(value)(values[0]))
     mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
     one, joints = _OneModel(compiled), vars(variants.joints)
-    servos = BatchServos(one, variants.plant, [servo], joints)
+    servos = BatchServos(one, variants.plant, [servo], joints, step_s)
     damping = servos.damping_nm_s_rad
     BatchFriction(one, variants.plant, joints, damping, step_s)
 

@@ -102,11 +102,14 @@ class Search:
         return enough and self._matters(before, after, nothing)
 
     def _matters(self, before: float, after: float, nothing: float) -> bool:
-        """Whether a step takes away enough of what there is to explain."""
+        """Whether a step takes away enough of what there is to explain.
+
+        How much that is nobody knows better than the noise: near it there is no share.
+        """
         rules = self.rules
+        left = before - (1 + rules.unsure_floor) * self.floor
         return before - after > max(
-            rules.least_share * (before - self.floor),
-            rules.least_of_all * (nothing - self.floor),
+            rules.least_share * left, rules.least_of_all * (nothing - self.floor), 0.0
         )
 
     def _shows(self, fitted: float, selected: float) -> bool:
@@ -122,8 +125,7 @@ class Search:
         A joint need not move as much in the selection data as in the others. On feet
         two runs part by chance, and much is gained in some that is lost in others.
         """
-        share = self.fit.scored.sum() / self.select.scored.sum()
-        enough = fitted + selected > (1 + share) * self.least_gain
+        enough = fitted + selected > 2 * self.least_gain
         both = fitted > self.least_gain and selected > self.rules.least_hint
         return bool(enough and both and self.fit.plant.base == "fixed")
 

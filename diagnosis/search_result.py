@@ -32,7 +32,8 @@ class Rules:
       least_pattern: and as much as a pattern of this rms [noise] would: below it is
         what integrators and clocks do wrong.
       least_share: and this share of the energy above the noise that the best model so
-        far leaves.
+        far leaves ...
+      unsure_floor: ... as far as that is more than this part of the noise's own.
       least_of_all: and this share of what the plant alone leaves.
     """
 
@@ -54,6 +55,7 @@ class Rules:
     least_hint: float = 3.0
     least_pattern: float = 0.15
     least_share: float = 0.3
+    unsure_floor: float = 0.1
     least_of_all: float = 0.0001
 
 

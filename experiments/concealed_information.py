@@ -2,8 +2,9 @@
 
 What a case tells is the log-likelihood that the true physics gains on the nominal
 model, in nats per recording: half the squared difference of both motions, in units of
-the encoders' noise. Ranges of sizes say little about that: half of one joint's friction
-may be thousands of nats, a tenth of another's none.
+the encoders' noise, of which replays in short windows keep a part. Ranges of sizes say
+little about that: half of one joint's friction may be thousands of nats, a tenth of
+another's none.
 """
 
 import math
@@ -22,6 +23,9 @@ MOST_NATS = 1e5
 
 SHARES = {"L1": 0.45, "L2": 0.30, "L3": 0.15, "L4": 0.10}
 """How often a level is drawn."""
+
+KEPT = 0.4
+"""Of the nats by which whole motions differ, in replays of windows that start anew."""
 
 LEAST_EASE, MOST_EASE = -2.0, 1.0
 NEAR = math.log(1.3)
@@ -47,9 +51,10 @@ def level_of(nats_per_recording: float) -> str:
 
 
 def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) -> float:
-    """What encoders tell runs from nominal ones by, a recording in the mean.
+    """What a replay would tell runs from nominal ones by, in the recordings' median.
 
-    Infinite where the physics blew up.
+    What shows in one of them only cannot be learned from others, nor shown to hold
+    there. Infinite where the physics blew up.
     """
     if not all(run.ok for run in runs):
         return math.inf
@@ -58,7 +63,7 @@ def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) ->
         0.5 * float(np.sum((run.encoder_rad - was.encoder_rad)[was.clock.first :] ** 2))
         for was, run in zip(nominal, runs, strict=True)
     ]
-    return sum(told) / len(told) / variance
+    return float(KEPT * np.median(told)) / variance
 
 
 def ease_that_tells(

@@ -258,7 +258,7 @@ def test_hints_are_of_both_kinds_of_data_and_of_a_fixed_base():
     least = search.least_gain
     assert search._hints(1.9 * least, 0.3 * least)
     assert not search._hints(1.9 * least, 0.05 * least)
-    assert not search._hints(1.2 * least, 0.3 * least)
+    assert not search._hints(1.6 * least, 0.3 * least)
     assert not search._hints(0.5 * least, 3.0 * least)
     floating = SimpleNamespace(
         fit=SimpleNamespace(plant=SimpleNamespace(base="floating"), scored=np.ones(2)),

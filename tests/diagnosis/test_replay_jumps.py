@@ -71,3 +71,34 @@ def test_a_joint_apart_from_its_motor_coasts(limit_nm):
     np.testing.assert_allclose(found, 2.0 * TIME_S, atol=2e-3)
     braked = exact(plant, run, step_s=STEP_S)[:, 0]
     assert braked[-1] < 0.8 * found[-1]
+
+
+def strongly_damped(jump_rad):
+    """Where a wheel goes whose damping stops it within one step, and where it should.
+
+    The target jumps at the begin of a step.
+    """
+    kd = INERTIA / STEP_S
+    plant = plant_of(WHEEL, kp=KP, kd=kd, limit=LIMIT_NM)
+    run = jumping(plant, 0.02, jump_rad)
+    target = run.trace.command_rad[:, 0]
+
+    def law(_, state, k):
+        torque = KP * (target[k] - state[0]) - kd * state[1]
+        return [state[1], np.clip(torque, -LIMIT_NM, LIMIT_NM) / INERTIA]
+
+    wanted = integrated(law, run.trace.time_s, [0.0, 0.0])[:, 0]
+    return exact(plant, run, step_s=STEP_S)[:, 0], wanted
+
+
+def test_what_is_just_above_the_limit_moves_as_what_is_just_below():
+    """MuJoCo leaves the damping out where a step begins with a servo at its limit."""
+    just = LIMIT_NM / KP
+    below, above = (strongly_damped(k * just)[0] for k in (0.999, 1.001))
+    np.testing.assert_allclose(above, below, rtol=3e-3, atol=1e-9)
+
+
+@pytest.mark.parametrize("asked", [1.05, 1.5, 1.9, 2.5, 5.0])
+def test_strong_damping_at_the_limit(asked):
+    found, wanted = strongly_damped(asked * LIMIT_NM / KP)
+    assert abs(found - wanted).max() < 0.006 * abs(wanted).max()

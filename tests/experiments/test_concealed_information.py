@@ -8,6 +8,7 @@ import pytest
 
 from experiments.concealed_information import (
     FAR,
+    KEPT,
     LEAST_EASE,
     LEVELS,
     MOST_EASE,
@@ -35,15 +36,22 @@ def test_half_the_squared_difference_in_units_of_noise():
     was = np.zeros((12, 3))
     now = was.copy()
     now[:, 1] = 0.002  # two standard deviations in each of ten rows
-    assert nats([run(was)], [run(now)], SENSORS) == pytest.approx(0.5 * 10 * 4)
-    both = nats([run(was), run(was)], [run(now), run(was)], SENSORS)
-    assert both == pytest.approx(0.5 * 0.5 * 10 * 4)
+    assert nats([run(was)], [run(now)], SENSORS) == pytest.approx(KEPT * 0.5 * 10 * 4)
+
+
+def test_what_one_recording_tells_is_not_told():
+    was, now = np.zeros((12, 3)), np.full((12, 3), 0.002)
+    one = nats([run(was)] * 3, [run(now), run(was), run(was)], SENSORS)
+    two = nats([run(was)] * 3, [run(now), run(now), run(was)], SENSORS)
+    assert one == 0.0
+    assert two == nats([run(was)], [run(now)], SENSORS) > 0.0
 
 
 def test_rounding_is_noise_and_what_blows_up_tells_everything():
     was, now = np.zeros((12, 1)), np.full((12, 1), 0.002)
     coarse = HiddenSensors(quantum_rad=0.001 * math.sqrt(12), encoder_rad=0.001)
-    assert nats([run(was)], [run(now)], coarse) == pytest.approx(0.5 * 10 * 4 / 2)
+    wanted = KEPT * 0.5 * 10 * 4 / 2
+    assert nats([run(was)], [run(now)], coarse) == pytest.approx(wanted)
     assert nats([run(was)], [run(now, ok=False)], SENSORS) == math.inf
 
 
