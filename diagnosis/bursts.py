@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.stats import chi2
 
+from diagnosis.leanings import leanings
 from diagnosis.predictor import Predictor
 from diagnosis.stretches import stretches
 from groundwalk.arrays import BoolArray, FloatArray
@@ -71,10 +72,14 @@ def _strongest(
 def push_intervals(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Start and duration [s] of pushes that could be: all the time, or in a burst."""
+    """Start and duration [s] of pushes that could be: all the time, or for a while."""
     last_s = max(trace.time_s[-1] for trace in predictor.traces)
     short = [
         (max(start - REACTION_S, 0.0), max(end - start - BIN_S, BIN_S))
         for start, end in bursts(predictor, residual)
     ]
-    return [(-LEAD_S, float(last_s) + 2 * LEAD_S), *short]
+    faint = [
+        (max(start - REACTION_S, 0.0), end - start)
+        for start, end in ([] if short else leanings(predictor, residual))
+    ]
+    return [(-LEAD_S, float(last_s) + 2 * LEAD_S), *short, *faint]

@@ -66,8 +66,9 @@ class Search:
         while best.get(size):
             first = best[size][0]
             gains = fitted - first.fit.energy, energy - first.selected
-            shows = self._shows(*gains) or (size == 1 and self._hints(*gains))
-            if shows and self._matters(energy, first.selected, nothing):
+            shows = self._shows(*gains)
+            shows &= self._matters(energy, first.selected, nothing)
+            if shows or (size == 1 and self._hints(*gains)):
                 chosen = size
                 best[size] = self._refined(best[size])
                 energy, fitted = best[size][0].selected, best[size][0].fit.energy
@@ -122,12 +123,17 @@ class Search:
     def _hints(self, fitted: float, selected: float) -> bool:
         """Whether they are enough together, as one effect on a fixed base may show.
 
-        A joint need not move as much in the selection data as in the others. On feet
-        two runs part by chance, and much is gained in some that is lost in others.
+        A joint need not move as much in the selection data as in the others; a stop or
+        a push need not be met there at all. On feet two runs part by chance, and much
+        is gained in some that is lost in others.
         """
-        enough = fitted + selected > 2 * self.least_gain
-        both = fitted > self.least_gain and selected > self.rules.least_hint
-        return bool(enough and both and self.fit.plant.base == "fixed")
+        rules, gain = self.rules, fitted + selected
+        left = self._nothing_fit - (1 + rules.unsure_floor) * self.floor_fit
+        if self.fit.plant.base != "fixed" or gain < rules.least_share * left:
+            return False
+        both = fitted > self.least_gain and selected > rules.least_hint
+        one = fitted > rules.alone * self.least_gain and selected > -rules.least_hint
+        return bool((both and gain > 2 * self.least_gain) or one)
 
     def _starts_from(self, leader: Judged) -> Starts:
         """Starts that also know of pushes that show once the leader is known."""

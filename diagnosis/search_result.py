@@ -28,7 +28,9 @@ class Rules:
         effect alone is of use; below it a search ends ...
       promising: ... where no guess gains this part of the least gain.
       least_gain: log-likelihood that an effect must gain on the selection data.
-      least_hint: the same for one that gains much more on the fitting data.
+      least_hint: the same for one that gains much more on the fitting data ...
+      alone: ... unless it gains so many times the least there: then it must not cost
+        that much.
       least_pattern: and as much as a pattern of this rms [noise] would: below it is
         what integrators and clocks do wrong.
       least_share: and this share of the energy above the noise that the best model so
@@ -53,6 +55,7 @@ class Rules:
     promising: float = 0.5
     least_gain: float = 15.0
     least_hint: float = 3.0
+    alone: float = 4.0
     least_pattern: float = 0.15
     least_share: float = 0.3
     unsure_floor: float = 0.1

@@ -260,11 +260,16 @@ def test_hints_are_of_both_kinds_of_data_and_of_a_fixed_base():
     assert not search._hints(1.9 * least, 0.05 * least)
     assert not search._hints(1.6 * least, 0.3 * least)
     assert not search._hints(0.5 * least, 3.0 * least)
+    assert search._hints(5.0 * least, 0.0)  # a stop that is met in one part
+    assert not search._hints(3.0 * least, 0.0)
+    assert not search._hints(5.0 * least, -0.5 * least)
     floating = SimpleNamespace(
         fit=SimpleNamespace(plant=SimpleNamespace(base="floating"), scored=np.ones(2)),
         select=SimpleNamespace(scored=np.ones(2)),
         least_gain=least,
         rules=search.rules,
+        floor_fit=search.floor_fit,
+        _nothing_fit=search.floor_fit,
     )
     assert not Search._hints(floating, 1.9 * least, 0.3 * least)
 
