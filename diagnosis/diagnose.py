@@ -27,7 +27,7 @@ from diagnosis.search import Search
 from diagnosis.search_result import Found as Searched
 from diagnosis.search_result import Rules
 from diagnosis.simpler import needed, simpler
-from diagnosis.surprise import surprises
+from diagnosis.surprise import refutes, surprises
 from diagnosis.torque_drive import DriveBy
 from diagnosis.trace import Trace
 from diagnosis.unexplained import unexplained
@@ -113,10 +113,14 @@ def diagnose(
     final = FinalTest((data.learned, data.test), both, test, searched, model, seed)
     fit = final.fit()
     surprised = surprises(data.learned, left, fit)
+    unmodelled, modelled = data.test.residuals([()])[0], test.residuals([model])[0]
+    refuted = refutes(unmodelled, modelled, search.least_gain)
     rest = (both, left, share)
     if kind == "none" and surprised:
-        kind, rest = "unknown", (data.test, data.test.residuals([()])[0], 1.0)
-    limits = (*surprised, *audited.limits, *ready.said)
+        kind, rest = "unknown", (data.test, unmodelled, 1.0)
+    if kind == "effects" and refuted:
+        kind = "unknown"
+    limits = (*surprised, *refuted, *audited.limits, *ready.said)
     verdict = Verdict(
         kind=kind,
         effects=effects_of(both, searched, refitted) if kind != "none" else (),

@@ -1,4 +1,4 @@
-"""Whether what was kept out shows more than what a model was made from."""
+"""Whether what was kept out bears out what a model was made from."""
 
 import numpy as np
 
@@ -15,6 +15,24 @@ def channel_rms(predictor: Predictor, residual: FloatArray) -> FloatArray:
     c = len(predictor.channels.names)
     count = np.maximum(np.bincount(predictor.channel, predictor.scored, c), 1)
     return np.asarray(np.sqrt(np.bincount(predictor.channel, residual**2, c) / count))
+
+
+def refutes(
+    nominal: FloatArray, corrected: FloatArray, least_gain: float
+) -> tuple[str, ...]:
+    """What to say if a model makes the test worse than the plant alone; else nothing.
+
+    Args:
+      nominal: (N,) residual of the plant alone on the test data, in units of noise.
+      corrected: (N,) of the model.
+      least_gain: log-likelihood that was asked of an effect.
+    """
+    if 0.5 * float(corrected @ corrected - nominal @ nominal) < least_gain:
+        return ()
+    return (
+        "What was found makes motions that were kept out worse: it explains some of "
+        "what is missing, but is not what is missing.",
+    )
 
 
 def surprises(learned: Predictor, left: FloatArray, fit: Fit) -> tuple[str, ...]:

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.surprise import channel_rms, surprises
+from diagnosis.surprise import channel_rms, refutes, surprises
 from diagnosis.verdict import ChannelFit, Fit
 
 CHANNELS = SimpleNamespace(names=("position.a", "position.b"))
@@ -40,3 +40,13 @@ def test_a_test_that_is_much_worse_is_told_with_its_worst_channel():
 def test_a_test_as_good_as_what_was_learned_from_is_none(left, test):
     residual = left * np.array([1.0, 1.0, 0.0, 1.0, 1.0])
     assert surprises(LEARNED, residual, fit_of(test, test)) == ()
+
+
+def test_a_model_that_makes_the_test_worse_is_refuted():
+    """Half the squared residuals are nats: 40 are lost, or none, or hardly any."""
+    plain, worse = np.full(100, 1.0), np.full(100, np.sqrt(1.8))
+    (said,) = refutes(plain, worse, 15.0)
+    assert "worse" in said
+    assert refutes(plain, worse, 45.0) == ()
+    assert refutes(worse, plain, 15.0) == ()
+    assert refutes(plain, plain, 15.0) == ()
