@@ -80,8 +80,8 @@ class Found:
       name: of the effect.
       place: where it is.
       parameters: what was estimated, by the parameter's name.
-      probability: that this is the right effect at the right place, 0 to 1; not yet
-        calibrated, so that it orders answers more than it counts them.
+      probability: that this is the right effect at the right place, 0 to 1, calibrated
+        on concealed cases (`diagnosis.belief`).
       confusable_with: what else would explain the same, alone in its stead.
       when: all the time, for a while, or growing.
       native: whether MuJoCo has this physics, so that the corrected MJCF holds it.
