@@ -1,41 +1,15 @@
 """Bursts in residuals that are made up."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from made_up_traces import arm, recorded
+from made_up_residuals import START_S, noise, pushed, time_of, two_traces
 
 from diagnosis.bursts import BIN_S, REACTION_S, bursts, bursts_of, push_intervals
-from diagnosis.predictor import Channels, Predictor
-
-CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, 4e-4))
-START_S = 5.0
 
 
 @pytest.fixture(scope="module")
 def predictor():
-    """Two traces of six seconds, on clocks that do not begin at 0."""
-    plant = arm()
-    traces = [recorded(plant, duration_s=6.0, seed=seed) for seed in range(2)]
-    traces = [replace(trace, time_s=trace.time_s + START_S) for trace in traces]
-    return Predictor(plant, traces, CHANNELS)
-
-
-def time_of(predictor):
-    return np.concatenate([np.repeat(t.time_s, 2) for t in predictor.traces])
-
-
-def noise(predictor, seed=0):
-    random = np.random.default_rng(seed)
-    return predictor.scored * random.standard_normal(len(predictor.scored))
-
-
-def pushed(predictor, first_s, last_s, size=12.0, trace=1, channel=1):
-    time_s = time_of(predictor)
-    rows = (predictor.trace == trace) & (predictor.channel == channel)
-    rows &= (time_s >= first_s) & (time_s < last_s)
-    return noise(predictor) + size * rows
+    return two_traces()
 
 
 def test_a_burst_is_found_where_it_is(predictor):
