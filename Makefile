@@ -10,9 +10,9 @@ RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
 STUDIES := toy cliff inverted-pendulum half-cheetah nao-falls
 # Cases whose truth is sealed. The seed is the first six digits of the commit at which the
-# diagnosis was frozen (b7a7160), so that nobody has chosen it; what is changed takes another.
+# diagnosis was frozen (64b0843), so that nobody has chosen it; what is changed takes another.
 CONCEALED := $(RESULTS)/concealed
-SEALED := 12035862
+SEALED := 6598788
 # What the real NAO of results-diagnosed-gait lacks against its model.
 SLOW_KNEES := speed_limit@LKneePitch:speed=2.5 speed_limit@RKneePitch:speed=2.5
 # Recordings of real robots, where they are at hand, and whose they are.
