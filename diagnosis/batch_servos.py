@@ -70,8 +70,9 @@ class BatchServos:
         self._damping[:, self._dofs] += self.law["emf"] - plant.servo.back_emf_nm_s_rad
         inertia = np.asarray(batch.expand("dof_M0"))[:, self._dofs]
         inertia = inertia + step_s * self._damping[:, self._dofs]
-        self._asked_least = self._limit * (1 + step_s * self.law["kd"] / inertia)
-        self._relaxed = False
+        # who is asked for less has left the limit when the step ends
+        self._held_from = self._limit * (1 + step_s * self.law["kd"] / inertia)
+        self._relaxed = False  # whether some range is wider than its limit now
 
     @property
     def least_jump_rad(self) -> FloatArray:
@@ -127,7 +128,7 @@ class BatchServos:
         """
         kp, kd = self.law["kp"], self.law["kd"]
         torque = np.abs(kp * (asked_rad - angle) - kd * velocity)
-        free = (torque > self._limit) & (torque < self._asked_least)
+        free = (torque > self._limit) & (torque < self._held_from)
         relaxed = bool(free.any())
         if relaxed or self._relaxed:
             self._set_range(np.where(free, UNLIMITED_NM, self._limit))

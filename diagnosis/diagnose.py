@@ -165,8 +165,4 @@ def _searched(search: Search, audited: Audit) -> Searched:
 def _detectable(search: Search, kind: VerdictKind) -> Mapping[str, Amount]:
     if kind not in ("none", "not_identifiable"):
         return {}
-    # signatures are of the fitting data, gains are asked for on the selection data
-    share = search.fit.scored.sum() / search.select.scored.sum()
-    return smallest_detectable(
-        search.fit, search.signatures, search.least_gain * float(share)
-    )
+    return smallest_detectable(search.fit, search.signatures, search.least_fitted)

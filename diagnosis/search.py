@@ -97,6 +97,17 @@ class Search:
         pattern = self.rules.least_pattern**2 * self.floor
         return max(self.rules.least_gain, pattern / len(self.fit.channels.names))
 
+    @property
+    def least_fitted(self) -> float:
+        """The same on the fitting data, of an effect that shows evenly in both kinds.
+
+        On a fixed base both together must tell enough, on feet each of them.
+        """
+        share = float(self.fit.scored.sum() / self.select.scored.sum())
+        if self.fit.plant.base == "fixed":
+            return max(self.least_gain, 2 * self.least_gain * share / (1 + share))
+        return max(1.0, share) * self.least_gain
+
     def worth(self, before: float, after: float, nothing: float) -> bool:
         """Whether a step from one energy to another is to be believed."""
         enough = before - after > self.least_gain

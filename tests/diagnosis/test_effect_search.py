@@ -264,14 +264,23 @@ def test_hints_are_of_both_kinds_of_data_and_of_a_fixed_base():
     assert not search._hints(3.0 * least, 0.0)
     assert not search._hints(5.0 * least, -0.5 * least)
     floating = SimpleNamespace(
-        fit=SimpleNamespace(plant=SimpleNamespace(base="floating"), scored=np.ones(2)),
-        select=SimpleNamespace(scored=np.ones(2)),
+        fit=SimpleNamespace(plant=SimpleNamespace(base="floating")),
         least_gain=least,
         rules=search.rules,
         floor_fit=search.floor_fit,
         _nothing_fit=search.floor_fit,
     )
     assert not Search._hints(floating, 1.9 * least, 0.3 * least)
+
+
+def test_what_is_just_believed_is_believed_and_less_is_not():
+    """Shown evenly: as much on each kind of data as there is of it."""
+    search, _ = searched()
+    share = search.fit.scored.sum() / search.select.scored.sum()
+    for part, believed in ((1.01, True), (0.99, False)):
+        fitted = part * search.least_fitted
+        gains = fitted, fitted / share
+        assert (search._hints(*gains) or search._shows(*gains)) is believed
 
 
 @pytest.mark.parametrize(("left", "chosen"), [(50.0, 3), (1.1, 1)])

@@ -41,8 +41,12 @@ def test_what_leans_all_the_time_leans_at_no_time(predictor):
     assert leanings(predictor, noise(predictor) + 2.0 * predictor.scored) == []
 
 
-def test_what_is_shorter_than_a_window_has_none():
-    plant = arm()
-    short = Predictor(plant, [recorded(plant, duration_s=0.3, seed=0)], CHANNELS)
-    ends = [end - start for start, end in leanings(short, 50.0 * noise(short))]
-    assert all(seconds < 0.3 for seconds in ends)
+def test_only_windows_that_fit_in_are_looked_at():
+    """Of 0.45 s: one of 0.5 s does not, and most of 0.25 s hold the push."""
+    trace = recorded(arm(), duration_s=0.45, seed=0)
+    short = Predictor(arm(), [trace], CHANNELS)
+    leaning = (trace.time_s >= 0.1) & (trace.time_s < 0.15)
+    residual = np.column_stack([np.zeros(trace.ticks), 9.0 * leaning]).reshape(-1)
+    ((start_s, end_s),) = leanings(short, residual)
+    assert start_s <= 0.11
+    assert end_s - start_s == pytest.approx(0.1, abs=2 * trace.tick_s)
