@@ -88,7 +88,8 @@ results-nao: $(READY)
 	cp $(RESULTS)/nao/transfer_nao.png docs/results
 
 # Half an hour: recordings of a NAO with slow knees, their diagnosis, and the gaits that the
-# diagnosed sim tunes. The real world of the study has its latency anyway.
+# diagnosed sim tunes. The real world of the study has its latency anyway; its ground is flat,
+# so that what differs is the physics.
 results-diagnosed-gait: $(READY)
 	rm -rf $(RESULTS)/slow-knees $(RESULTS)/diagnosed-gait
 	mkdir -p $(RESULTS)/slow-knees docs/results
@@ -99,7 +100,7 @@ results-diagnosed-gait: $(READY)
 	done
 	$(VENV)/bin/groundwalk diagnose $(RESULTS)/slow-knees/*.parquet --robot nao \
 		--out $(RESULTS)/slow-knees/found
-	$(VENV)/bin/groundwalk transfer nao --hidden $(SLOW_KNEES) \
+	$(VENV)/bin/groundwalk transfer nao --terrain flat --hidden $(SLOW_KNEES) \
 		--sim $(RESULTS)/slow-knees/found --seed 1 --out $(RESULTS)/diagnosed-gait
 	sed s/transfer_nao.png/diagnosed_gait.png/ $(RESULTS)/diagnosed-gait/result.md \
 		> docs/results/diagnosed_gait.md

@@ -173,12 +173,13 @@ def _search(
             "fell": float(fell[:-1].mean()),
         }
 
-    return run_search(
+    found, _ = run_search(
         folder.path / CHECKPOINT,
         lambda: GaitSearch(START, config.population, config.sigma, of_strategy),
         generation,
         config.generations,
-    ).mean
+    )
+    return found.mean
 
 
 def _rate(

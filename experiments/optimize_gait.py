@@ -137,13 +137,14 @@ def search(config: OptimizeGait, folder: RunFolder) -> Gait:
         start = load_gait(config.start)
         return GaitSearch(start, config.population, config.sigma, of_samples)
 
-    return run_search(
+    found, _ = run_search(
         folder.path / CHECKPOINT,
         begin,
         lambda number, strategy: _generation(config, strategy, grounds[number].make()),
         config.generations,
         lambda entries: folder.write_json(HISTORY, {"generations": entries}),
-    ).mean
+    )
+    return found.mean
 
 
 def search_grounds(config: OptimizeGait, generations: int) -> list[TerrainSpec]:

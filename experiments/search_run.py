@@ -20,8 +20,10 @@ def run_search(
     generation: Callable[[int, GaitSearch], Entry],
     generations: int,
     note: Callable[[list[Entry]], object] = lambda entries: None,
-) -> GaitSearch:
-    """The search after all its generations; those of a checkpoint are not run again.
+) -> tuple[GaitSearch, list[Entry]]:
+    """The search after all its generations, and what each came to.
+
+    The generations of a checkpoint are not run again.
 
     Args:
       checkpoint: a file that is written after every generation.
@@ -41,7 +43,7 @@ def run_search(
             write_bytes(checkpoint, pickle.dumps(state))
             note(entries)
             bar.advance(f"mean gait {entries[-1]['mean_reward']:.1f} cm/s")
-    return search
+    return search, entries
 
 
 def _read(checkpoint: Path) -> tuple[GaitSearch, list[Entry]]:

@@ -130,9 +130,7 @@ class NaoStudy:
         if method == REAL:
             rater: Rater = RealRater(self._course)
             gait = self._tune(checkpoint, start, rater, effort.real)
-            return gait, {
-                "real_walks": effort.real.population * effort.real.generations
-            }
+            return gait, {"real_walks": effort.real.rated}
         if method == RANDOMISED:
             rater = RandomisedRater(effort.repeats)
             return self._tune(checkpoint, start, rater), {"real_walks": 0}
