@@ -23,6 +23,7 @@ from experiments.transfer_nao_study import (
     PLAN,
     START,
     WITH_SIM,
+    WITH_SIM_ON_FLAT,
     Effort,
     NaoStudy,
 )
@@ -77,7 +78,7 @@ class TransferNao(RunOptions):
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
-        known = tuple(dict.fromkeys((*METHODS, *WITH_SIM)))
+        known = tuple(dict.fromkeys((*METHODS, *WITH_SIM, *WITH_SIM_ON_FLAT)))
         for method in self.compared:
             if method not in known:
                 raise UnknownNameError("method", method, known)
@@ -101,7 +102,9 @@ class TransferNao(RunOptions):
         """The methods, those of the default where none are given."""
         if self.methods is not None:
             return self.methods
-        return METHODS if self.sim is None else WITH_SIM
+        if self.sim is None:
+            return METHODS
+        return WITH_SIM_ON_FLAT if self.places.real.flat else WITH_SIM
 
     @property
     def plan(self) -> tuple[tuple[str, int], ...]:

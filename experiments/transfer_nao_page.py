@@ -146,8 +146,7 @@ def write_nao_page(
         *markdown_table(HEADINGS, table_of(cells)),
         "",
         f"{SGAT}'s noise is white, as in the paper.",
-        *UNEVEN_MEANS,
-        f"A search's lumps are {LUMPS_MARGIN:g} times as high as that, for a margin.",
+        *_uneven(cells),
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
@@ -169,6 +168,14 @@ def _ground(course: RealCourse) -> str:
         f"on lumps of {1000 * lumps.amplitude_m:.0f} mm that are "
         f"{100 * lumps.wavelength_m:.0f} cm long"
     )
+
+
+def _uneven(cells: Sequence[Cell]) -> tuple[str, ...]:
+    """What the uneven sim is, where there is one."""
+    if not any(UNEVEN in cell["method"] for cell in cells):
+        return ()
+    margin = f"{LUMPS_MARGIN:g} times as high as that, for a margin."
+    return (*UNEVEN_MEANS, f"A search's lumps are {margin}")
 
 
 def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:

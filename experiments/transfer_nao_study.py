@@ -20,12 +20,17 @@ from experiments.walk_tuning import Budget, Grounding, cloud_around, tune
 from walk_engine import Gait, gaits
 
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"
-DIAGNOSED_UNEVEN = f"{UNEVEN}, {DIAGNOSED}"
+DIAGNOSED_UNEVEN, DIAGNOSED_SGAT = (f"{name}, {DIAGNOSED}" for name in (UNEVEN, SGAT))
+ON_DIAGNOSED = {DIAGNOSED_UNEVEN: UNEVEN, DIAGNOSED_SGAT: SGAT}
+"""Groundings of a diagnosed sim."""
+
 PLAN = (
     (START, 0),
     (DIAGNOSED_SIM, 1),
     (DIAGNOSED_UNEVEN, 1),
     (DIAGNOSED_UNEVEN, 2),
+    (DIAGNOSED_SGAT, 1),
+    (DIAGNOSED_SGAT, 2),
     (UNEVEN, 1),
     (UNEVEN, 2),
     (SGAT, 1),
@@ -41,7 +46,10 @@ PLAN = (
 
 METHODS = (UNEVEN, SGAT, GAT, NONE, RANDOMISED, ANE, REAL)
 WITH_SIM = (NONE, UNEVEN, DIAGNOSED_SIM, DIAGNOSED_UNEVEN)
-"""What is compared by default, without and with a diagnosed sim."""
+"""What is compared by default, without and with a diagnosed sim, on uneven ground."""
+
+WITH_SIM_ON_FLAT = (NONE, SGAT, DIAGNOSED_SIM, DIAGNOSED_SGAT)
+"""The same where real is flat: what makes gaits fall there are no lumps."""
 
 ENVELOPES_RAD = (0.02, 0.05)
 ENVELOPE_WALKS = 12
@@ -146,8 +154,8 @@ class NaoStudy:
         """Step 1 shares its data, as all methods begin at the start gait."""
         effort, start = self._effort, gaits.get("start")
         name, grounding, places = method, self._first, self._plain
-        if method == DIAGNOSED_UNEVEN:
-            name, grounding = UNEVEN, self._first_diagnosed
+        if method in ON_DIAGNOSED:
+            name, grounding = ON_DIAGNOSED[method], self._first_diagnosed
             places = self._diagnosed
         walks = effort.walks[0]
         if step == 2:

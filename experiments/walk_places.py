@@ -37,10 +37,15 @@ class RealCourse:
         """The real world's own, with what is hidden."""
         return replace(worlds.kind("real").options, hidden=self.hidden)
 
+    @property
+    def flat(self) -> bool:
+        """Whether the ground is level and even."""
+        return terrain.parse(self.terrain)[0] == "flat"
+
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
         """One for each seed; flat ones are one object."""
         name, parameters = terrain.parse(self.terrain)
-        if name == "flat":
+        if self.flat:
             return [terrain.make(name, 0, **parameters)] * len(seeds)
         return [terrain.make(name, seed, **parameters) for seed in seeds]
 

@@ -3,6 +3,7 @@ import math
 
 import numpy as np
 import pytest
+import scipy.stats
 
 import robots
 from diagnosis.corrected_sim import CorrectedSim
@@ -12,6 +13,7 @@ from experiments.transfer_nao_figure import cells_figure
 from experiments.transfer_nao_page import (
     DIAGNOSED_SIM,
     claims_of,
+    faster_p,
     more_falls_p,
     table_of,
 )
@@ -177,6 +179,26 @@ def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
     page = (config.out / "result.md").read_text()
     assert "`flat`" in page
     assert "speed_limit@LKneePitch:speed=2" in page
+
+
+def test_an_uneven_sim_is_for_uneven_ground(tmp_path):
+    found = late(tmp_path / "found")
+    on = {
+        ground: TransferNao(sim=found, terrain=ground) for ground in ("flat", "lumps")
+    }
+    assert SGAT in on["flat"].compared and UNEVEN not in on["flat"].compared
+    assert UNEVEN in on["lumps"].compared and SGAT not in on["lumps"].compared
+    for config in on.values():
+        steps = [method for method, _ in config.plan]
+        assert all(steps.count(method) for method in config.compared)
+
+
+def test_a_faster_gait_is_faster_by_welchs_test():
+    # t = 1 / sqrt(0.1) with 2 (n - 1) degrees of freedom, as the spreads are equal
+    fast, slow = cell(NONE, 1, 21, 0, 20), cell(NONE, 1, 20, 0, 20)
+    expected = scipy.stats.t.sf(1 / np.sqrt(2 / 20), 38)
+    assert faster_p(fast, slow) == pytest.approx(expected)
+    assert faster_p(slow, fast) == pytest.approx(1 - expected)
 
 
 def test_diagnosed_sims_need_a_diagnosis():
