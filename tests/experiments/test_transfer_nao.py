@@ -183,12 +183,12 @@ def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
 
 def test_an_uneven_sim_is_for_uneven_ground(tmp_path):
     found = late(tmp_path / "found")
-    on = {
-        ground: TransferNao(sim=found, terrain=ground) for ground in ("flat", "lumps")
-    }
-    assert SGAT in on["flat"].compared and UNEVEN not in on["flat"].compared
-    assert UNEVEN in on["lumps"].compared and SGAT not in on["lumps"].compared
-    for config in on.values():
+    flat, lumps = (TransferNao(sim=found, terrain=on) for on in ("flat", "lumps"))
+    assert SGAT in flat.compared
+    assert UNEVEN not in flat.compared
+    assert SGAT not in lumps.compared
+    assert UNEVEN in lumps.compared
+    for config in (flat, lumps):
         steps = [method for method, _ in config.plan]
         assert all(steps.count(method) for method in config.compared)
 
