@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.noise import noise_of
 from diagnosis.plant import Plant
-from diagnosis.replay import Replayed
+from diagnosis.replayed import Replayed
 from diagnosis.run import continuous
 from diagnosis.trace import Trace
 from groundwalk.arrays import FloatArray

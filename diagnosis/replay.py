@@ -1,38 +1,19 @@
 """Replays: what n variants of a plant do when they get the commands of traces."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from diagnosis.drive import Drive
 from diagnosis.replay_batch import ReplayBatch
+from diagnosis.replay_tape import Tape
+from diagnosis.replayed import Replayed
 from diagnosis.run import Run
 from diagnosis.variants import Variants
-from groundwalk.arrays import FloatArray
 
 STEP_S = 0.002
 BLOCK = 256
 """Steps whose commands are worked out at once."""
-
-
-@dataclass(frozen=True, eq=False)
-class Replayed:
-    """What n variants would have measured in one run, at the rows of its trace.
-
-    Attributes:
-      position_rad: (n, T, j).
-      velocity_rad_s: (n, T, j).
-      servo_nm: (n, T, j) what the servos gave, without back-EMF.
-      base: (n, T, 13) as `Run.base`, for a floating base.
-      gyroscope_rad_s: (n, T, 3).
-    """
-
-    position_rad: FloatArray
-    velocity_rad_s: FloatArray
-    servo_nm: FloatArray
-    base: FloatArray | None
-    gyroscope_rad_s: FloatArray
 
 
 def replay(
@@ -51,7 +32,7 @@ def replay(
     longest_s = max(run.trace.duration_s for run in runs)
     steps = int(np.ceil((longest_s + 1e-9) / step_s))
     drive = Drive(runs, variants.signals.command_delay_s, step_s)
-    tape = batch.tape(steps)
+    tape = Tape(batch, steps)
     for first in range(0, steps, BLOCK):
         numbers = np.arange(first, min(first + BLOCK, steps))
         now_s = start_s + numbers[:, None] * step_s

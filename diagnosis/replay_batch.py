@@ -7,7 +7,6 @@ import numpy as np
 
 from diagnosis.batch_laws import BatchLaws
 from diagnosis.conforming_ground import conform
-from diagnosis.replay_tape import Tape
 from diagnosis.run import Run
 from diagnosis.servo import Servo
 from diagnosis.trace import Trace
@@ -42,10 +41,6 @@ class ReplayBatch:
         self.laws = BatchLaws(self._batch, variants, servos, step_s)
         self._start(runs, variants)
         self.laws.begin()
-
-    def tape(self, steps: int) -> Tape:
-        """What notes positions and velocities of so many steps."""
-        return Tape(self, steps)
 
     def step(self) -> None:
         """One step of physics; what blows up becomes NaN."""

@@ -1,25 +1,22 @@
 """What a batch of simulations did, and what would have been measured of it."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from diagnosis.columns import columns
 from diagnosis.hermite import hermite
+from diagnosis.replay_batch import ReplayBatch
+from diagnosis.replayed import Replayed
 from diagnosis.run import Run
 from diagnosis.variants import Variants
 from groundwalk.arrays import FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from diagnosis.replay import Replayed
-    from diagnosis.replay_batch import ReplayBatch
 
 
 class Tape:
     """Joint states of every step; for a floating base also the base's."""
 
-    def __init__(self, batch: "ReplayBatch", steps: int) -> None:
+    def __init__(self, batch: ReplayBatch, steps: int) -> None:
         """Make room, and note the start."""
         self._batch, j = batch, len(batch.plant.joints)
         self._position = np.empty((steps + 1, batch.n, j))
@@ -43,13 +40,11 @@ class Tape:
             self._base[step, :, :7] = batch.qpos[:, :7]
             self._base[step, :, 7:] = batch.qvel[:, :6]
 
-    def read(self, runs: Sequence[Run], variants: Variants) -> list["Replayed"]:
+    def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
         """Interpolate to the rows of the traces, and pass through the sensors."""
         return [self._read(k, run, variants) for k, run in enumerate(runs)]
 
-    def _read(self, k: int, run: Run, variants: Variants) -> "Replayed":
-        from diagnosis.replay import Replayed
-
+    def _read(self, k: int, run: Run, variants: Variants) -> Replayed:
         rows = np.arange(variants.n) * self._batch.count + k
         since_s = run.trace.time_s - run.trace.time_s[0]
         now_s = np.tile(since_s, (variants.n, 1))

@@ -11,8 +11,8 @@ from terrain import Heightfield
 from worlds.bullet_ground import load_ground
 from worlds.hidden_bullet_body import load_body
 from worlds.hidden_effects import Hidden
-from worlds.hidden_engine import BodySense
 from worlds.hidden_plant import HiddenPlant
+from worlds.hidden_sense import BodySense
 from worlds.hidden_silence import import_bullet
 
 if TYPE_CHECKING:

@@ -1,7 +1,6 @@
 """What a hidden world asks of a physics engine."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -12,31 +11,10 @@ from terrain import Heightfield
 from worlds.hidden_effects import Hidden
 from worlds.hidden_model import hidden_model
 from worlds.hidden_plant import HiddenPlant
+from worlds.hidden_sense import BodySense
 
 WATCH_STEPS = 8
 """Forces and accelerations are means over so many fine steps."""
-
-
-@dataclass(frozen=True, eq=False)
-class BodySense:
-    """What the base's sensors and the feet feel, and where the base is.
-
-    All in the frame of the mount or the ground. Zero where a robot has no such sensor.
-
-    Attributes:
-      gyroscope_rad_s, accelerometer_m_s2: (3,) base frame.
-      foot_force_n: (8,) as in `worlds.Observation`.
-      position_m: (3,), orientation: (4,) w, x, y, z.
-      linear_m_s: (3,) ground frame, angular_rad_s: (3,) base frame.
-    """
-
-    gyroscope_rad_s: FloatArray
-    accelerometer_m_s2: FloatArray
-    foot_force_n: FloatArray
-    position_m: FloatArray
-    orientation: FloatArray
-    linear_m_s: FloatArray
-    angular_rad_s: FloatArray
 
 
 class HiddenEngine(Protocol):

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from worlds.hidden_engine import BodySense
 from worlds.hidden_plant import HiddenPlant
+from worlds.hidden_sense import BodySense
 from worlds.mujoco_model import ROOT_QPOS, ROOT_QVEL, touch_shares
 
 if TYPE_CHECKING:

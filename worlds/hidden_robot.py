@@ -11,10 +11,11 @@ from terrain import Heightfield
 from worlds.bullet_robot import BulletState
 from worlds.hidden_drive import HiddenDrive
 from worlds.hidden_effects import Hidden
-from worlds.hidden_engine import BodySense, check_engine, hidden_engine
+from worlds.hidden_engine import check_engine, hidden_engine
 from worlds.hidden_joints import HiddenJoints
 from worlds.hidden_model import hidden_model
 from worlds.hidden_plant import described_hidden_plant
+from worlds.hidden_sense import BodySense
 from worlds.world import WorldOptions
 
 FINE_STEP_S = 0.0005

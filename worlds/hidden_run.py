@@ -9,9 +9,10 @@ from groundwalk.arrays import FloatArray
 from worlds.hidden_clock import Clock
 from worlds.hidden_drive import HiddenDrive
 from worlds.hidden_effects import Hidden
-from worlds.hidden_engine import BodySense, HiddenEngine, hidden_engine
+from worlds.hidden_engine import HiddenEngine, hidden_engine
 from worlds.hidden_model import hidden_ground, tilt
 from worlds.hidden_plant import HiddenPlant
+from worlds.hidden_sense import BodySense
 from worlds.standing import Standing
 
 Feed = Callable[[int, BodySense], FloatArray]

@@ -9,7 +9,7 @@ from experiments.excitation_standing import (
     walking_feed,
 )
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden_engine import BodySense
+from worlds.hidden_sense import BodySense
 
 TIME_S = np.arange(1001) * 0.01
 RANGE = np.array([[-1.0, 1.0], [0.0, 0.3], [-2.0, 2.0]])
