@@ -26,7 +26,7 @@ LUMPS_MARGIN = 1.2
 those lie where falls begin, and fell on 10 and 15 of 40 real courses."""
 
 RATINGS = 10
-"""Of every generation's mean gait, after the search."""
+"""How often every generation's mean gait is rated after the search."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,9 @@ class Budget:
 
     @property
     def rated(self) -> int:
-        """Gaits that a rater sees: all samples, and every mean again and again."""
-        return self.generations * (self.population + 1) + RATINGS * (
-            self.generations + 1
-        )
+        """Ratings of a search: of samples and means, then of all means again."""
+        means = self.generations + 1
+        return self.generations * (self.population + 1) + RATINGS * means
 
 
 def tune(
@@ -61,8 +60,8 @@ def tune(
     """The best of all generations' mean gaits, in a search that begins at another gait.
 
     The mean moves where the good samples are, and from one generation to the next that
-    may be over a cliff: gaits of 37 cm/s have neighbours that fall at once. So all
-    means are rated once more, by `RATINGS` of the rater with other random numbers.
+    may be over a cliff, as fast gaits have neighbours that fall at once. So all means
+    are rated `RATINGS` times more, each time with other random numbers.
     """
     of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
 
