@@ -29,7 +29,7 @@ from experiments.run_options import RunOptions
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json
 from experiments.search import GaitSearch, check_search
-from experiments.search_run import Entry, run_search
+from experiments.search_run import RATINGS, Entry, best_mean, run_search
 from experiments.text_table import print_table
 from experiments.trials import TrialRules, walk_trials
 from groundwalk.arrays import FloatArray
@@ -160,8 +160,8 @@ def _search(
     description: Description,
     seed: np.random.SeedSequence,
 ) -> Gait:
-    """The mean gait after a short search on flat ground in the sim."""
-    of_strategy, *of_walks = seed.spawn(1 + config.generations)
+    """The best mean gait of a short search on flat ground in the sim."""
+    of_strategy, *of_walks, of_ratings = seed.spawn(2 + config.generations)
 
     def generation(number: int, search: GaitSearch) -> Entry:
         tried = np.vstack([search.ask(), search.mean.to_vector()])
@@ -173,13 +173,14 @@ def _search(
             "fell": float(fell[:-1].mean()),
         }
 
-    found, _ = run_search(
+    means = run_search(
         folder.path / CHECKPOINT,
         lambda: GaitSearch(START, config.population, config.sigma, of_strategy),
         generation,
         config.generations,
     )
-    return found.mean
+    poses = of_ratings.spawn(RATINGS)
+    return best_mean(means, [_rate(config, description, means, p)[0] for p in poses])
 
 
 def _rate(

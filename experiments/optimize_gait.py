@@ -2,7 +2,7 @@
 
 import contextlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +27,8 @@ from experiments.run_options import RunOptions
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json, print_scores
 from experiments.search import GaitSearch, check_search
-from experiments.search_run import run_search
-from experiments.trials import SEARCH_TRIAL, Trials, walk_trials
+from experiments.search_run import RATINGS, best_mean, run_search
+from experiments.trials import SEARCH_TRIAL, TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from terrain import Heightfield, TerrainSpec, parse
@@ -36,6 +36,10 @@ from walk_engine import Gait
 
 VERB = "optimize-gait"
 WORLDS = ("sim", "real")
+RATED = replace(SEARCH_TRIAL, start_spread_rad=0.01)
+"""How a mean gait walks after the search: from a start pose that spreads, so that what
+walks by luck alone does not win."""
+
 TITLE = "How does the gait that was tuned in the sim walk in both worlds?"
 
 
@@ -130,26 +134,26 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
 
 def search(config: OptimizeGait, folder: RunFolder) -> Gait:
     """The search's answer, generation by generation with checkpoints."""
-    of_samples, _, _ = _seeds(config)
+    of_samples, *_ = _seeds(config)
     grounds = search_grounds(config, config.generations)
 
     def begin() -> GaitSearch:
         start = load_gait(config.start)
         return GaitSearch(start, config.population, config.sigma, of_samples)
 
-    found, _ = run_search(
+    means = run_search(
         folder.path / CHECKPOINT,
         begin,
         lambda number, strategy: _generation(config, strategy, grounds[number].make()),
         config.generations,
         lambda entries: folder.write_json(HISTORY, {"generations": entries}),
     )
-    return found.mean
+    return best_mean(means, _ratings(config, means))
 
 
 def search_grounds(config: OptimizeGait, generations: int) -> list[TerrainSpec]:
     """The ground of each generation, from the first one on."""
-    _, of_grounds, _ = _seeds(config)
+    _, of_grounds, *_ = _seeds(config)
     seeds = of_grounds.generate_state(generations).tolist()
     return [TerrainSpec(*parse(config.terrain), seed=seed) for seed in seeds]
 
@@ -158,17 +162,22 @@ def rate(
     config: OptimizeGait,
     tried: Sequence[Gait] | FloatArray,
     grounds: Sequence[Heightfield],
+    poses: Sequence[np.random.SeedSequence] = (),
+    rules: TrialRules = SEARCH_TRIAL,
     recorder: Recorder | None = None,
     on_end: Callable[[], object] = lambda: None,
 ) -> tuple[Trials, FloatArray]:
     """Let gaits walk as the search lets them, side by side in one sim.
 
-    Nothing of it is random but the ground: the same gait has the same bits again.
+    Nothing of it is random but the ground and, where these spread, the start poses: the
+    same gait has the same bits again.
 
     Args:
       config: of the search.
       tried: n gaits, or their vectors (n, 16).
       grounds: n.
+      poses: n seeds for the start poses, where the rules let these spread.
+      rules: of the walks.
       recorder: notes every tick.
       on_end: called once for each walk that is over.
 
@@ -181,24 +190,23 @@ def rate(
     world = make_sim(description, grounds, nobody, options, config.sim)
     with contextlib.closing(world):
         trials = walk_trials(
-            world, tried, SEARCH_TRIAL, recorder=recorder, on_end=on_end
+            world, tried, rules, poses, recorder=recorder, on_end=on_end
         )
     penalty_cm_s = FALL_PENALTY_CM_S * description.scale.speed
-    return trials, reward_cm_s(trials, SEARCH_TRIAL.limit_s, penalty_cm_s)
+    return trials, reward_cm_s(trials, rules.limit_s, penalty_cm_s)
 
 
 def _seeds(config: OptimizeGait) -> tuple[np.random.SeedSequence, ...]:
-    """Of the search's samples, of its grounds, and of the trials after it."""
+    """Of the search: samples, grounds, ratings of its means; of the trials after it."""
     of_search, of_trials = np.random.SeedSequence(config.seed).spawn(2)
-    return (*of_search.spawn(2), of_trials)
+    return (*of_search.spawn(3), of_trials)
 
 
 def _generation(
     config: OptimizeGait, strategy: GaitSearch, ground: Heightfield
 ) -> dict[str, Any]:
     """One generation, and the mean gait before it beside the samples."""
-    mean = strategy.mean
-    tried = np.vstack([strategy.ask(), mean.to_vector()])
+    tried = np.vstack([strategy.ask(), strategy.mean.to_vector()])
     trials, rewards = rate(config, tried, [ground] * len(tried))
     strategy.tell(rewards[:-1])
     return {
@@ -206,18 +214,28 @@ def _generation(
         "falls": int(trials.fell[:-1].sum()),
         "mean_reward": float(rewards[-1]),
         "mean_fell": bool(trials.fell[-1]),
-        "mean_gait": dict(mean),
         "best_gait": dict(Gait.from_vector(tried[int(rewards[:-1].argmax())])),
         "spread": strategy.spread.tolist(),
         "sigma": strategy.sigma,
     }
 
 
+def _ratings(config: OptimizeGait, means: FloatArray) -> list[FloatArray]:
+    """Rewards (n,) of n mean gaits, again and again: each time on another ground."""
+    *_, of_ratings, _ = _seeds(config)
+    grounds = search_grounds(config, config.generations + RATINGS)[config.generations :]
+    ratings = []
+    for ground, pose in zip(grounds, of_ratings.spawn(RATINGS), strict=True):
+        alike = [ground.make()] * len(means), [pose] * len(means)
+        ratings.append(rate(config, means, *alike, rules=RATED)[1])
+    return ratings
+
+
 def _evaluate(config: OptimizeGait, folder: RunFolder, tuned: Gait) -> dict[str, Any]:
     """Scores of the start and the tuned gait in both worlds, on a course of 3 m."""
     description = robots.get(config.robot)
     both = {"start": load_gait(config.start), "tuned": tuned}
-    _, _, of_trials = _seeds(config)
+    *_, of_trials = _seeds(config)
     table = {}
     for world, own in zip(WORLDS, of_trials.spawn(2), strict=True):
         outcomes = evaluate(config.study(world), description, both, own)

@@ -39,8 +39,8 @@ class _NormalSource:
 class GaitSearch:
     """Asks for gaits, is told their rewards, and moves its distribution.
 
-    The answer is the distribution's mean, not the luckiest sample. The search can be
-    turned into bytes and back without any change to what follows.
+    Its answers are the distribution's means, not the luckiest samples. The search can
+    be turned into bytes and back without any change to what follows.
     """
 
     def __init__(

@@ -45,7 +45,9 @@ def walk_again(config: OptimizeGait, best: Sequence[Gait]) -> list[SearchWalk]:
     grounds = _shared([spec.make() for spec in specs])
     recorder = Recorder(description, range(len(best)))
     with progress("best gaits walk", len(best)) as bar:
-        trials, rewards = rate(config, best, grounds, recorder, bar.advance)
+        trials, rewards = rate(
+            config, best, grounds, recorder=recorder, on_end=bar.advance
+        )
     walks = []
     for k, gait in enumerate(best):
         about = _metadata(config, specs[k], gait, f"generation {k}", trials.ended[k])

@@ -6,6 +6,7 @@ from typing import Any
 from experiments.intervals import wilson
 from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
+from experiments.search_run import RATINGS
 from experiments.transfer_nao_figure import FIGURE
 from experiments.transfer_page import Claim, write_transfer_page
 from experiments.walk_data import ON_COURSE
@@ -13,8 +14,8 @@ from experiments.walk_groundings import GAT, NONE, SGAT, UNEVEN
 from experiments.walk_groundings_words import UNEVEN_MEANS
 from experiments.walk_places import RealCourse
 from experiments.walk_raters import FALL_PENALTY_WALK_CM_S, RATED
-from experiments.walk_tuning import LUMPS_MARGIN, RATINGS
-from terrain import Lumps, configuration, parse
+from experiments.walk_tuning import LUMPS_MARGIN
+from terrain import Flat, Lumps, configuration, parse
 
 CELLS = "cells"
 DIAGNOSED = "diagnosed"
@@ -161,13 +162,16 @@ def write_nao_page(
 
 def _ground(course: RealCourse) -> str:
     name, parameters = parse(course.terrain)
-    lumps = configuration(name, **parameters)
-    if not isinstance(lumps, Lumps):
-        return f"of `{course.terrain}`"
-    return (
-        f"on lumps of {1000 * lumps.amplitude_m:.0f} mm that are "
-        f"{100 * lumps.wavelength_m:.0f} cm long"
-    )
+    match configuration(name, **parameters):
+        case Flat():
+            return "on flat ground"
+        case Lumps(amplitude_m=height_m, wavelength_m=length_m):
+            return (
+                f"on lumps of {1000 * height_m:.0f} mm that are "
+                f"{100 * length_m:.0f} cm long"
+            )
+        case _:
+            return f"of `{course.terrain}`"
 
 
 def _uneven(cells: Sequence[Cell]) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from experiments.search import GaitSearch
-from experiments.search_run import Entry, run_search
+from experiments.search_run import RATINGS, Entry, best_mean, run_search
 from experiments.walk_data import ON_COURSE, GaitCloud
 from experiments.walk_groundings import GROUNDINGS, UNEVEN, WalkModels
 from experiments.walk_places import SHORT_START_M, Places
@@ -24,9 +24,6 @@ from walk_engine import Gait
 LUMPS_MARGIN = 1.2
 """A search's lumps are higher than real's by this. Gaits tuned on lumps as high as
 those lie where falls begin, and fell on 10 and 15 of 40 real courses."""
-
-RATINGS = 10
-"""How often every generation's mean gait is rated after the search."""
 
 
 @dataclass(frozen=True)
@@ -59,9 +56,7 @@ def tune(
 ) -> Gait:
     """The best of all generations' mean gaits, in a search that begins at another gait.
 
-    The mean moves where the good samples are, and from one generation to the next that
-    may be over a cliff, as fast gaits have neighbours that fall at once. So all means
-    are rated `RATINGS` times more, each time with other random numbers.
+    All are rated `RATINGS` times more, each time with other random numbers.
     """
     of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
 
@@ -69,17 +64,15 @@ def tune(
         tried = np.vstack([search.ask(), search.mean.to_vector()])
         rewards = rater(tried, of_walks[number])
         search.tell(rewards[:-1])
-        return {"mean_reward": float(rewards[-1]), "mean": search.mean.to_vector()}
+        return {"mean_reward": float(rewards[-1])}
 
-    _, entries = run_search(
+    means = run_search(
         checkpoint,
         lambda: GaitSearch(start, budget.population, budget.sigma, of_search),
         generation,
         budget.generations,
     )
-    means = np.array([start.to_vector(), *(entry["mean"] for entry in entries)])
-    ratings = [rater(means, child) for child in of_ratings.spawn(RATINGS)]
-    return Gait.from_vector(means[np.mean(ratings, axis=0).argmax()])
+    return best_mean(means, [rater(means, one) for one in of_ratings.spawn(RATINGS)])
 
 
 class Grounding:
