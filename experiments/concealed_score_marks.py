@@ -68,6 +68,24 @@ class Mark:
     wrong_effect: float | None
     probability: float | None
 
+    @property
+    def right(self) -> bool:
+        """Whether the answer is right as a whole.
+
+        All that is there is named, by name and place, and nothing else. Where nothing
+        of the library is there, nothing is; where it is not excited, that may be said.
+        """
+        exact = self.kind == "effects" and not self.extra and not self.missed
+        match self.case.kind:
+            case "none":
+                return not self.names_something and self.kind != "missing"
+            case "outside":
+                return self.kind not in ("effects", "missing")
+            case "unexcited":
+                return exact or self.kind in ("none", "not_identifiable")
+            case _:
+                return exact
+
 
 def mark(
     case: TrueCase, verdict: Verdict | None, oracle: Oracle | None, method: str

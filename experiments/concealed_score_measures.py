@@ -34,6 +34,7 @@ def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
     certain = [each for each in marks if each.probability is not None]
     closed = ("closed", "wrong_place", "wrong_effect")
     return {
+        "right": share(each.right for each in marks),
         "top1": _by_level(single, lambda each: each.top1),
         "in_set": _by_level(single, lambda each: each.in_set),
         "set_size": _mean([each for each in single if each.set_size], "set_size", rng),

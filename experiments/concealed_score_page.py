@@ -58,6 +58,7 @@ class Goal:
 
 
 GOALS = (
+    Goal("answers that are right as a whole", ("right",)),
     Goal("right effect first, L1", ("top1", "L1"), low=0.90),
     Goal("right effect first, L2", ("top1", "L2"), low=0.75),
     Goal("right effect first, L3", ("top1", "L3")),
@@ -154,6 +155,7 @@ def _answer(score: Mapping[str, Any]) -> list[str]:
     held = [holds for goal in GOALS if (holds := _holds(goal, score)) is not None]
     right, wrong = score["top1"]["all"]["value"], score["null_false_alarms"]["value"]
     told = [
+        f"{score['right']['value']:.0%} of the answers are right as a whole",
         f"the right effect is named first in {right:.0%} of the cases with one effect"
         if right is not None
         else "",
@@ -161,7 +163,7 @@ def _answer(score: Mapping[str, Any]) -> list[str]:
         if wrong is not None
         else "",
     ]
-    counted = " and ".join(filter(None, told)) or "there was nothing to count"
+    counted = ", ".join(filter(None, told))
     met = f"The diagnosis meets {sum(held)} of the {len(held)} goals that count here."
     return [f"Of {score['cases']} cases: {counted}. {met}"]
 

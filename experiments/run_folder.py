@@ -22,10 +22,9 @@ FREE_WHEN_RESUMED = frozenset({"out", "resume", "json", "threads"})
 PACKAGES = (
     "mujoco", "pybullet", "cma", "numpy", "scipy", "rerun-sdk", "pyarrow", "torch",
 )  # fmt: skip
-
-
 _CODE = ("commit", "changed")
-
+_SOURCES = (":(top)", ":(top,exclude)docs/results")
+"""What runs, for git: results that were just written anew change nothing of it."""
 
 Config = TypeVar("Config", bound=RunOptions)
 
@@ -194,7 +193,7 @@ def provenance() -> dict[str, Any]:
         "arguments": sys.argv[1:],
         "packages": {name: _version(name) for name in PACKAGES},
         "commit": _git("rev-parse", "HEAD"),
-        "changed": _git("status", "--porcelain"),
+        "changed": _git("status", "--porcelain", "--", *_SOURCES),
     }
 
 

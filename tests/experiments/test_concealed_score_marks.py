@@ -89,6 +89,50 @@ def test_f1_of_pairs_wants_name_and_place():
     assert score["pairs_f1"]["low"] <= 6 / 11 <= score["pairs_f1"]["high"]
 
 
+# Right as a whole
+
+
+@pytest.mark.parametrize(
+    ("kind", "verdict", "right"),
+    [
+        ("single", names(RIGHT), True),
+        ("single", names(RIGHT, found("backlash", HIP)), False),  # one too many
+        ("single", names(found("coulomb_friction", HIP)), False),
+        (
+            "single",
+            Verdict("unknown", (RIGHT,), unexplained=UNKNOWN.unexplained),
+            False,
+        ),
+        ("single", NOTHING, False),
+        ("pair", names(found("viscous_friction", HIP), RIGHT), True),
+        ("pair", names(RIGHT), False),  # one is missed
+        ("none", NOTHING, True),
+        ("none", UNKNOWN, True),
+        ("none", names(RIGHT), False),
+        ("outside", UNKNOWN, True),
+        ("outside", names(found("backlash", KNEE)), False),
+        ("unexcited", UNSURE, True),
+        ("unexcited", NOTHING, True),
+        ("unexcited", names(RIGHT), True),
+        ("unexcited", names(found("backlash", KNEE)), False),
+        ("unexcited", UNKNOWN, False),
+        ("single", None, False),
+        ("none", None, False),
+        ("outside", None, False),
+        ("unexcited", None, False),
+    ],
+)
+def test_an_answer_is_right_as_a_whole_or_not(kind, verdict, right):
+    hidden = {
+        "pair": (DRY, WET),
+        "none": (),
+        "outside": (EffectValues("cogging", KNEE, {}),),
+    }
+    known = oracle() if kind in ("single", "pair") else None
+    score = scored((kind, hidden.get(kind, (DRY,)), verdict, known))
+    assert (score["right"]["value"], score["right"]["n"]) == (float(right), 1)
+
+
 # Values
 
 

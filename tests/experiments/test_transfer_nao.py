@@ -177,7 +177,7 @@ def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
     methods = [cell["method"] for cell in cells]
     assert methods == [START, DIAGNOSED_SIM, NONE]
     page = (config.out / "result.md").read_text()
-    assert "`flat`" in page
+    assert "courses of 3 m on flat ground" in page
     assert "speed_limit@LKneePitch:speed=2" in page
 
 
