@@ -19,9 +19,12 @@ from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.concealed_reading import ANSWERS, BASELINE_ANSWERS, read_case
 from experiments.progress import progress
+from experiments.repeat_command import repeat_command
+from experiments.run_folder import PROVENANCE, RunFolder, provenance
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text
 
+VERB = "concealed-run"
 CASES = "cases"
 
 
@@ -50,14 +53,32 @@ class ConcealedRun:
 
 
 def main(config: ConcealedRun) -> None:
-    """Answer what has no answer yet."""
+    """Answer what has no answer yet, and note the code that does."""
     kind, answer = ANSWERS, diagnosed
     if config.by != "diagnosis":
         kind, answer = (
             f"{BASELINE_ANSWERS}/{config.by}",
             partial(by_baseline, config.by),
         )
+    if not unanswered(config.folder, kind):
+        return
+    answers = RunFolder(config.folder / kind)
+    if answers.has(PROVENANCE):
+        answers.note_resumed()
+    else:
+        command = {"command": repeat_command(VERB, config)}
+        answers.write_json(PROVENANCE, command | provenance())
     answer_all(config.folder, kind, answer, config.seed, config.threads)
+
+
+def unanswered(folder: Path, kind: str) -> list[Path]:
+    """The cases of a set that have no answer of a kind yet."""
+    return [case for case in cases_of(folder) if not _path(folder, kind, case).exists()]
+
+
+def cases_of(folder: Path) -> list[Path]:
+    """The folders of all cases of a set."""
+    return sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
 
 
 Answer = Callable[[Path, int], Verdict]
@@ -79,13 +100,13 @@ def answer_all(
     Raises:
       Exception: what the first case that failed has raised, once all others are done.
     """
-    cases = sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
-    missing = [case for case in cases if not _path(folder, kind, case).exists()]
+    missing = unanswered(folder, kind)
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     context = multiprocessing.get_context("spawn")
     workers = threads or os.cpu_count() or 1
+    total = len(cases_of(folder))
     with (
-        progress("cases diagnosed", len(cases), done=len(cases) - len(missing)) as bar,
+        progress("cases diagnosed", total, done=total - len(missing)) as bar,
         ProcessPoolExecutor(workers, mp_context=context) as pool,
     ):
         asked = {pool.submit(answer, case, seed): case for case in missing}

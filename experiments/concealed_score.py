@@ -29,7 +29,8 @@ from experiments.concealed_score_truth import (
 )
 from experiments.progress import progress
 from experiments.repeat_command import repeat_command
-from experiments.run_folder import provenance
+from experiments.report_origin import Origin
+from experiments.run_folder import PROVENANCE, RunFolder, provenance
 from experiments.text_table import print_table
 from groundwalk.errors import BadValueError
 from groundwalk.files import write_text
@@ -76,6 +77,7 @@ def main(config: ConcealedScore) -> None:
     score = score_of(truth, answers, oracles)
     command = {"command": repeat_command(VERB, config)}
     score["provenance"] = command | provenance()
+    score["answered_by"] = _code_that_answered(folder)
     write_text(folder / SCORE, json.dumps(score, indent=1) + "\n")
     draw_score(score, folder / FIGURE)
     score_report(score, FIGURE).write(folder, PAGE)
@@ -123,6 +125,14 @@ def score_of(
             if method != DIAGNOSIS
         },
     }
+
+
+def _code_that_answered(folder: Path) -> str | None:
+    """The commit of the diagnosis; None if nobody noted it."""
+    answers = RunFolder(folder / ANSWERS)
+    if not answers.has(PROVENANCE):
+        return None
+    return Origin.of(answers.read_json(PROVENANCE), {}).commit
 
 
 def consult_all(

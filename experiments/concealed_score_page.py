@@ -145,6 +145,7 @@ def score_report(score: Mapping[str, Any], figure: str) -> Report:
         "cases": score["cases"],
         "drawn from seed": score["seed"],
         "sha256 of the sealed truth": score["truth_sha256"],
+        "diagnosed at commit": score.get("answered_by"),
     }
     origin = Origin.of(score["provenance"], settings)
     return Report(TITLE, _answer(score), [*_unanswered(score), *body], origin)

@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,15 @@ def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkey
     names = [f"case_{number:03d}" for number in range(3)]
     assert set(read_baselines(folder, names)["sparse"]) == set(names)
     assert not (folder / ANSWERS).exists()
+    noted_code = json.loads((folder / "baselines/sparse/provenance.json").read_text())
+    assert noted_code["packages"]["mujoco"] == "4.0.0"
+
+
+def test_code_that_found_everything_answered_is_not_noted(folder, in_this_process):
+    in_this_process(concealed_run)
+    answer_all(folder, ANSWERS, noted, seed=5, threads=1)
+    main(ConcealedRun(folder, threads=1))
+    assert not (folder / ANSWERS / "provenance.json").exists()
 
 
 def test_a_folder_without_cases_is_refused(tmp_path):

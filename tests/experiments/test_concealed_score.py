@@ -66,6 +66,9 @@ def test_a_set_is_scored_with_its_baselines_and_oracles_are_not_computed_twice(
         },
     )
     keep_oracle(tmp_path, "case_000", diagnosis=(ours, 1.0), bic=(theirs, 5.0))
+    code = {"commit": "abc", "changed": "", "python": "3", "packages": {}}
+    code |= {"command": "groundwalk concealed run set"}
+    (tmp_path / "answers" / "provenance.json").write_text(json.dumps(code))
     main(ConcealedScore(tmp_path, threads=1))  # there are no cases to compute it from
     score = json.loads((tmp_path / "score.json").read_text())
     assert score["truth_sha256"] == digest
@@ -81,6 +84,7 @@ def test_a_set_is_scored_with_its_baselines_and_oracles_are_not_computed_twice(
     assert "| right effect first, L1 | at least 0.9 | yes | 1.00" in page
     assert digest in page
     assert "seed 7" in page
+    assert "diagnosed at commit abc" in page
     assert "without an answer from diagnosis, counted as wrong: case_002" in page
     assert "case_002" in capsys.readouterr().out
 
