@@ -33,6 +33,7 @@ from diagnosis.trace import Trace
 from diagnosis.unexplained import unexplained
 from diagnosis.verdict import Amount, Verdict, VerdictKind
 from diagnosis.widespread import widespread
+from groundwalk.blas import one_blas_thread
 from groundwalk.errors import BadRecordingError
 
 MORE_ON_FEET = 4
@@ -62,6 +63,7 @@ class Diagnosis:
     given: Model = ()
 
 
+@one_blas_thread
 def diagnose(
     plant: Plant,
     traces: Sequence[Trace],

@@ -40,7 +40,8 @@ class _Desk(Generic[Question, Answer]):
             self._condition.wait_for(lambda: self._busy == 0)
             asked, self._asked = self._asked, {}
             self._busy = len(asked)
-        return asked
+        # in the tasks' order: that of their threads is never the same twice
+        return dict(sorted(asked.items()))
 
     def reply(self, answers: dict[int, Answer | BaseException]) -> None:
         with self._condition:

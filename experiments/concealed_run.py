@@ -21,6 +21,7 @@ from experiments.concealed_reading import ANSWERS, BASELINE_ANSWERS, read_case
 from experiments.progress import progress
 from experiments.repeat_command import repeat_command
 from experiments.run_folder import PROVENANCE, RunFolder, provenance
+from groundwalk.blas import one_blas_thread
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text
 
@@ -101,7 +102,6 @@ def answer_all(
       Exception: what the first case that failed has raised, once all others are done.
     """
     missing = unanswered(folder, kind)
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
     context = multiprocessing.get_context("spawn")
     workers = threads or os.cpu_count() or 1
     total = len(cases_of(folder))
@@ -138,6 +138,7 @@ def diagnosed(case: Path, seed: int) -> Verdict:
         return Verdict(kind="not_identifiable", limits=(str(error),))
 
 
+@one_blas_thread
 def by_baseline(name: str, case: Path, seed: int) -> Verdict:
     """A baseline's verdict, from what a diagnosis learns from; none uses the seed."""
     try:
