@@ -155,8 +155,9 @@ def _answer(score: Mapping[str, Any]) -> list[str]:
     """How often the diagnosis was right, and how many goals that meets."""
     held = [holds for goal in GOALS if (holds := _holds(goal, score)) is not None]
     right, wrong = score["top1"]["all"]["value"], score["null_false_alarms"]["value"]
+    whole = score["right"]
     told = [
-        f"{score['right']['value']:.0%} of the answers are right as a whole",
+        f"{round(whole['value'] * whole['n'])} answers are right as a whole",
         f"the right effect is named first in {right:.0%} of the cases with one effect"
         if right is not None
         else "",
