@@ -16,9 +16,9 @@ import terrain
 import worlds
 from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
+from experiments.grounded_walks.data import GaitCloud, leg_senses, walk
+from experiments.grounded_walks.places import SimPlace
 from experiments.trials import TrialRules, walk_trials
-from experiments.walk_data import GaitCloud, leg_senses, walk
-from experiments.walk_places import SimPlace
 from sgat.action_transformer import ActionTransformer
 from sgat.block_noise import BlockNoise
 from sgat.forward_config import ForwardConfig

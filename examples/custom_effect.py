@@ -17,7 +17,7 @@ from diagnosis.effect import Effect, Parameter
 from diagnosis.library import also_known
 from diagnosis.trace_reading import read_traces
 from diagnosis.verdict import Verdict
-from experiments.diagnosis_console import print_verdict
+from experiments.diagnosis_report.console import print_verdict
 from worlds import Recording, RecordingMetadata, ServoGains, write_recording
 
 PENDULUM = """<mujoco><option timestep="0.001"/><worldbody><body name="rod">

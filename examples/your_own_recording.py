@@ -12,7 +12,7 @@ import tyro
 
 from diagnosis.verdict import Verdict
 from experiments.diagnose import Diagnose, run_diagnosis
-from experiments.diagnosis_console import print_verdict
+from experiments.diagnosis_report.console import print_verdict
 from experiments.record import Record
 from experiments.record import main as record
 

@@ -20,11 +20,11 @@ from diagnosis.torque_drive import DriveBy
 from diagnosis.trace_reading import read_traces
 from diagnosis.verdict import Verdict
 from experiments.command_line import run_verb
-from experiments.diagnosis_console import print_verdict
-from experiments.diagnosis_overlay import write_overlay
-from experiments.diagnosis_report import write_report
-from experiments.diagnosis_report_facts import ReportFacts
-from experiments.diagnosis_report_series import ChannelSeries, ReportSeries
+from experiments.diagnosis_report.console import print_verdict
+from experiments.diagnosis_report.facts import ReportFacts
+from experiments.diagnosis_report.overlay import write_overlay
+from experiments.diagnosis_report.page import write_report
+from experiments.diagnosis_report.series import ChannelSeries, ReportSeries
 from experiments.report_origin import command_of
 from experiments.run_folder import PROVENANCE, RunFolder, check_free, to_plain
 from groundwalk.arrays import FloatArray

@@ -9,7 +9,7 @@ import tyro
 from diagnosis.search_result import Rules
 from experiments.command_line import run_verb
 from experiments.diagnose import Diagnose, run_diagnosis
-from experiments.diagnosis_console import print_verdict
+from experiments.diagnosis_report.console import print_verdict
 from experiments.real_robots_cases import ROBOTS, RealRobot
 from experiments.real_robots_page import write_real_page
 from experiments.report import REPORT

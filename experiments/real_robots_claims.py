@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from diagnosis.verdict import Estimate, Pulse, Verdict
-from experiments.diagnosis_report_numbers import estimate_text
-from experiments.diagnosis_report_pulses import pulse_sentences
+from experiments.diagnosis_report.numbers import estimate_text
+from experiments.diagnosis_report.pulses import pulse_sentences
 from experiments.real_robots_cases import Published, RealRobot
-from experiments.transfer_page import Claim
+from experiments.transfer.page import Claim
 
 TWICE, FIFTH = 2.0, 0.2
 

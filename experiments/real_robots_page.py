@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 from diagnosis.verdict import Found, Verdict
-from experiments.diagnosis_report_numbers import estimate_text, percent
-from experiments.diagnosis_report_text import BADGES, answer, next_step
+from experiments.diagnosis_report.numbers import estimate_text, percent
+from experiments.diagnosis_report.text import BADGES, answer, next_step
 from experiments.real_robots_cases import RealRobot
 from experiments.real_robots_claims import claims_of, sane_bounds
 from experiments.report import markdown_table
 from experiments.run_folder import RunFolder
-from experiments.transfer_page import write_transfer_page
+from experiments.transfer.page import write_transfer_page
 
 MUCH = 2.0
 """Times the noise: what is left above it is told."""

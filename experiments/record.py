@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from experiments.command_line import run_verb
-from experiments.concealed_motion import FLOATING_STEP_S, STEP_S, table_feed
+from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, table_feed
 from experiments.excitation import MOTIONS, Excitation
 from experiments.excitation_standing import (
     STANDING_MOTIONS,

@@ -34,9 +34,12 @@ def _program(path: Path) -> list[str]:
     """How this process was started; nothing if it was by other code than ours."""
     if path.name == "groundwalk":
         return ["groundwalk"]
-    if path.suffix == ".py" and path.parent == Path(__file__).parent:
-        ours = path.stem == "command_line"
-        return ["groundwalk"] if ours else ["python", "-m", f"experiments.{path.stem}"]
+    ours = Path(__file__).parent
+    if path.suffix == ".py" and path.is_relative_to(ours):
+        words = path.relative_to(ours.parent).with_suffix("").parts
+        module = ".".join(words).removesuffix(".__main__")
+        commands = module == "experiments.command_line"
+        return ["groundwalk"] if commands else ["python", "-m", module]
     return []
 
 

@@ -16,12 +16,12 @@ from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.run_options import RunOptions
 from experiments.score_table import print_json
-from experiments.terrain_stress_curves import curves_of
-from experiments.terrain_stress_families import FAMILIES, FLAT, Place, leg_length_m
-from experiments.terrain_stress_figure import draw_comparison, draw_heat_maps
-from experiments.terrain_stress_page import HALF_HEADINGS, half_rows, write_stress_page
-from experiments.terrain_stress_walks import walk_at
-from experiments.terrain_stress_worst import write_worst
+from experiments.stress.curves import curves_of
+from experiments.stress.families import FAMILIES, FLAT, Place, leg_length_m
+from experiments.stress.figure import draw_comparison, draw_heat_maps
+from experiments.stress.page import HALF_HEADINGS, half_rows, write_stress_page
+from experiments.stress.walks import walk_at
+from experiments.stress.worst import write_worst
 from experiments.text_table import print_table
 from groundwalk.errors import BadValueError, UnknownNameError
 from walk_engine import Gait

@@ -4,7 +4,7 @@ import pytest
 
 from diagnosis.effects.viscous_friction import ViscousFriction
 from diagnosis.library import EFFECTS, also_known, effect
-from experiments.diagnosis_report_words import effect_words
+from experiments.diagnosis_report.words import effect_words
 from groundwalk.errors import BadValueError, UnknownNameError
 
 

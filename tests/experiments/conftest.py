@@ -31,21 +31,21 @@ def in_this_process(monkeypatch):
 def short_walks(monkeypatch):
     """Walks of the NAO studies that end soon: where they lead to does not matter."""
     from experiments.evaluation import Study
-    from experiments.grounded_sim import walk_in_sim
-    from experiments.walk_data import walk
+    from experiments.grounded_walks.data import walk
+    from experiments.grounded_walks.sim import walk_in_sim
 
     def short_walk(place, robot, vectors, seed, exploration_rad=(0.0,), rules=SHORT):
         return walk(place, robot, vectors, seed, exploration_rad, rules)
 
     short = {
-        "walk_records.ON_COURSE": TO_THE_LUMPS,
-        "walk_records.walk": short_walk,
-        "walk_groundings.ON_COURSE": SHORT,
-        "walk_tuning.ON_COURSE": SHORT,
-        "walk_tuning.RATED": SHORT,
-        "transfer_nao_falls.walk": short_walk,
-        "transfer_nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
-        "transfer_nao_study.Study": partial(Study, rules=SHORT),
+        "grounded_walks.records.ON_COURSE": TO_THE_LUMPS,
+        "grounded_walks.records.walk": short_walk,
+        "grounded_walks.groundings.ON_COURSE": SHORT,
+        "grounded_walks.tuning.ON_COURSE": SHORT,
+        "grounded_walks.tuning.RATED": SHORT,
+        "transfer.nao_falls.walk": short_walk,
+        "transfer.nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
+        "transfer.nao_study.Study": partial(Study, rules=SHORT),
     }
     for name, value in short.items():
         monkeypatch.setattr(f"experiments.{name}", value)

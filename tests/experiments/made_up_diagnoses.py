@@ -16,8 +16,8 @@ from diagnosis.verdict import (
     Verdict,
     When,
 )
-from experiments.diagnosis_report_facts import ReportFacts
-from experiments.diagnosis_report_series import ChannelSeries, ReportSeries
+from experiments.diagnosis_report.facts import ReportFacts
+from experiments.diagnosis_report.series import ChannelSeries, ReportSeries
 
 JOINTS = (
     "LHipYawPitch", "LHipRoll", "LHipPitch", "LKneePitch", "LAnklePitch", "LAnkleRoll",

@@ -2,9 +2,9 @@
 
 from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import EffectAt, Estimate, Found, Unexplained, Verdict
-from experiments.concealed_score import DIAGNOSIS, score_of
-from experiments.concealed_score_oracle import Oracle
-from experiments.concealed_score_truth import TrueCase, Truth
+from experiments.concealed.score import DIAGNOSIS, score_of
+from experiments.concealed.score_oracle import Oracle
+from experiments.concealed.score_truth import TrueCase, Truth
 
 KNEE, HIP = "LKneePitch", "LHipPitch"
 DRY = EffectValues("coulomb_friction", KNEE, {"torque": 0.2})

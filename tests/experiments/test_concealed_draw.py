@@ -8,8 +8,8 @@ import pytest
 from diagnosis.library import EFFECTS
 from diagnosis.plant_sources import load_plant
 from diagnosis.trace_reading import trace_of
-from experiments.concealed_case import REFERENCES
-from experiments.concealed_draw import (
+from experiments.concealed.case import REFERENCES
+from experiments.concealed.draw import (
     APART,
     APART_ON_ONE_JOINT,
     APART_WITH_BACK_EMF,
@@ -18,8 +18,8 @@ from experiments.concealed_draw import (
     CaseSort,
     drawn_effects,
 )
-from experiments.concealed_motion import CaseMotion
-from experiments.concealed_places import spots
+from experiments.concealed.motion import CaseMotion
+from experiments.concealed.places import spots
 from worlds.hidden_effects import KINDS
 from worlds.hidden_run import run_hidden
 from worlds.hidden_scales import scales

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from experiments.concealed_information import (
+from experiments.concealed.information import (
     FAR,
     KEPT,
     LEAST_EASE,

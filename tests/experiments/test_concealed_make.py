@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from experiments import concealed_draw, concealed_make
-from experiments.concealed_draw import CASE_KINDS, PLANTS, CaseSort
-from experiments.concealed_make import ConcealedMake, main
-from experiments.concealed_motion import CaseMotion
+from experiments.concealed import draw as concealed_draw
+from experiments.concealed import make as concealed_make
+from experiments.concealed.draw import CASE_KINDS, PLANTS, CaseSort
+from experiments.concealed.make import ConcealedMake, main
+from experiments.concealed.motion import CaseMotion
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from worlds import read_recording
 from worlds.hidden_effects import KINDS
@@ -168,7 +169,7 @@ def test_sets_that_cannot_be_are_refused(tmp_path, options):
 
 
 def test_a_robot_that_always_falls_is_told(tmp_path, monkeypatch):
-    from experiments import concealed_case
+    from experiments.concealed import case as concealed_case
 
     monkeypatch.setattr(concealed_case._Maker, "run", lambda self: False)
     with pytest.raises(GroundwalkError, match="fell"):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.concealed_motion import table_feed
+from experiments.concealed.motion import table_feed
 from worlds.hidden_clock import Clock
 from worlds.hidden_effects import Hidden
 from worlds.hidden_plant import hidden_plant

@@ -8,9 +8,9 @@ from diagnosis.servo import Servo
 from diagnosis.split import split
 from diagnosis.trace import Trace
 from diagnosis.verdict import Verdict
-from experiments import concealed_run
-from experiments.concealed_run import ConcealedRun, answer_all, main
-from experiments.concealed_score_truth import read_baselines
+from experiments.concealed import run as concealed_run
+from experiments.concealed.run import ConcealedRun, answer_all, main
+from experiments.concealed.score_truth import read_baselines
 from groundwalk.errors import BadValueError, RunFolderError
 
 ANSWERS = "answers"

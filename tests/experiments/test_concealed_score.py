@@ -6,9 +6,9 @@ import json
 import pytest
 from made_up_scores import DRY, KNEE, NOTHING, RIGHT, case, found, names
 
-from experiments.concealed_score import ConcealedScore, main
-from experiments.concealed_score_oracle import Oracle, answer_key
-from experiments.concealed_score_truth import read_truth
+from experiments.concealed.score import ConcealedScore, main
+from experiments.concealed.score_oracle import Oracle, answer_key
+from experiments.concealed.score_truth import read_truth
 from groundwalk.errors import BadValueError, RunFolderError
 
 

@@ -19,7 +19,7 @@ from made_up_scores import (
 
 from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import EffectAt, Estimate, Fit, Found, Verdict
-from experiments.concealed_score_oracle import Oracle
+from experiments.concealed.score_oracle import Oracle
 from experiments.intervals import wilson
 
 # Names

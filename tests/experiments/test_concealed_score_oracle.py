@@ -8,14 +8,14 @@ import pytest
 
 from diagnosis.corrected_model import EffectValues
 from diagnosis.verdict import Estimate, Found
-from experiments.concealed_reading import read_case
-from experiments.concealed_score_oracle import (
+from experiments.concealed.reading import read_case
+from experiments.concealed.score_oracle import (
     Oracle,
     answer_key,
     consult,
     log_score_gain,
 )
-from experiments.concealed_score_truth import TrueCase
+from experiments.concealed.score_truth import TrueCase
 from groundwalk.errors import RunFolderError
 from worlds import Recording, RecordingMetadata, write_recording
 from worlds.recording_metadata import ServoGains

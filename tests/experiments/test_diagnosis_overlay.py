@@ -6,8 +6,8 @@ import pytest
 from rerun.chunk import RrdReader
 
 import robots
-from experiments.diagnosis_overlay import write_overlay
-from experiments.diagnosis_report_series import ChannelSeries
+from experiments.diagnosis_report.overlay import write_overlay
+from experiments.diagnosis_report.series import ChannelSeries
 from groundwalk.errors import BadValueError
 
 KNEE = f"/held_out/air_multisine_1/{made_up.WORST}"

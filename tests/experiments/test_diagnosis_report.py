@@ -15,7 +15,7 @@ from diagnosis.verdict import (
     MismatchCell,
     Verdict,
 )
-from experiments.diagnosis_report import write_report
+from experiments.diagnosis_report.page import write_report
 from groundwalk.errors import UnknownNameError
 
 VOID = {"meta", "br", "img"}

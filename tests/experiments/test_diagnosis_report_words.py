@@ -6,23 +6,23 @@ import numpy as np
 import pytest
 
 from diagnosis.verdict import Amount, ChannelFit, EffectAt, Estimate, Fit, Found, When
-from experiments.diagnosis_report_figures import CLOSE_UP_S, close_up
-from experiments.diagnosis_report_numbers import (
+from experiments.diagnosis_report.figures import CLOSE_UP_S, close_up
+from experiments.diagnosis_report.numbers import (
     amount_text,
     error_unit,
     errors_text,
     estimate_text,
     percent,
 )
-from experiments.diagnosis_report_places import at_words, channel_words, place_words
-from experiments.diagnosis_report_series import (
+from experiments.diagnosis_report.places import at_words, channel_words, place_words
+from experiments.diagnosis_report.series import (
     ChannelSeries,
     ReportSeries,
     by_error,
     rms,
 )
-from experiments.diagnosis_report_text import finding, findings
-from experiments.diagnosis_report_words import WORDS, effect_words
+from experiments.diagnosis_report.text import finding, findings
+from experiments.diagnosis_report.words import WORDS, effect_words
 from groundwalk.errors import BadValueError, UnknownNameError
 
 # Effects with their parameters, as the diagnosis' file format has them.

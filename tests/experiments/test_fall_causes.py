@@ -8,10 +8,10 @@ import pytest
 from built_falls import edge, flat, pushed, slope, strider, walk, weak
 
 import robots
-from experiments import fall_cause_events as events
-from experiments.fall_cause import Cause, fall_cause
-from experiments.fall_cause_signals import Signals
-from experiments.terrain_stress_families import leg_length_m
+from experiments.stress import fall_cause_events as events
+from experiments.stress.fall_cause import Cause, fall_cause
+from experiments.stress.fall_cause_signals import Signals
+from experiments.stress.families import leg_length_m
 from walk_engine import gaits
 
 ICE = 0.1

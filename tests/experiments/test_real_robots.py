@@ -5,9 +5,9 @@ from made_up_diagnoses import KINDS
 
 from diagnosis.verdict import Estimate, Found, Pulse, Recordings
 from experiments import real_robots
-from experiments.diagnosis_console import console_lines
-from experiments.diagnosis_report_text import answer
-from experiments.diagnosis_report_words import WORDS
+from experiments.diagnosis_report.console import console_lines
+from experiments.diagnosis_report.text import answer
+from experiments.diagnosis_report.words import WORDS
 from experiments.real_robots import RealRobots, main
 from experiments.real_robots_cases import ROBOTS, Published, RealRobot, Sane
 from experiments.real_robots_claims import claims_of

@@ -19,9 +19,9 @@ from experiments.report_origin import Origin
 from experiments.result_page import score_answer, write_page
 from experiments.run_folder import RunFolder
 from experiments.search_figure import draw_search
-from experiments.transfer_nao import TransferNao
-from experiments.transfer_nao_page import answer_of
-from experiments.transfer_page import Claim, claims_answer, write_transfer_page
+from experiments.transfer.nao import TransferNao
+from experiments.transfer.nao_page import answer_of
+from experiments.transfer.page import Claim, claims_answer, write_transfer_page
 from groundwalk.errors import RunFolderError
 from walk_engine import gaits
 
@@ -230,6 +230,8 @@ def test_from_python_the_command_has_what_is_no_default(verb, config, command):
         ("bin/groundwalk", "groundwalk"),
         ("experiments/command_line.py", "groundwalk"),
         ("experiments/evaluate.py", "python -m experiments.evaluate"),
+        ("experiments/transfer/nao.py", "python -m experiments.transfer.nao"),
+        ("experiments/transfer/__main__.py", "python -m experiments.transfer"),
     ],
 )
 def test_a_process_of_our_own_says_how_it_was_started(monkeypatch, started, program):

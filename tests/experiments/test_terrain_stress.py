@@ -10,14 +10,14 @@ import robots
 import terrain
 import worlds
 from experiments.run_folder import HISTORY, RESULT, RunFolder
-from experiments.terrain_stress import TerrainStress, main
-from experiments.terrain_stress_families import (
+from experiments.stress.families import (
     FAMILIES,
     FLAT,
     Place,
     leg_length_m,
 )
-from experiments.terrain_stress_walks import rules_of, walk_at
+from experiments.stress.walks import rules_of, walk_at
+from experiments.terrain_stress import TerrainStress, main
 from groundwalk.errors import BadValueError, UnknownNameError
 from walk_engine import gaits
 

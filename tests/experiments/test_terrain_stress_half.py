@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from experiments.terrain_stress_half import half_fall
+from experiments.stress.half import half_fall
 from groundwalk.errors import BadValueError
 
 LADDER = np.geomspace(0.002, 0.032, 5)

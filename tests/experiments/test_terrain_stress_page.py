@@ -1,15 +1,15 @@
 import pytest
 
-from experiments.terrain_stress_curves import curves_of
-from experiments.terrain_stress_figure import comparison_figure, heat_map_figure
-from experiments.terrain_stress_page import (
+from experiments.stress.curves import curves_of
+from experiments.stress.figure import comparison_figure, heat_map_figure
+from experiments.stress.page import (
     cause_rows,
     cell_rows,
     half_rows,
     stress_answer,
 )
-from experiments.terrain_stress_words import half_text, severity_text
-from experiments.terrain_stress_worst import worst_falls
+from experiments.stress.words import half_text, severity_text
+from experiments.stress.worst import worst_falls
 
 
 def trial(gait, number, distance_m, cause=""):

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from experiments import transfer_cliff
-from experiments.transfer_cliff import TransferCliff, main
-from experiments.transfer_cliff_claims import check_claims
-from experiments.transfer_cliff_figure import cliff_figure
-from experiments.transfer_cliff_grid import MOVES, cliff_walking, intended_path
+from experiments.transfer import cliff as transfer_cliff
+from experiments.transfer.cliff import TransferCliff, main
+from experiments.transfer.cliff_claims import check_claims
+from experiments.transfer.cliff_figure import cliff_figure
+from experiments.transfer.cliff_grid import MOVES, cliff_walking, intended_path
 from groundwalk.errors import BadValueError
 from sgat.tabular_planning import expected_return, policy_iteration
 

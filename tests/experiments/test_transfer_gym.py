@@ -5,16 +5,14 @@ import json
 import pytest
 from matplotlib.image import imread
 
-from experiments import (
-    transfer_gym,
-    transfer_half_cheetah,
-    transfer_inverted_pendulum,
-)
-from experiments.transfer_gym_figure import returns_figure
-from experiments.transfer_gym_rows import check_claims, rows_of
-from experiments.transfer_gym_study import METHODS
-from experiments.transfer_half_cheetah import TransferHalfCheetah
-from experiments.transfer_inverted_pendulum import TransferInvertedPendulum
+from experiments.transfer import gym as transfer_gym
+from experiments.transfer import half_cheetah as transfer_half_cheetah
+from experiments.transfer import inverted_pendulum as transfer_inverted_pendulum
+from experiments.transfer.gym_figure import returns_figure
+from experiments.transfer.gym_rows import check_claims, rows_of
+from experiments.transfer.gym_study import METHODS
+from experiments.transfer.half_cheetah import TransferHalfCheetah
+from experiments.transfer.inverted_pendulum import TransferInvertedPendulum
 from groundwalk.errors import BadValueError, UnknownNameError
 
 

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from experiments.transfer_gym_environments import (
+from experiments.transfer.gym_environments import (
     HALF_CHEETAH,
     INVERTED_PENDULUM,
     NOISY_REAL,

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from experiments.transfer_gym_grounding import STRETCH, in_stretches, noise_ratio
+from experiments.transfer.gym_grounding import STRETCH, in_stretches, noise_ratio
 from sgat.action_transformer import ActionTransformer
 from sgat.forward_config import ForwardConfig
 from sgat.forward_model import ForwardModel

@@ -7,22 +7,28 @@ import scipy.stats
 
 import robots
 from diagnosis.corrected_sim import CorrectedSim
+from experiments.grounded_walks.data import FLAT_TICKS, GaitCloud, on_lumps
+from experiments.grounded_walks.groundings import GAT, NONE, SGAT, UNEVEN
+from experiments.grounded_walks.places import (
+    LUMPS_M,
+    Places,
+    RealCourse,
+    SimPlace,
+    world_at,
+)
+from experiments.grounded_walks.records import RealWalks
+from experiments.grounded_walks.tuning import Grounding
 from experiments.run_folder import HISTORY, RunFolder
-from experiments.transfer_nao import TransferNao, main
-from experiments.transfer_nao_figure import cells_figure
-from experiments.transfer_nao_page import (
+from experiments.transfer.nao import TransferNao, main
+from experiments.transfer.nao_figure import cells_figure
+from experiments.transfer.nao_page import (
     DIAGNOSED_SIM,
     claims_of,
     faster_p,
     more_falls_p,
     table_of,
 )
-from experiments.transfer_nao_study import START
-from experiments.walk_data import FLAT_TICKS, GaitCloud, on_lumps
-from experiments.walk_groundings import GAT, NONE, SGAT, UNEVEN
-from experiments.walk_places import LUMPS_M, Places, RealCourse, SimPlace, world_at
-from experiments.walk_records import RealWalks
-from experiments.walk_tuning import Grounding
+from experiments.transfer.nao_study import START
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transitions import Transitions
 from walk_engine import gaits

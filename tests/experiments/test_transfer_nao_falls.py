@@ -3,18 +3,18 @@ import json
 import numpy as np
 import pytest
 
+from experiments.grounded_walks.data import GaitCloud
+from experiments.grounded_walks.groundings import GAT, GROUNDINGS, NONE, SGAT, UNEVEN
 from experiments.run_folder import HISTORY, RunFolder
-from experiments.transfer_nao_falls import TransferNaoFalls, main
-from experiments.transfer_nao_falls_figure import FIGURE
-from experiments.transfer_nao_falls_measures import MEASURES_FIGURE
-from experiments.transfer_nao_falls_page import (
+from experiments.transfer.nao_falls import TransferNaoFalls, main
+from experiments.transfer.nao_falls_figure import FIGURE
+from experiments.transfer.nao_falls_measures import MEASURES_FIGURE
+from experiments.transfer.nao_falls_page import (
     MEASURES,
     correlation,
     correlation_interval,
     prediction_rows,
 )
-from experiments.walk_data import GaitCloud
-from experiments.walk_groundings import GAT, GROUNDINGS, NONE, SGAT, UNEVEN
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 from walk_engine.gait import NAMES

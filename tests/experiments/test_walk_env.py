@@ -16,12 +16,12 @@ from stable_baselines3.common.env_checker import check_env as check_for_learners
 import robots
 import terrain
 import worlds
+from experiments.grounded_walks.groundings import action_envelope
 from experiments.reward import reward_cm_s
 from experiments.trials import TrialRules, walk_trials
-from experiments.walk_env import WalkEnv
-from experiments.walk_env_ids import IDS, register_envs
-from experiments.walk_env_world import episode_seeds
-from experiments.walk_groundings import action_envelope
+from experiments.walk_env.env import WalkEnv
+from experiments.walk_env.ids import IDS, register_envs
+from experiments.walk_env.world import episode_seeds
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.action_transformer import ActionTransformer
 from sgat.forward_config import ForwardConfig
@@ -194,9 +194,9 @@ def test_a_step_needs_a_reset():
 def test_the_sim_needs_no_torch_and_names_need_no_environment():
     code = """
 import sys
-from experiments.walk_env_ids import register_envs
+from experiments.walk_env.ids import register_envs
 register_envs()
-assert "experiments.walk_env" not in sys.modules
+assert "experiments.walk_env.env" not in sys.modules
 import gymnasium
 gymnasium.make("Groundwalk/Nao-Sim-v0")
 assert "torch" not in sys.modules

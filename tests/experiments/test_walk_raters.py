@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from experiments.grounded_sim import GroundedSim
-from experiments.walk_raters import (
+from experiments.grounded_walks.raters import (
     GroundedRater,
     RandomisedRater,
 )
+from experiments.grounded_walks.sim import GroundedSim
 from walk_engine import gaits
 
 SEED = np.random.SeedSequence(4)

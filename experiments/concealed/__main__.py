@@ -1,0 +1,8 @@
+"""`groundwalk concealed` as a script."""
+
+import sys
+
+from experiments.command_line import choose
+from experiments.concealed import STUDIES
+
+choose(STUDIES, "groundwalk concealed", sys.argv[1:], "study")

@@ -1,0 +1,220 @@
+"""Makes one concealed case: draws it, lets it move, writes recordings and truth."""
+
+import json
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from experiments.concealed.draw import (
+    CaseSort,
+    Concealed,
+    drawn_effects,
+    drawn_sensors,
+)
+from experiments.concealed.information import drawn_nats, ease_that_tells, nats
+from experiments.concealed.motion import CaseMotion
+from experiments.concealed.reading import PLANT_FILE, RECORDINGS, REFERENCE
+from groundwalk.errors import GroundwalkError
+from groundwalk.files import write_text
+from worlds.hidden_effects import Hidden
+from worlds.hidden_run import Run, run_hidden
+from worlds.hidden_scales import Scales, scales
+from worlds.hidden_sensors import HiddenSensors, hidden_recording
+from worlds.recording_files import write_recording
+from worlds.recording_metadata import RecordingMetadata
+
+REFERENCES = (0, 2)
+_SCALE_STEP_S = 0.0005
+_ATTEMPTS = 30
+_SOURCE = "groundwalk concealed"
+
+
+def case_name(number: int) -> str:
+    """The name of a case's folder."""
+    return f"case_{number:03d}"
+
+
+def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
+    """Make one case, all at once: first its truth, then its folder.
+
+    Args:
+      cases: folder of the cases.
+      truths: folder of sealed parts; gets `case_000.json` and the like.
+      seed: of the set.
+      number: of the case.
+
+    Raises:
+      GroundwalkError: whatever was drawn, the robot fell or nothing could be told.
+    """
+    for attempt in range(_ATTEMPTS):
+        maker = _Maker(seed, number, attempt)
+        if maker.run():
+            break
+    else:
+        raise GroundwalkError(
+            f"case {number} of seed {seed}: every attempt fell, or told too little"
+        )
+    name = case_name(number)
+    unfinished = cases / f".{name}.partial"
+    shutil.rmtree(unfinished, ignore_errors=True)
+    maker.write(unfinished)
+    write_text(truths / f"{name}.json", json.dumps(maker.truth(), indent=1) + "\n")
+    unfinished.rename(cases / name)
+
+
+@dataclass(frozen=True, eq=False)
+class _Made:
+    """A run and how it was set up."""
+
+    motion: int
+    run: Run
+    effects: Sequence[Hidden]
+
+
+class _Maker:
+    """One attempt at a case. The sort of case is the same in every attempt."""
+
+    def __init__(self, seed: int, number: int, attempt: int) -> None:
+        # Lists of numbers, not spawned children: a case knows nothing of the others.
+        def rng(part: int) -> np.random.Generator:
+            return np.random.default_rng([seed, number, attempt, part])
+
+        self._sort = CaseSort.drawn(np.random.default_rng([seed, number]))
+        self._noise = rng(0)
+        self._ground = np.random.SeedSequence([seed, number, attempt, 1])
+        self._drawing = partial(rng, 2)
+        self._nats = drawn_nats(rng(5))
+        sensors, jitter_s = drawn_sensors(self._sort.kind, rng(3))
+        self._sensors: HiddenSensors = sensors
+        self._motion = CaseMotion.drawn(
+            self._sort.plant, self._sort.kind == "unexcited", jitter_s, rng(4)
+        )
+        self._reference: list[_Made] = []
+        self._runs: list[_Made] = []
+        self._hidden: Concealed | None = None
+
+    def run(self) -> bool:
+        """Compute everything; False if the robot fell, or no size tells as drawn."""
+        motion = self._motion
+        engine = self._sort.engine
+        if motion.plant.floating:
+            self._reference = [self._move(number, (), engine) for number in REFERENCES]
+            nominal = [made.run for made in self._reference]
+        else:
+            nominal = [self._move(0, (), "mujoco", _SCALE_STEP_S).run]
+        if not all(run.ok for run in nominal):
+            return False
+        self._hidden = self._concealed(scales(motion.plants[0], nominal))
+        if self._hidden is None:
+            return False
+        for number in range(len(motion.names)):
+            made = self._move(number, self._hidden.effects, engine)
+            self._runs.append(made)
+            if not made.run.ok:
+                return False
+        return True
+
+    def _concealed(self, does: Scales) -> Concealed | None:
+        """What is hidden; one effect on a fixed base tells as much as was drawn.
+
+        On feet two runs part by chance, whatever is hidden: there sizes are drawn.
+        """
+        motion = self._motion
+
+        def drawn(ease: float | None = None) -> Concealed:
+            return drawn_effects(
+                self._sort,
+                motion.plant,
+                does,
+                motion.places,
+                motion.duration_s,
+                self._drawing(),
+                ease,
+            )
+
+        if self._sort.kind != "single" or motion.plant.floating:
+            return drawn()
+        nominal = self._trials(())
+        ease = ease_that_tells(
+            self._nats,
+            lambda one: nats(nominal, self._trials(drawn(one).effects), self._sensors),
+            drawn().ease,
+        )
+        return None if ease is None else drawn(ease)
+
+    def _trials(self, effects: Sequence[Hidden]) -> list[Run]:
+        """All recordings' runs, in steps that are good enough to size effects."""
+        return [
+            self._move(number, effects, self._sort.engine, _SCALE_STEP_S).run
+            for number in range(len(self._motion.names))
+        ]
+
+    def _move(
+        self,
+        number: int,
+        effects: Sequence[Hidden],
+        engine: str,
+        step_s: float | None = None,
+    ) -> _Made:
+        motion = self._motion
+        start_rad, feed = motion.feed(number)
+        plant = motion.plants[number]
+        clock = motion.clock(number, step_s)
+        run = run_hidden(plant, effects, engine, clock, feed, start_rad, self._ground)
+        return _Made(number, run, effects)
+
+    def write(self, folder: Path) -> None:
+        """Nominal model and recordings."""
+        plant = self._motion.plant
+        robot = plant.name
+        if plant.file is not None:
+            robot, text = plant.file
+            write_text(folder / robot, text)
+        base = "floating" if plant.floating else "fixed"
+        content = json.dumps({"robot": robot, "base": base}, indent=1)
+        write_text(folder / PLANT_FILE, content + "\n")
+        for made in self._runs:
+            self._write(folder / RECORDINGS, made, robot, base)
+        for made in self._reference:
+            self._write(folder / REFERENCE, made, robot, base)
+
+    def _write(self, folder: Path, made: _Made, robot: str, base: str) -> None:
+        plant = self._motion.plants[made.motion]
+        metadata = RecordingMetadata(robot, base, _SOURCE, servo=plant.servo)
+        recording = hidden_recording(
+            plant, made.run, made.effects, self._sensors, self._noise, metadata
+        )
+        name = f"{made.motion}_{self._motion.names[made.motion]}.parquet"
+        write_recording(recording, folder / name)
+
+    def truth(self) -> dict[str, Any]:
+        """What the sealed file says of the case."""
+        hidden = self._hidden
+        if hidden is None:
+            raise GroundwalkError("the case has not been run")
+        return {
+            "plant": self._sort.plant,
+            "engine": self._sort.engine,
+            "kind": self._sort.kind,
+            "effects": [
+                {
+                    "name": effect.name,
+                    "place": effect.place,
+                    "parameters": dict(effect.parameters),
+                }
+                for effect in hidden.effects
+            ],
+            "size": hidden.ease if hidden.effects else None,
+            "held": [
+                joint
+                for joint, moves in zip(
+                    self._motion.plant.joints, self._motion.moves, strict=True
+                )
+                if not moves
+            ],
+        }

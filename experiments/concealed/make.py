@@ -1,0 +1,126 @@
+"""`groundwalk concealed make`: draw cases, write recordings, seal the truth.
+
+How cases are drawn, such that their truth can be told: `experiments.concealed.draw`,
+`experiments.concealed.places`, `experiments.concealed.motion`; docs/concealed.md.
+"""
+
+import hashlib
+import json
+import multiprocessing
+import os
+import shutil
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from experiments.command_line import run_verb
+from experiments.concealed.case import case_name, make_case
+from experiments.progress import progress
+from groundwalk.errors import BadValueError, RunFolderError
+from groundwalk.files import write_text
+
+CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"
+FORMAT = 1
+_PARTS, _SET = "parts", "set.json"
+_MOST_CASES = 1000
+
+
+@dataclass(frozen=True)
+class ConcealedMake:
+    """Draw cases with hidden physics; the truth goes into a sealed file.
+
+    Attributes:
+      folder: where the set is made; one that was begun is finished.
+      cases: how many.
+      seed: every case follows from it and its own number.
+      threads: processes; 0 for one per core.
+    """
+
+    folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
+    cases: int = 200
+    seed: int = 1
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse sets that cannot be."""
+        if not 1 <= self.cases <= _MOST_CASES:
+            raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
+        for name in ("seed", "threads"):
+            value = getattr(self, name)
+            if value < 0:
+                raise BadValueError(f"{name} is {value}; it must not be negative")
+
+
+def main(config: ConcealedMake) -> None:
+    """Make what is missing of the set, and print the hash of its truth."""
+    sealed = config.folder / SEALED
+    _open(config)
+    if not (config.folder / HASH).exists():
+        _make_all(config, sealed / _PARTS)
+        _seal(config)
+    print(f"{(config.folder / HASH).read_text().split()[0]}  {sealed / TRUTH}")
+
+
+def _open(config: ConcealedMake) -> None:
+    """Begin a set, or find that the folder holds this very one."""
+    asked = {"format": FORMAT, "seed": config.seed, "cases": config.cases}
+    path = config.folder / SEALED / _SET
+    if path.exists():
+        there = json.loads(path.read_text())
+        if there != asked:
+            raise RunFolderError(
+                f"{config.folder} holds another set ({there}); choose another folder"
+            )
+    elif config.folder.exists() and any(config.folder.iterdir()):
+        raise RunFolderError(f"{config.folder} is not empty, and holds no set of cases")
+    else:
+        write_text(path, json.dumps(asked) + "\n")
+
+
+def _make_all(config: ConcealedMake, parts: Path) -> None:
+    """Make the cases that are not there yet; each depends on (seed, number) alone."""
+    cases = config.folder / CASES
+    cases.mkdir(parents=True, exist_ok=True)
+    missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
+    done = config.cases - len(missing)
+    workers = min(config.threads or os.cpu_count() or 1, max(len(missing), 1))
+    with progress("cases", config.cases, done) as task:
+        if workers == 1:
+            for number in missing:
+                make_case(cases, parts, config.seed, number)
+                task.advance()
+            return
+        # PyBullet and MuJoCo keep state of their own: no forked copies of it.
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            futures = [
+                pool.submit(make_case, cases, parts, config.seed, number)
+                for number in missing
+            ]
+            for future in as_completed(futures):
+                future.result()
+                task.advance()
+
+
+def _seal(config: ConcealedMake) -> None:
+    """All truths in one file, and its hash beside the folder that nobody opens."""
+    sealed = config.folder / SEALED
+    names = [case_name(i) for i in range(config.cases)]
+    parts = {name: sealed / _PARTS / f"{name}.json" for name in names}
+    truth = {
+        "format": FORMAT,
+        "seed": config.seed,
+        "cases": {name: json.loads(path.read_text()) for name, path in parts.items()},
+    }
+    content = json.dumps(truth, indent=1) + "\n"
+    write_text(sealed / TRUTH, content)
+    digest = hashlib.sha256(content.encode()).hexdigest()
+    write_text(config.folder / HASH, f"{digest}  {SEALED}/{TRUTH}\n")
+    shutil.rmtree(sealed / _PARTS)
+
+
+if __name__ == "__main__":
+    run_verb(ConcealedMake, main)

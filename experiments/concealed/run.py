@@ -1,0 +1,157 @@
+"""`groundwalk concealed run`: answer every case without looking at its truth."""
+
+import multiprocessing
+import os
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import tyro
+
+from diagnosis.baselines import BASELINES
+from diagnosis.diagnose import diagnose
+from diagnosis.split import split
+from diagnosis.verdict import Verdict
+from experiments.command_line import run_verb
+from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, read_case
+from experiments.progress import progress
+from experiments.repeat_command import repeat_command
+from experiments.run_folder import PROVENANCE, RunFolder, provenance
+from groundwalk.blas import one_blas_thread
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from groundwalk.files import write_text
+
+VERB = "concealed-run"
+CASES = "cases"
+
+
+@dataclass(frozen=True)
+class ConcealedRun:
+    """Diagnose the cases of a set; cases with an answer are not diagnosed again.
+
+    Attributes:
+      folder: the set.
+      by: what answers: the diagnosis, or one of the baselines it is compared with.
+      seed: every random number follows from it and the case's name.
+      threads: cases at a time, each in a process of its own; 0 for one per core.
+    """
+
+    folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
+    by: Literal["diagnosis", "sysid", "bic", "sparse"] = "diagnosis"
+    seed: int = 1
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no set."""
+        if not (self.folder / CASES).is_dir():
+            raise RunFolderError(f"{self.folder} holds no {CASES}: make them first")
+        if self.seed < 0 or self.threads < 0:
+            raise BadValueError("seed and threads must not be negative")
+
+
+def main(config: ConcealedRun) -> None:
+    """Answer what has no answer yet, and note the code that does."""
+    kind, answer = ANSWERS, diagnosed
+    if config.by != "diagnosis":
+        kind, answer = (
+            f"{BASELINE_ANSWERS}/{config.by}",
+            partial(by_baseline, config.by),
+        )
+    if not unanswered(config.folder, kind):
+        return
+    answers = RunFolder(config.folder / kind)
+    if answers.has(PROVENANCE):
+        answers.note_resumed()
+    else:
+        command = {"command": repeat_command(VERB, config)}
+        answers.write_json(PROVENANCE, command | provenance())
+    answer_all(config.folder, kind, answer, config.seed, config.threads)
+
+
+def unanswered(folder: Path, kind: str) -> list[Path]:
+    """The cases of a set that have no answer of a kind yet."""
+    return [case for case in cases_of(folder) if not _path(folder, kind, case).exists()]
+
+
+def cases_of(folder: Path) -> list[Path]:
+    """The folders of all cases of a set."""
+    return sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
+
+
+Answer = Callable[[Path, int], Verdict]
+"""The verdict on a case's folder, with a seed."""
+
+
+def answer_all(
+    folder: Path, kind: str, answer: Answer, seed: int, threads: int
+) -> None:
+    """Write the missing answers of a kind; a case that fails does not stop the others.
+
+    Args:
+      folder: the set.
+      kind: subfolder for the answers.
+      answer: a function of a module, so that processes find it.
+      seed: of every case.
+      threads: processes; 0 for one per core.
+
+    Raises:
+      Exception: what the first case that failed has raised, once all others are done.
+    """
+    missing = unanswered(folder, kind)
+    context = multiprocessing.get_context("spawn")
+    workers = threads or os.cpu_count() or 1
+    total = len(cases_of(folder))
+    with (
+        progress("cases diagnosed", total, done=total - len(missing)) as bar,
+        ProcessPoolExecutor(workers, mp_context=context) as pool,
+    ):
+        asked = {pool.submit(answer, case, seed): case for case in missing}
+        failures: dict[str, BaseException] = {}
+        try:
+            for future in as_completed(asked):
+                case = asked[future]
+                failure = future.exception()
+                if failure is None:
+                    write_text(_path(folder, kind, case), future.result().to_json())
+                    bar.advance(case.name)
+                else:
+                    failures[case.name] = failure
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    for name, failure in failures.items():
+        failure.add_note(f"in {name}; without an answer: {', '.join(failures)}")
+        raise failure
+
+
+def diagnosed(case: Path, seed: int) -> Verdict:
+    """The diagnosis' own verdict; recordings that it refuses are not identifiable."""
+    own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
+    try:
+        plant, traces, reference = read_case(case)
+        return diagnose(plant, traces, own, reference=reference).verdict
+    except BadRecordingError as error:
+        return Verdict(kind="not_identifiable", limits=(str(error),))
+
+
+@one_blas_thread
+def by_baseline(name: str, case: Path, seed: int) -> Verdict:
+    """A baseline's verdict, from what a diagnosis learns from; none uses the seed."""
+    try:
+        plant, traces, _ = read_case(case)
+        parts = split(traces)
+        return BASELINES[name](plant, [*parts.fit, *parts.select])
+    except BadRecordingError as error:
+        return Verdict(kind="not_identifiable", limits=(str(error),))
+
+
+def _path(folder: Path, kind: str, case: Path) -> Path:
+    return folder / kind / f"{case.name}.json"
+
+
+if __name__ == "__main__":
+    run_verb(ConcealedRun, main)

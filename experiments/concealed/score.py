@@ -1,0 +1,205 @@
+"""`groundwalk concealed score`: open the sealed truth and count what was right."""
+
+import json
+import multiprocessing
+import os
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import tyro
+
+from diagnosis.verdict import Found, Verdict
+from experiments.command_line import run_verb
+from experiments.concealed.make import CASES
+from experiments.concealed.reading import ANSWERS
+from experiments.concealed.score_figure import draw_score
+from experiments.concealed.score_marks import NAMED_KINDS, mark
+from experiments.concealed.score_measures import measures
+from experiments.concealed.score_oracle import Oracle, answer_key, consult
+from experiments.concealed.score_page import score_report, score_rows
+from experiments.concealed.score_truth import (
+    TrueCase,
+    Truth,
+    read_answers,
+    read_baselines,
+    read_truth,
+)
+from experiments.progress import progress
+from experiments.repeat_command import repeat_command
+from experiments.report_origin import Origin
+from experiments.run_folder import PROVENANCE, RunFolder, provenance
+from experiments.text_table import print_table
+from groundwalk.errors import BadValueError
+from groundwalk.files import write_text
+
+VERB = "concealed-score"
+FORMAT = 1
+DIAGNOSIS = "diagnosis"
+ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
+Answers = Mapping[str, Mapping[str, Verdict]]
+"""By method and case."""
+
+
+@dataclass(frozen=True)
+class ConcealedScore:
+    """Open the sealed truth of a set of cases and score all answers to it.
+
+    Attributes:
+      folder: with cases, sealed truth and answers; gets score.json, .md, .png and
+        report.html.
+      threads: processes that fit the true structures; 0 for one per core.
+    """
+
+    folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse fewer threads than none."""
+        if self.threads < 0:
+            raise BadValueError(
+                f"threads is {self.threads}; it must be 0 (one per core) or more"
+            )
+
+
+def main(config: ConcealedScore) -> None:
+    """Score the answers of the diagnosis and of every baseline that answered."""
+    folder = config.folder
+    truth = read_truth(folder)
+    names = [case.name for case in truth.cases]
+    answers = {
+        DIAGNOSIS: read_answers(folder / ANSWERS, names),
+        **read_baselines(folder, names),
+    }
+    oracles = consult_all(folder, truth.cases, answers, config.threads)
+    score = score_of(truth, answers, oracles)
+    command = {"command": repeat_command(VERB, config)}
+    score["provenance"] = command | provenance()
+    score["answered_by"] = _code_that_answered(folder)
+    write_text(folder / SCORE, json.dumps(score, indent=1) + "\n")
+    draw_score(score, folder / FIGURE)
+    score_report(score, FIGURE).write(folder, PAGE)
+    print_table(*score_rows(score))
+    if score["missing"]:
+        print(f"without an answer, counted as wrong: {', '.join(score['missing'])}")
+
+
+def score_of(
+    truth: Truth, answers: Answers, oracles: Mapping[str, Oracle]
+) -> dict[str, Any]:
+    """All figures of all methods, as score.json has them.
+
+    Args:
+      truth: of the set.
+      answers: those of `DIAGNOSIS`, and of baselines.
+      oracles: by case, where something of the library is to be found.
+    """
+    figures = {
+        method: measures(
+            [
+                mark(case, verdicts.get(case.name), oracles.get(case.name), method)
+                for case in truth.cases
+            ],
+            truth.seed,
+        )
+        for method, verdicts in answers.items()
+    }
+    missing = {
+        method: [case.name for case in truth.cases if case.name not in verdicts]
+        for method, verdicts in answers.items()
+    }
+    levels = {name: oracle.level for name, oracle in oracles.items()}
+    return {
+        "format": FORMAT,
+        "seed": truth.seed,
+        "truth_sha256": truth.sha256,
+        "cases": len(truth.cases),
+        "levels": levels,
+        "missing": missing[DIAGNOSIS],
+        **figures[DIAGNOSIS],
+        "baselines": {
+            method: {"missing": missing[method], **each}
+            for method, each in figures.items()
+            if method != DIAGNOSIS
+        },
+    }
+
+
+def _code_that_answered(folder: Path) -> str | None:
+    """The commit of the diagnosis; None if nobody noted it."""
+    answers = RunFolder(folder / ANSWERS)
+    if not answers.has(PROVENANCE):
+        return None
+    return Origin.of(answers.read_json(PROVENANCE), {}).commit
+
+
+def consult_all(
+    folder: Path, cases: Sequence[TrueCase], answers: Answers, threads: int
+) -> dict[str, Oracle]:
+    """The oracles of all cases that need one; what was computed before is kept.
+
+    Args:
+      folder: of the set; they are kept in its `oracle`.
+      cases: the truth.
+      answers: whose effects are replayed beside the oracle's.
+      threads: processes; 0 for one per core.
+    """
+    asked = [case for case in cases if case.kind in NAMED_KINDS]
+    found = {case.name: _kept(folder, case.name, answers) for case in asked}
+    oracles = {name: oracle for name, oracle in found.items() if oracle}
+    missing = [case for case in asked if case.name not in oracles]
+    if not missing:
+        return oracles
+    workers = min(threads or os.cpu_count() or 1, len(missing))
+    context = multiprocessing.get_context("spawn")
+    with (
+        progress("true structures", len(asked), len(oracles)) as task,
+        ProcessPoolExecutor(workers, mp_context=context) as pool,
+    ):
+        futures = {
+            pool.submit(_consult, folder, case, _effects(answers, case.name)): case.name
+            for case in missing
+        }
+        for future in as_completed(futures):
+            oracles[futures[future]] = future.result()
+            task.advance(oracles[futures[future]].level)
+    return oracles
+
+
+def _consult(
+    folder: Path, case: TrueCase, found: Mapping[str, Sequence[Found]]
+) -> Oracle:
+    """One oracle; kept at once, whatever becomes of the others."""
+    oracle = consult(folder / CASES / case.name, case, found)
+    write_text(_path(folder, case.name), oracle.to_json())
+    return oracle
+
+
+def _path(folder: Path, name: str) -> Path:
+    return folder / ORACLE / f"{name}.json"
+
+
+def _kept(folder: Path, name: str, answers: Answers) -> Oracle | None:
+    """An oracle that was computed beside these very answers."""
+    path = _path(folder, name)
+    if not path.is_file():
+        return None
+    oracle = Oracle.from_json(path.read_text())
+    asked = _effects(answers, name)
+    keys = {method: answer_key(found) for method, found in asked.items()}
+    known = {method: key for method, (key, _) in oracle.answered.items()}
+    return oracle if all(known.get(m) == key for m, key in keys.items()) else None
+
+
+def _effects(answers: Answers, name: str) -> dict[str, tuple[Found, ...]]:
+    return {
+        method: verdicts[name].effects
+        for method, verdicts in answers.items()
+        if name in verdicts
+    }
+
+
+if __name__ == "__main__":
+    run_verb(ConcealedScore, main)

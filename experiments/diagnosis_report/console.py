@@ -1,0 +1,149 @@
+"""A diagnosis in ten lines or fewer."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from diagnosis.verdict import EffectAt, Fit, Found, Verdict
+from experiments.diagnosis_report.numbers import amount_text, errors_text, percent
+from experiments.diagnosis_report.places import at_words, choice, listing
+from experiments.diagnosis_report.pulses import pulse_sentences
+from experiments.diagnosis_report.text import (
+    BADGES,
+    at_many,
+    doubts,
+    headline,
+    next_step,
+    parameter_rows,
+    told_together,
+)
+
+_SHOWN_AMOUNTS = 3
+_MOST_FOUND = 3
+"""Lines about what was found, pulses among them."""
+_MOST_UNSURE = 2
+
+
+def print_verdict(verdict: Verdict, files: Sequence[Path]) -> None:
+    """Print a verdict on standard output, on a terminal with some weight.
+
+    Args:
+      verdict: of the diagnosis.
+      files: what was written, the most useful first.
+    """
+    lines = console_lines(verdict, files)
+    if not sys.stdout.isatty():
+        print(*(f"{label:<12}{text}" for label, text in lines), sep="\n")
+        return
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table.grid(padding=(0, 2))
+    for row, (label, text) in enumerate(lines):
+        shown = escape(text)
+        table.add_row(f"[dim]{label}[/]", shown if row else f"[bold]{shown}[/]")
+    Console().print(table)
+
+
+def console_lines(verdict: Verdict, files: Sequence[Path]) -> list[tuple[str, str]]:
+    """At most ten lines, each with a word on what it is about.
+
+    Args:
+      verdict: of the diagnosis.
+      files: what was written.
+    """
+    lines = [
+        ("verdict", _verdict(verdict)),
+        *_all_found(verdict),
+        *_errors(verdict),
+        ("doubt", _doubt(verdict)),
+        ("next", next_step(verdict)),
+        ("limits", _limits(verdict)),
+        ("files", " ".join(map(str, files))),
+    ]
+    return [(label, text) for label, text in lines if text]
+
+
+def _verdict(verdict: Verdict) -> str:
+    """The kind, with what belongs to it."""
+    badge, rest = BADGES[verdict.kind], verdict.unexplained
+    if verdict.kind == "unknown" and rest is not None:
+        return (
+            f"{badge}: {percent(rest.share)} of the squared error above the noise is "
+            f"left, most of it in {rest.channel}"
+        )
+    if verdict.kind == "none" and verdict.smallest_detectable:
+        smallest = [*verdict.smallest_detectable.items()][:_SHOWN_AMOUNTS]
+        amounts = [
+            f"{at_words(EffectAt(*key.split('@', 1)))} of {amount_text(amount)}"
+            for key, amount in smallest
+        ]
+        return f"{badge} that would be as large as {listing(amounts, 'or')}"
+    return badge
+
+
+def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
+    """What was found, or the first of it and how much more there is."""
+    groups = told_together(verdict.effects)
+    found = [at_many(group) if len(group) > 1 else _found(group[0]) for group in groups]
+    lines = [*found, *pulse_sentences(verdict.pulses)]
+    more = len(lines) - _MOST_FOUND
+    for line in lines[:_MOST_FOUND] if more <= 0 else lines[: _MOST_FOUND - 1]:
+        yield "found", line
+    if more > 0:
+        yield "", f"and {more + 1} more: the report has them all"
+
+
+def _found(effect: Found) -> str:
+    """For example "play (backlash) at ...: gap 0.030 rad (0.027 to 0.034); 97 %"."""
+    values = ", ".join(f"{name} {value}" for name, value in parameter_rows(effect))
+    return f"{at_words(effect)}: {values}; {percent(effect.probability)} sure"
+
+
+def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:
+    """Before and after of the worst channel, and of all."""
+    fit, worst = verdict.fit, headline(verdict.fit)
+    if fit is None or worst is None:
+        return
+    course = worst.nominal
+    if verdict.effects:
+        course = f"{worst.nominal} -> {worst.corrected}"
+    yield (
+        "kept out",
+        f"error in {worst.channel} {course} {worst.unit}, noise {worst.floor}",
+    )
+    if verdict.effects:
+        yield "", _all_channels(fit)
+
+
+def _all_channels(fit: Fit) -> str:
+    nominal, corrected, place, effect, ceiling = errors_text(
+        (fit.nominal, fit.corrected, fit.wrong_place, fit.wrong_effect, fit.ceiling)
+    )
+    return (
+        f"all channels {nominal} -> {corrected} times the noise; effect elsewhere "
+        f"{place}, wrong effect {effect}, regression {ceiling}"
+    )
+
+
+def _doubt(verdict: Verdict) -> str:
+    """What else it could be."""
+    if verdict.alternatives:
+        also = "" if verdict.kind == "not_identifiable" else "also "
+        return f"the recordings {also}fit {choice(verdict.alternatives)}"
+    unsure = tuple(effect for effect in verdict.effects if effect.confusable_with)
+    if not unsure:
+        return ""
+    more = len(unsure) - _MOST_UNSURE
+    shown = doubts(replace(verdict, effects=unsure[:_MOST_UNSURE]))
+    return " ".join([*shown, f"And {more} more."] if more > 0 else shown)
+
+
+def _limits(verdict: Verdict) -> str:
+    """The first limit of the data, and how many more there are."""
+    if not verdict.limits:
+        return ""
+    more = len(verdict.limits) - 1
+    return verdict.limits[0].rstrip(".") + (f" (and {more} more)" if more else "")

@@ -1,0 +1,159 @@
+"""Before and after: overlays, errors over time, and errors in all."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from diagnosis.verdict import Fit, Unexplained
+from experiments.diagnosis_report.look import (
+    CONTROL,
+    CORRECTED,
+    NOISE,
+    REAL,
+    SIM,
+    note,
+    plain,
+)
+from experiments.diagnosis_report.numbers import error_unit, errors_text
+from experiments.diagnosis_report.series import ChannelSeries, ReportSeries, rms
+from experiments.diagnosis_report.svg import new_figure
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+CLOSE_UP_S = 1.0
+"""Length of what is shown of the overlay."""
+BARS = {
+    "nominal": ("the sim as it was", SIM),
+    "wrong_effect": ("control: a wrong effect there", CONTROL),
+    "wrong_place": ("control: the effect elsewhere", CONTROL),
+    "corrected": ("the corrected sim", CORRECTED),
+    "ceiling": ("a flexible regression", CONTROL),
+}
+UNCORRECTED = ("nominal", "ceiling")
+
+
+class View(NamedTuple):
+    """How to show a channel."""
+
+    unit: str
+    """Of the channel."""
+    floor: float | None
+    """Rms of its noise, if that is known; twice of it is shaded."""
+    is_corrected: bool
+    """Whether there is a correction to be shown."""
+
+
+def overlay_figure(series: ReportSeries, channel: str, view: View) -> "Figure":
+    """A close-up of one channel above the errors over the whole recording.
+
+    Args:
+      series: held-out.
+      channel: of it.
+      view: how to show it.
+    """
+    real, sim, corrected = series.channels[channel]
+    rows = close_up(series.time_s, real, sim)
+    figure = new_figure(3.6)
+    above, below = figure.subplots(2, 1, height_ratios=(3, 2))
+    time_s = series.time_s[rows]
+    above.plot(time_s, sim[rows], color=SIM, lw=1.3, label="sim")
+    if view.is_corrected:
+        after = corrected[rows]
+        above.plot(time_s, after, color=CORRECTED, lw=1.3, label="corrected sim")
+    above.plot(time_s, real[rows], color=REAL, lw=1.6, ls=(0, (4, 1.5)), label="real")
+    above.set_ylabel(f"{channel}\n[{view.unit}]")
+    above.legend(
+        frameon=False, ncols=3, loc="lower left", bbox_to_anchor=(0, 1), fontsize=8.5
+    )
+    _draw_errors(below, series.time_s, series.channels[channel], view)
+    below.axvspan(time_s[0], time_s[-1], color="#fff3c4", zorder=0, lw=0)
+    for axes in (above, below):
+        plain(axes)
+        axes.margins(x=0)
+    figure.align_ylabels()
+    return figure
+
+
+def _draw_errors(
+    axes: "Axes", time_s: FloatArray, channel: ChannelSeries, view: View
+) -> None:
+    errors = {SIM: channel.sim - channel.real}
+    if view.is_corrected:
+        errors[CORRECTED] = channel.corrected - channel.real
+    factor, unit = error_unit(view.unit, max(map(rms, errors.values())))
+    if view.floor:
+        high = 2 * factor * view.floor
+        axes.axhspan(-high, high, color=NOISE, zorder=1)
+    for colour, error in errors.items():
+        axes.plot(time_s, factor * error, color=colour, lw=0.8)
+    axes.set_ylabel(f"error [{unit}]")
+    axes.set_xlabel("time [s]")
+
+
+def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
+    """The rows of a second in which the error is both large and easy to see.
+
+    Of all windows with half the error of the worst one or more, that in which it is
+    largest beside the motion itself.
+
+    Args:
+      time_s: (T,) increasing.
+      real: (T,), NaN where a value is missing.
+      sim: (T,) likewise.
+    """
+    rows = int(np.searchsorted(time_s, time_s[0] + CLOSE_UP_S, side="right"))
+    windows = np.lib.stride_tricks.sliding_window_view
+    energy = windows(np.nan_to_num(real - sim) ** 2, rows).sum(axis=1)
+    span = np.ptp(windows(np.nan_to_num(real), rows), axis=1)
+    beside = np.divide(energy, span**2, out=np.zeros_like(energy), where=span > 0)
+    beside[energy < 0.5 * energy.max()] = -1.0
+    best = int(np.argmax(beside))
+    return slice(best, best + rows)
+
+
+def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
+    """Errors of all channels together, in multiples of the noise.
+
+    Args:
+      fit: of a verdict.
+      is_corrected: whether there is a correction to be shown, and its controls.
+    """
+    bars = BARS if is_corrected else UNCORRECTED
+    errors = {name: getattr(fit, name) for name in bars}
+    known = {name: error for name, error in errors.items() if error is not None}
+    figure = new_figure(0.3 * len(known) + 0.75)
+    axes = figure.subplots()
+    rows = range(len(known))
+    colours = [BARS[name][1] for name in known]
+    axes.barh(rows, list(known.values()), height=0.62, color=colours)
+    for row, text in enumerate(errors_text(known.values())):
+        note(axes, text, (list(known.values())[row], row))
+    plain(axes, grid="x")
+    axes.axvline(fit.floor, color=REAL, lw=1, ls=(0, (3, 2)))
+    note(axes, "noise alone", (fit.floor, -0.75), REAL)
+    axes.set_yticks(rows, [BARS[name][0] for name in known])
+    axes.tick_params(axis="y", labelcolor=REAL)
+    axes.set_xlim(0, 1.12 * max(*known.values(), fit.floor))
+    axes.set_ylim(len(known) - 0.5, -1.0)
+    axes.set_xlabel("rms error on recordings that were kept out [times the noise]")
+    return figure
+
+
+def unexplained_figure(rest: Unexplained) -> "Figure":
+    """The mean error that is left over another quantity, with twice its spread."""
+    at, mean, spread = (np.array(part) for part in (rest.at, rest.mean, rest.spread))
+    largest = float(np.abs(mean).max(initial=0.0))
+    factor, unit = error_unit(rest.unit, largest)
+    figure = new_figure(2.4)
+    axes = figure.subplots()
+    low, high = factor * (mean - 2 * spread), factor * (mean + 2 * spread)
+    axes.fill_between(at, low, high, color=CORRECTED, alpha=0.18, lw=0)
+    axes.plot(at, factor * mean, "o-", color=CORRECTED, ms=3, lw=1.3)
+    axes.axhline(0, color=REAL, lw=0.8)
+    plain(axes)
+    axes.set_xlabel(f"{rest.against} [{rest.against_unit}]")
+    axes.set_ylabel(f"mean error of\n{rest.channel} [{unit}]")
+    return figure

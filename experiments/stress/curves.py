@@ -1,0 +1,94 @@
+"""From trials to curves: what happened at a severity, and where half of them fall."""
+
+import dataclasses
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from experiments.intervals import wilson
+from experiments.stress.families import FAMILIES, FLAT
+from experiments.stress.half import half_fall
+from experiments.stress.walks import Trial
+
+Cell = Mapping[str, Any]
+"""A place's fields, and `trials`: those of all gaits, as plain values."""
+
+Curve = Mapping[str, Any]
+"""One gait on one family of ground in one world, as plain values."""
+
+
+def curves_of(cells: Sequence[Cell]) -> list[dict[str, Any]]:
+    """A curve for every robot, world, family and gait, in the cells' order.
+
+    Args:
+      cells: severities of a family follow each other, from mild to hard.
+    """
+    keys = dict.fromkeys(
+        (cell["robot"], cell["world"], cell["family"], trial["gait"])
+        for cell in cells
+        for trial in cell["trials"]
+    )
+    return [_curve(cells, *key) for key in keys]
+
+
+def _curve(
+    cells: Sequence[Cell], robot: str, world: str, family: str, gait: str
+) -> dict[str, Any]:
+    rungs = [
+        _rung(cell["severity"], trials_of(cell, gait))
+        for cell in cells
+        if (cell["robot"], cell["world"], cell["family"]) == (robot, world, family)
+    ]
+    half = None
+    if family != FLAT:
+        columns = ([rung[name] for rung in rungs] for name in _COUNTS)
+        half = dataclasses.asdict(half_fall(*columns))
+    known = FAMILIES.get(family)
+    return {
+        "robot": robot,
+        "world": world,
+        "family": family,
+        "gait": gait,
+        "quantity": known.quantity if known else None,
+        "unit": known.unit if known else None,
+        "half": half,
+        "rungs": rungs,
+    }
+
+
+_COUNTS = ("severity", "falls", "trials")
+
+
+def trials_of(cell: Cell, gait: str) -> list[Trial]:
+    """One gait's trials in a cell."""
+    return [Trial(**trial) for trial in cell["trials"] if trial["gait"] == gait]
+
+
+def _rung(severity: float, trials: Sequence[Trial]) -> dict[str, Any]:
+    """What the trials of one gait at one severity came to."""
+    speeds = [100 * trial.distance_m / trial.time_s for trial in trials]
+    fallen = [trial for trial in trials if trial.fell]
+    distances = [trial.distance_m for trial in fallen]
+    low, high = wilson(len(fallen), len(trials))
+    return {
+        "severity": severity,
+        "trials": len(trials),
+        "falls": len(fallen),
+        "fall_rate_low": low,
+        "fall_rate_high": high,
+        "speed_cm_s": float(np.mean(speeds)),
+        "speed_std": float(np.std(speeds, ddof=1)) if len(speeds) > 1 else 0.0,
+        "distance_to_fall_m": float(np.median(distances)) if distances else None,
+        "causes": dict(Counter(trial.cause for trial in fallen).most_common()),
+    }
+
+
+def causes_by_family(curves: Sequence[Curve]) -> Iterator[tuple[Curve, Counter[str]]]:
+    """For each curve how many of its falls have which cause."""
+    for curve in curves:
+        counted: Counter[str] = Counter()
+        for rung in curve["rungs"]:
+            counted.update(rung["causes"])
+        yield curve, counted

@@ -1,0 +1,191 @@
+"""Pictures of a stress test: falls over ladders, and gaits against each other."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from experiments.figure_file import write_figure
+from experiments.stress.curves import Curve
+from experiments.stress.families import FLAT
+from experiments.stress.words import family_text, severity_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COMPARISON = "terrain_stress.png"
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+_EDGE = 0.06
+"""How far beyond the ladder's ends a half-fall severity is drawn that is not on it."""
+
+
+def heat_map_name(gait: str) -> str:
+    """The file of a gait's picture."""
+    return f"terrain_stress_{gait}.png"
+
+
+def draw_comparison(curves: Sequence[Curve], folder: Path) -> None:
+    """Draw all gaits into a PNG file; see `comparison_figure`."""
+    write_figure(comparison_figure(curves), folder / COMPARISON)
+
+
+def draw_heat_maps(curves: Sequence[Curve], folder: Path) -> None:
+    """Draw each gait into a PNG file; see `heat_map_figure`."""
+    for gait in _each(curves, "gait"):
+        own = [curve for curve in curves if curve["gait"] == gait]
+        write_figure(heat_map_figure(own), folder / heat_map_name(gait))
+
+
+def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
+    """One gait: a panel for each robot and world, a row for each family.
+
+    Args:
+      curves: of one gait.
+    """
+    from matplotlib.figure import Figure
+
+    settings = _settings(curves)
+    ladders = [curve for curve in curves if curve["family"] != FLAT]
+    families = _each(ladders, "family")
+    size = (5.2 * len(settings) + 1.2, 0.56 * len(families) + 1.3)
+    figure = Figure(figsize=size, dpi=130, layout="constrained")
+    panels = figure.subplots(1, len(settings), sharey=True, squeeze=False)[0]
+    image = None
+    for panel, setting in zip(panels, settings, strict=True):
+        own = [curve for curve in ladders if _setting(curve) == setting]
+        image = _heat_map(panel, own)
+        panel.set_title(_panel_title(curves, setting), fontsize=10)
+        panel.set_yticks(range(len(families)), [family_text(name) for name in families])
+    if image is not None:
+        bar = figure.colorbar(image, ax=list(panels), shrink=0.8)
+        bar.set_label("share of trials that fall")
+    figure.suptitle(f"{curves[0]['gait']}: falls on harder and harder ground")
+    return figure
+
+
+def _heat_map(panel: "Axes", curves: Sequence[Curve]) -> Any:
+    rates = [[r["falls"] / r["trials"] for r in curve["rungs"]] for curve in curves]
+    image = panel.imshow(rates, vmin=0, vmax=1, cmap="YlOrRd", aspect="auto")
+    for row, curve in enumerate(curves):
+        for column, rung in enumerate(curve["rungs"]):
+            severity = severity_text(rung["severity"], curve["unit"])
+            panel.text(
+                column,
+                row,
+                f"{rung['falls']}/{rung['trials']}\n{severity}",
+                ha="center",
+                va="center",
+                fontsize=7.5,
+                color="white" if rates[row][column] > 0.7 else "black",
+            )
+    panel.set_xticks([0, len(rates[0]) - 1], ["mild", "hard"])
+    panel.tick_params(length=0)
+    panel.spines[:].set_visible(False)
+    return image
+
+
+def comparison_figure(curves: Sequence[Curve]) -> "Figure":
+    """Half-fall severities with intervals: a panel for each robot and world.
+
+    All ladders are as long as each other, in the logarithm of the severity. An arrow
+    means that the severity is beyond what was tried, or that the interval is.
+    """
+    from matplotlib.figure import Figure
+
+    settings, gaits = _settings(curves), _each(curves, "gait")
+    ladders = [curve for curve in curves if curve["half"] is not None]
+    families = _each(ladders, "family")
+    size = (4.6 * len(settings) + 1.4, 0.5 * len(families) + 1.4)
+    figure = Figure(figsize=size, dpi=150, layout="constrained")
+    panels = figure.subplots(1, len(settings), sharey=True, squeeze=False)[0]
+    for panel, setting in zip(panels, settings, strict=True):
+        for k, gait in enumerate(gaits):
+            for row, family in enumerate(families):
+                key = (*setting, family, gait)
+                own = [
+                    c for c in ladders if (*_setting(c), c["family"], c["gait"]) == key
+                ]
+                y = row + 0.6 * ((k + 0.5) / len(gaits) - 0.5)
+                colour = COLOURS[k % len(COLOURS)]
+                for curve in own:
+                    _half(panel, curve, y, colour, gait if row == 0 else None)
+        _frame(panel, ladders, families)
+        panel.set_title(_name(curves, setting))
+    panels[0].invert_yaxis()
+    figure.legend(
+        *panels[0].get_legend_handles_labels(),
+        loc="outside upper right",
+        ncols=len(gaits),
+        frameon=False,
+    )
+    return figure
+
+
+def _half(
+    panel: "Axes", curve: Curve, y: float, colour: str, label: str | None
+) -> None:
+    """A point with its interval."""
+    half = curve["half"]
+    ends = [_at(curve, half[name]) for name in ("low", "high")]
+    low = -_EDGE if ends[0] is None else ends[0]
+    high = 1 + _EDGE if ends[1] is None else ends[1]
+    if half["beyond"]:
+        beyond = half["beyond"] == ">"
+        middle, marker = (1 + _EDGE, ">") if beyond else (-_EDGE, "<")
+        low, high = (low, middle) if beyond else (middle, high)
+    else:
+        middle, marker = _at(curve, half["severity"]) or 0.0, "o"
+    panel.plot([low, high], [y, y], color=colour, linewidth=2, solid_capstyle="butt")
+    panel.plot(middle, y, marker, color=colour, markersize=6, label=label)
+
+
+def _frame(panel: "Axes", curves: Sequence[Curve], families: Sequence[str]) -> None:
+    labels = []
+    for family in families:
+        curve = next(curve for curve in curves if curve["family"] == family)
+        first, last = (
+            severity_text(curve["rungs"][k]["severity"], curve["unit"]) for k in (0, -1)
+        )
+        labels.append(f"{family_text(family)}\n{first} to {last}")
+    panel.set_yticks(range(len(families)), labels, fontsize=8)
+    panel.set_xticks([0, 1], ["mildest", "hardest"])
+    panel.set_xlim(-2 * _EDGE, 1 + 2 * _EDGE)
+    panel.set_xlabel("severity at which half of the trials fall")
+    for end in (0, 1):
+        panel.axvline(end, color="0.85", linewidth=1, zorder=0)
+    panel.spines[["top", "right", "left"]].set_visible(False)
+
+
+def _at(curve: Curve, severity: float | None) -> float | None:
+    """Where on its ladder a severity is, from 0 to 1."""
+    if severity is None:
+        return None
+    first, last = (curve["rungs"][k]["severity"] for k in (0, -1))
+    return math.log(severity / first) / math.log(last / first)
+
+
+def _panel_title(curves: Sequence[Curve], setting: tuple[str, str]) -> str:
+    name = _name(curves, setting)
+    for curve in curves:
+        if _setting(curve) == setting and curve["family"] == FLAT:
+            rung = curve["rungs"][0]
+            name += f" (flat ground: {rung['falls']}/{rung['trials']} fall)"
+    return name
+
+
+def _each(curves: Sequence[Curve], name: str) -> list[str]:
+    return list(dict.fromkeys(curve[name] for curve in curves))
+
+
+def _setting(curve: Curve) -> tuple[str, str]:
+    return curve["robot"], curve["world"]
+
+
+def _settings(curves: Sequence[Curve]) -> list[tuple[str, str]]:
+    return list(dict.fromkeys(map(_setting, curves)))
+
+
+def _name(curves: Sequence[Curve], setting: tuple[str, str]) -> str:
+    """The world, and the robot where there is more than one."""
+    return " ".join(setting) if len(_each(curves, "robot")) > 1 else setting[1]

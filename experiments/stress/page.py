@@ -1,0 +1,146 @@
+"""The stress test's tables and its page."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from experiments.report import Report, markdown_table
+from experiments.report_origin import Origin
+from experiments.run_folder import RunFolder
+from experiments.stress.curves import Curve, causes_by_family
+from experiments.stress.fall_cause import Cause
+from experiments.stress.families import FLAT
+from experiments.stress.figure import COMPARISON, heat_map_name
+from experiments.stress.words import family_text, half_text, severity_text
+
+QUESTION = "How rough may the ground be before these gaits fall?"
+HALF_HEADINGS = (
+    "robot",
+    "world",
+    "gait",
+    "family",
+    "severity",
+    "half of the trials fall",
+)
+CELL_HEADINGS = (
+    "robot",
+    "world",
+    "gait",
+    "family",
+    "severity",
+    "speed [cm/s] ± s.d.",
+    "falls",
+    "95 % interval",
+    "distance to fall [m]",
+    "what came before",
+)
+NOTES = (
+    "Every gait walked the same grounds from the same start poses. Speed is forward,",
+    "until the fall where the robot fell; its spread is the standard deviation over",
+    "trials. Intervals of falls are Wilson's; those of the severity at which half of",
+    "the trials fall come from the profile likelihood of a logistic curve over the",
+    "logarithm of the severity; ? is beyond what was tried. Distance to fall: median",
+    "of the trials that fell.",
+    "What each severity and each cause means: docs/terrain_stress.md.",
+)
+
+
+def half_rows(curves: Sequence[Curve]) -> list[list[str]]:
+    """A row for each curve that has a ladder."""
+    return [
+        [*_setting(curve), curve["quantity"], half_text(curve)]
+        for curve in curves
+        if curve["half"] is not None
+    ]
+
+
+def cell_rows(curves: Sequence[Curve]) -> list[list[str]]:
+    """A row for each severity of each curve."""
+    rows = []
+    for curve in curves:
+        for rung in curve["rungs"]:
+            distance = rung["distance_to_fall_m"]
+            rows.append(
+                [
+                    *_setting(curve),
+                    severity_text(rung["severity"], curve["unit"]),
+                    f"{rung['speed_cm_s']:.1f} ± {rung['speed_std']:.1f}",
+                    f"{rung['falls']}/{rung['trials']}",
+                    f"{rung['fall_rate_low']:.0%} to {rung['fall_rate_high']:.0%}",
+                    "-" if distance is None else f"{distance:.2f}",
+                    _counted(Counter(rung["causes"])),
+                ]
+            )
+    return rows
+
+
+def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
+    """A row for each curve with falls: how many have which cause."""
+    return [
+        [*_setting(curve), str(counted.total()), *(str(counted[c]) for c in Cause)]
+        for curve, counted in causes_by_family(curves)
+        if counted
+    ]
+
+
+def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
+    """Write `result.md` and the HTML of a run that has its pictures.
+
+    Args:
+      folder: the run.
+      curves: of `curves_of`.
+    """
+    causes = ("robot", "world", "gait", "family", "falls", *Cause)
+    body = [
+        *markdown_table(HALF_HEADINGS, half_rows(curves)),
+        "",
+        *NOTES,
+        "",
+        f"![The severity at which half of the trials fall]({COMPARISON})",
+        "",
+        "## What came before the falls",
+        "",
+        *markdown_table(causes, cause_rows(curves)),
+    ]
+    for gait in dict.fromkeys(curve["gait"] for curve in curves):
+        body += ["", f"![Falls of {gait}]({heat_map_name(gait)})"]
+    body += [
+        "",
+        "## Every severity",
+        "",
+        *markdown_table(CELL_HEADINGS, cell_rows(curves)),
+    ]
+    answer = list(stress_answer(curves))
+    Report(QUESTION, answer, body, Origin.of_run(folder)).write(folder.path)
+
+
+def stress_answer(curves: Sequence[Curve]) -> Iterator[str]:
+    """A sentence for each robot, world and gait."""
+    keys = dict.fromkeys(tuple(_setting(curve)[:3]) for curve in curves)
+    for robot, world, gait in keys:
+        own = [c for c in curves if tuple(_setting(c)[:3]) == (robot, world, gait)]
+        where = "real world" if world == "real" else world
+        rungs = [rung for curve in own for rung in curve["rungs"]]
+        falls, trials = (sum(rung[k] for rung in rungs) for k in ("falls", "trials"))
+        flat = next(c["rungs"][0] for c in own if c["family"] == FLAT)
+        yield (
+            f"In the {where}, {gait} ({robot}) falls in {falls} of {trials} trials, "
+            f"{flat['falls']} of {flat['trials']} on flat ground. Half of the trials "
+            f"fall at: {_halves(own)}."
+        )
+
+
+def _halves(curves: Sequence[Curve]) -> str:
+    known = [curve for curve in curves if curve["half"] is not None]
+    return ", ".join(
+        f"{family_text(curve['family'])} {half_text(curve).split(' (')[0]}"
+        for curve in known
+    )
+
+
+def _setting(curve: Curve) -> list[str]:
+    names = [curve[name] for name in ("robot", "world", "gait")]
+    return [*names, family_text(curve["family"])]
+
+
+def _counted(causes: Counter[str]) -> str:
+    return ", ".join(f"{count} {cause}" for cause, count in causes.most_common()) or "-"

@@ -1,0 +1,8 @@
+"""`groundwalk transfer` as a script."""
+
+import sys
+
+from experiments.command_line import choose
+from experiments.transfer import STUDIES
+
+choose(STUDIES, "groundwalk transfer", sys.argv[1:], "study")

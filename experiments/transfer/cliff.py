@@ -1,0 +1,84 @@
+"""`groundwalk transfer cliff`: cliff walking, grounded by GAT and by SGAT."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from experiments.command_line import run_verb
+from experiments.progress import progress
+from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
+from experiments.run_options import RunOptions
+from experiments.score_table import print_json
+from experiments.text_table import print_table
+from experiments.transfer.cliff_claims import check_claims
+from experiments.transfer.cliff_figure import FIGURE, draw_cliff
+from experiments.transfer.cliff_page import returns_table, write_cliff_page
+from experiments.transfer.cliff_study import CliffStudy, Row, compare
+from experiments.transfer.page import claim_lines
+from groundwalk.errors import BadValueError
+from sgat.tabular_loop import TabularLoop
+
+VERB = "transfer-cliff"
+
+
+@dataclass(frozen=True)
+class TransferCliff(RunOptions):
+    """Walk along a cliff with random moves: no grounding, GAT, SGAT and the optimum.
+
+    Attributes:
+      rows: of the grid.
+      columns: of the grid.
+      noise: chances of a random move, each a real world of its own.
+      episodes: in the real world, of each policy that was found.
+      real_episodes: in the real world, at each grounding step.
+    """
+
+    rows: int = 4
+    columns: int = 12
+    noise: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+    episodes: int = 10_000
+    real_episodes: int = 10_000
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        self.study()
+        if not self.noise or min(self.noise) < 0 or max(self.noise) > 1:
+            raise BadValueError(f"noise is {self.noise}; give values from 0 to 1")
+        super().__post_init__()
+
+    def study(self) -> CliffStudy:
+        """How the methods are compared."""
+        loop = TabularLoop(episodes=self.real_episodes)
+        return CliffStudy(self.rows, self.columns, self.episodes, loop)
+
+
+def main(config: TransferCliff) -> None:
+    """Compare the methods at every noise value, and write everything down."""
+    folder, config = open_run(VERB, config)
+    rows = _compare_all(config, folder)
+    claims = check_claims(rows)
+    result = {"rows": rows, "claims": [claim.to_json() for claim in claims]}
+    folder.write_json(RESULT, result)
+    draw_cliff(rows, (config.rows, config.columns), folder.path / FIGURE)
+    write_cliff_page(folder, config.study(), rows, claims)
+    if config.json:
+        print_json(result)
+    else:
+        print_table(*returns_table(rows))
+        print(*claim_lines(claims), f"everything else is in {folder.path}", sep="\n")
+
+
+def _compare_all(config: TransferCliff, folder: RunFolder) -> list[Row]:
+    """All noise values; those that the run's history has are not computed again."""
+    rows = folder.read_json(HISTORY)["rows"] if folder.has(HISTORY) else []
+    seeds = np.random.SeedSequence(config.seed).spawn(len(config.noise))
+    with progress("cliff walking", len(config.noise), done=len(rows)) as bar:
+        for k in range(len(rows), len(config.noise)):
+            rows.append(compare(config.study(), config.noise[k], seeds[k]))
+            folder.write_json(HISTORY, {"rows": rows})
+            bar.advance()
+    return rows
+
+
+if __name__ == "__main__":
+    run_verb(TransferCliff, main)

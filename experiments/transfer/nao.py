@@ -1,0 +1,162 @@
+"""`groundwalk transfer nao`: gaits tuned in grounded sims, tried on uneven ground."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import robots
+import worlds
+from experiments.command_line import run_verb
+from experiments.corrected_sims import check_correction
+from experiments.grounded_walks.places import Places, RealCourse
+from experiments.grounded_walks.sim import ROBOT
+from experiments.grounded_walks.tuning import Budget
+from experiments.progress import progress
+from experiments.run_folder import RESULT, RunFolder, open_run
+from experiments.run_options import RunOptions
+from experiments.score_table import print_json
+from experiments.search import check_search
+from experiments.text_table import print_table
+from experiments.transfer.nao_figure import FIGURE, draw_cells
+from experiments.transfer.nao_page import CELLS, HEADINGS, table_of, write_nao_page
+from experiments.transfer.nao_study import (
+    METHODS,
+    PLAN,
+    START,
+    WITH_SIM,
+    WITH_SIM_ON_FLAT,
+    Effort,
+    NaoStudy,
+)
+from groundwalk.errors import BadValueError, UnknownNameError
+from worlds.hidden_effects import Hidden
+from worlds.hidden_robot import check_hidden
+
+VERB = "transfer-nao"
+SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,
+            "more_real_walks": 2, "sim_walks": 2, "real_generations": 1}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TransferNao(RunOptions):
+    """Tune gaits in grounded sims, and count falls on real uneven ground.
+
+    Attributes:
+      methods: to compare; the start gait is always tried.
+      terrain: of the real world's courses of 3 m.
+      hidden: physics of the real world that the sim's model lacks, such as
+        speed_limit@LKneePitch:speed=3.
+      sim: folder of a diagnosis of the real robot; the sim that it corrects is then
+        tried beside the one as it is.
+      trials: of each gait found.
+      population: gaits in a generation.
+      generations: of a search in the sim.
+      sigma: spread of the first generation, as a part of each parameter's range.
+      repeats: walks of each gait in a stochastic sim.
+      real_walks: that the first grounding step learns from.
+      more_real_walks: that each further step learns from.
+      sim_walks: that each grounding step learns from.
+      real_population: gaits in a generation of the search on real.
+      real_generations: of the search on real.
+    """
+
+    methods: tuple[str, ...] | None = None
+    terrain: str = worlds.kind("real").terrain
+    hidden: tuple[str, ...] = ()
+    sim: Path | None = None
+    trials: int = 40
+    population: int = 150
+    generations: int = 10
+    sigma: float = 0.15
+    repeats: int = 2
+    real_walks: int = 96
+    more_real_walks: int = 48
+    sim_walks: int = 200
+    real_population: int = 50
+    real_generations: int = 10
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        known = tuple(dict.fromkeys((*METHODS, *WITH_SIM, *WITH_SIM_ON_FLAT)))
+        for method in self.compared:
+            if method not in known:
+                raise UnknownNameError("method", method, known)
+            if self.sim is None and method not in METHODS:
+                raise BadValueError(f"{method!r} needs a diagnosis: give --sim")
+        robot, places = robots.get(ROBOT), self.places
+        check_hidden(robot, places.real.options)
+        if self.sim is not None:
+            check_correction(robot, worlds.kind("sim").options, self.sim)
+        check_search(self.population, self.sigma)
+        check_search(self.real_population, self.sigma)
+        for name, least in SMALLEST.items():
+            if getattr(self, name) < least:
+                raise BadValueError(
+                    f"{name} is {getattr(self, name)}; give at least {least}"
+                )
+        super().__post_init__()
+
+    @property
+    def compared(self) -> tuple[str, ...]:
+        """The methods, those of the default where none are given."""
+        if self.methods is not None:
+            return self.methods
+        if self.sim is None:
+            return METHODS
+        return WITH_SIM_ON_FLAT if self.places.real.flat else WITH_SIM
+
+    @property
+    def plan(self) -> tuple[tuple[str, int], ...]:
+        """Method and step of the cells that are asked for."""
+        return tuple(cell for cell in PLAN if cell[0] in (START, *self.compared))
+
+    @property
+    def places(self) -> Places:
+        """The real course, and what corrects the sim."""
+        hidden = tuple(Hidden.parse(text) for text in self.hidden)
+        return Places(RealCourse(self.terrain, hidden), self.sim)
+
+    @property
+    def effort(self) -> Effort:
+        """How much is walked and searched."""
+        return Effort(
+            self.trials,
+            self.repeats,
+            (self.real_walks, self.more_real_walks),
+            self.sim_walks,
+            Budget(self.population, self.generations, self.sigma),
+            Budget(self.real_population, self.real_generations, self.sigma),
+        )
+
+
+def main(config: TransferNao) -> None:
+    """Find every cell's gait and try it; what is done is not done again."""
+    folder, config = open_run(VERB, config)
+    study = NaoStudy(folder, config.effort, config.places, config.seed)
+    if study.cells:
+        _write(folder, config, study.cells)
+    with progress("ways to a gait", len(config.plan), done=len(study.cells)) as bar:
+        for method, step in config.plan:
+            if study.cell(method, step) is None:
+                study.compute(method, step)
+                bar.advance(f"{method}, step {step} done")
+                _write(folder, config, study.cells)
+    if config.json:
+        print_json({CELLS: study.cells})
+    else:
+        print_table(HEADINGS, table_of(study.cells))
+        print(f"everything else is in {folder.path}")
+
+
+def _write(
+    folder: RunFolder, config: TransferNao, cells: Sequence[Mapping[str, Any]]
+) -> None:
+    """Write down what is known so far: a study takes hours."""
+    folder.write_json(RESULT, {CELLS: cells})
+    draw_cells(cells, folder.path / FIGURE)
+    write_nao_page(folder, cells, len(config.plan), config.places.real)
+
+
+if __name__ == "__main__":
+    run_verb(TransferNao, main)

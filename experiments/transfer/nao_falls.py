@@ -1,0 +1,131 @@
+"""`groundwalk transfer nao-falls`: does the grounded sim know which gaits fall?"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import robots
+from experiments.command_line import run_verb
+from experiments.grounded_walks.data import GaitCloud, walk
+from experiments.grounded_walks.groundings import GROUNDINGS, WalkModels
+from experiments.grounded_walks.places import Places, RealCourse
+from experiments.grounded_walks.records import record_real, record_walks
+from experiments.grounded_walks.sim import ROBOT, walk_in_sim
+from experiments.progress import progress
+from experiments.run_folder import HISTORY, RESULT, open_run
+from experiments.run_options import RunOptions
+from experiments.score_table import print_json
+from experiments.text_table import print_table
+from experiments.transfer.nao_falls_figure import FIGURE, draw_falls
+from experiments.transfer.nao_falls_measures import (
+    MEASURES_FIGURE,
+    draw_measures,
+    measures_of,
+)
+from experiments.transfer.nao_falls_page import (
+    HEADINGS,
+    MEASURES,
+    prediction_rows,
+    table_of,
+    write_falls_page,
+)
+from experiments.trials import Trials
+from groundwalk.errors import BadValueError
+from walk_engine import gaits
+
+VERB = "transfer-nao-falls"
+STAGES = 2 + len(GROUNDINGS)
+
+
+@dataclass(frozen=True)
+class TransferNaoFalls(RunOptions):
+    """Predict speed and falls of gaits that no grounding has seen.
+
+    Attributes:
+      gaits: held out of the grounding data.
+      trials: of each of them, on real uneven ground.
+      rollouts: of each of them, in every grounded sim.
+      real_walks: of other gaits in the real world, which the groundings learn from.
+      sim_walks: of other gaits in the sim.
+    """
+
+    gaits: int = 24
+    trials: int = 12
+    rollouts: int = 12
+    real_walks: int = 96
+    sim_walks: int = 220
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        for name in ("gaits", "trials", "rollouts", "real_walks", "sim_walks"):
+            if getattr(self, name) < 2:
+                raise BadValueError(f"{name} is {getattr(self, name)}; give at least 2")
+        super().__post_init__()
+
+
+def main(config: TransferNaoFalls) -> None:
+    """Walk, learn, predict and compare; what is done is not done again."""
+    folder, config = open_run(VERB, config)
+    state = folder.read_json(HISTORY) if folder.has(HISTORY) else {}
+    with progress("predicting falls", STAGES, done=len(state)) as bar:
+        for stage, outcome in _stages(config, state):
+            state[stage] = outcome
+            folder.write_json(HISTORY, state)
+            bar.advance(f"{stage} done")
+    rows = prediction_rows(state)
+    folder.write_json(RESULT, {"predictions": rows, MEASURES: state[MEASURES]})
+    draw_measures(state[MEASURES], folder.path / MEASURES_FIGURE)
+    draw_falls(state, folder.path / FIGURE)
+    write_falls_page(folder, rows, state, config.trials)
+    if config.json:
+        print_json(folder.read_json(RESULT))
+    else:
+        print_table(HEADINGS, table_of(rows))
+        print(f"everything else is in {folder.path}")
+
+
+def _stages(
+    config: TransferNaoFalls, done: Mapping[str, Any]
+) -> Iterator[tuple[str, Any]]:
+    """What is still to be done, stage by stage."""
+    description, start = robots.get(ROBOT), gaits.get("start")
+    held_out = GaitCloud().draw(start, config.gaits, _seed(config, 0))
+    if "real" not in done:
+        vectors = np.repeat(held_out, config.trials, axis=0)
+        trials, _ = walk(RealCourse(), description, vectors, _seed(config, 1))
+        yield "real", _per_gait(trials, config.gaits)
+    if MEASURES in done and all(name in done for name in GROUNDINGS):
+        return
+    learned = GaitCloud().draw(start, config.real_walks, _seed(config, 2))
+    explored = GaitCloud().draw(start, config.sim_walks, _seed(config, 3))
+    real = record_real(learned, _seed(config, 4), RealCourse())
+    records = record_walks(real, explored, _seed(config, 4), Places())
+    models = WalkModels(records, _seed(config, 6))
+    if MEASURES not in done:
+        _, unseen = walk(RealCourse(), description, held_out, _seed(config, 8))
+        yield MEASURES, measures_of(models, unseen, _seed(config, 9))
+    for name in GROUNDINGS:
+        if name not in done:
+            grounded = models.grounded(name)
+            seed = _seed(config, 7)
+            trials = walk_in_sim(grounded, held_out, config.rollouts, seed)
+            yield name, _per_gait(trials, config.gaits)
+
+
+def _seed(config: TransferNaoFalls, use: int) -> np.random.SeedSequence:
+    """The random numbers of one use, the same however often they are asked for."""
+    return np.random.SeedSequence(config.seed, spawn_key=(use,))
+
+
+def _per_gait(trials: Trials, count: int) -> dict[str, list[float]]:
+    """Fall rate and mean speed [cm/s] of each gait, whose trials follow each other."""
+    return {
+        "fall_rate": trials.fell.reshape(count, -1).mean(axis=1).tolist(),
+        "speed_cm_s": trials.speed_cm_s.reshape(count, -1).mean(axis=1).tolist(),
+    }
+
+
+if __name__ == "__main__":
+    run_verb(TransferNaoFalls, main)

@@ -1,0 +1,174 @@
+"""`groundwalk transfer toy`: the paper's toy worlds, solved exactly."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from experiments.command_line import run_verb
+from experiments.progress import progress
+from experiments.report import markdown_table
+from experiments.run_folder import RESULT, open_run
+from experiments.run_options import RunOptions
+from experiments.score_table import print_json
+from experiments.text_table import print_table
+from experiments.transfer.page import Claim, write_transfer_page
+from experiments.transfer.toy_mdps import TOYS, Toy
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from sgat.tabular_grounding import grounded_sim
+from sgat.tabular_mdp import FiniteMdp
+from sgat.tabular_models import counted_forward_model
+from sgat.tabular_planning import action_values, policy_iteration
+from sgat.tabular_rollouts import roll_out
+
+VERB = "transfer-toy"
+TITLE = "Toy worlds: does planning in a grounded sim find what is best on real?"
+COLUMNS = (
+    "real world", "planned in", "values of a1, a2, ...", "best", "in the paper",
+    "from counts", "worth on real",
+)  # fmt: skip
+NOTES = (
+    "Each world is one choice; the value of an action is the mean reward of what it "
+    "leads to.",
+    "Values are exact: the forward models are the real world's own probabilities. "
+    "Counted from",
+    "{episodes} random real transitions instead, they lead to the action under "
+    '"from counts".',
+)
+FIRST = 0
+"""The state of the choice."""
+
+
+@dataclass(frozen=True)
+class TransferToy(RunOptions):
+    """Find the best action in the paper's toy worlds, grounded by GAT and by SGAT.
+
+    Attributes:
+      episodes: random real transitions, for the forward models that are counted.
+    """
+
+    episodes: int = 30_000
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        if self.episodes < 1:
+            raise BadValueError(f"episodes is {self.episodes}; it must be positive")
+        super().__post_init__()
+
+
+def main(config: TransferToy) -> None:
+    """Solve the toys, and write everything down."""
+    folder, config = open_run(VERB, config)
+    if not folder.has(RESULT):
+        folder.write_json(RESULT, _solve_all(config))
+    result = folder.read_json(RESULT)
+    claims = [Claim(**claim) for claim in result["claims"]]
+    rows = [
+        _texts(name, planned)
+        for name, toy in result["toys"].items()
+        for planned in toy["planned"]
+    ]
+    notes = [line.format(episodes=config.episodes) for line in NOTES]
+    body = [*markdown_table(COLUMNS, rows), "", *notes]
+    write_transfer_page(folder, TITLE, claims, body, [_answer(result["toys"])])
+    if config.json:
+        print_json(result)
+    else:
+        print_table(COLUMNS, rows)
+        print(f"everything else is in {folder.path}")
+
+
+def _answer(toys: Mapping[str, Any]) -> str:
+    """In how many worlds planning in each sim finds the real world's best action."""
+    found = dict.fromkeys(("sim", "GAT", "SGAT"), 0)
+    for toy in toys.values():
+        best = {row["world"]: row["best"] for row in toy["planned"]}
+        for world in found:
+            found[world] += best[world] == best["real"]
+    said = [f"in {count} when grounded by {name}" for name, count in found.items()]
+    said[0] = f"in {found['sim']} as it is"
+    return (
+        f"In {len(toys)} toy worlds, planning in the sim finds the action that is best "
+        f"in the real world: {', '.join(said)}."
+    )
+
+
+def _solve_all(config: TransferToy) -> dict[str, Any]:
+    solved, claims = {}, []
+    generator = np.random.default_rng(config.seed)
+    with progress("toy worlds", len(TOYS)) as bar:
+        for name, toy in TOYS.items():
+            rows = solve(toy, config.episodes, generator)
+            solved[name] = {"figures": toy.figures, "planned": rows}
+            claims.append(_claim(name, toy, rows).to_json())
+            bar.advance()
+    return {"toys": solved, "claims": claims}
+
+
+def solve(
+    toy: Toy, episodes: int, generator: np.random.Generator
+) -> list[dict[str, Any]]:
+    """What is best in the sim, in both grounded sims and in the real world.
+
+    Args:
+      toy: the worlds.
+      episodes: random real transitions, for the forward models that are counted.
+      generator: where they come from.
+    """
+    anything = np.zeros(toy.sim.states, np.intp)
+    seen = roll_out(toy.real, anything, episodes, generator, exploration=1.0).counts
+    exact = _planned_in(toy, toy.real.transition)
+    counted = _planned_in(toy, counted_forward_model(seen, toy.sim))
+    on_real = _first_values(toy.real)
+    return [
+        {
+            "world": world,
+            "values": _first_values(mdp).tolist(),
+            "best": _best(mdp),
+            "paper": toy.best[world],
+            "from_counts": _best(counted[world]),
+            "worth_on_real": float(on_real[policy_iteration(mdp)[FIRST]]),
+        }
+        for world, mdp in exact.items()
+    ]
+
+
+def _planned_in(toy: Toy, forward: FloatArray) -> dict[str, FiniteMdp]:
+    return {
+        "sim": toy.sim,
+        "GAT": grounded_sim(toy.sim, forward, samples=False),
+        "SGAT": grounded_sim(toy.sim, forward, samples=True),
+        "real": toy.real,
+    }
+
+
+def _first_values(mdp: FiniteMdp) -> FloatArray:
+    """(A,) value of each action; nothing comes after it."""
+    values: FloatArray = action_values(mdp, np.zeros(mdp.states))[FIRST]
+    return values
+
+
+def _best(mdp: FiniteMdp) -> str:
+    return f"a{policy_iteration(mdp)[FIRST] + 1}"
+
+
+def _claim(name: str, toy: Toy, rows: list[dict[str, Any]]) -> Claim:
+    found = {row["world"]: row["best"] for row in rows}
+    return Claim(
+        f"the best actions with a {name} real world are those of the paper "
+        f"({toy.figures})",
+        found == toy.best,
+        ", ".join(f"{action} in {world}" for world, action in found.items()),
+    )
+
+
+def _texts(toy: str, row: dict[str, Any]) -> list[str]:
+    values = ", ".join(f"{value:.4g}" for value in row["values"])
+    actions = [row[key] for key in ("best", "paper", "from_counts")]
+    return [toy, row["world"], values, *actions, f"{row['worth_on_real']:.4g}"]
+
+
+if __name__ == "__main__":
+    run_verb(TransferToy, main)

@@ -1,0 +1,214 @@
+"""The walking robot as a Gymnasium environment."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, get_args
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.error import ResetNeeded
+from gymnasium.spaces import Box
+
+import robots
+from experiments.gait_files import load_gait
+from experiments.reward import reward_cm_s
+from experiments.trials import SEARCH_TRIAL, TrialRules
+from experiments.walk_env.episode import WalkEpisode
+from experiments.walk_env.senses_table import senses_box, senses_of
+from experiments.walk_env.world import EnvWorld, WorldName, episode_seeds
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError, UnknownNameError
+from robots import Description
+from terrain import Heightfield
+from walk_engine import PARAMETERS, Gait
+from walk_engine.gait import from_unit
+from worlds import FALLS, World, WorldOptions
+
+if TYPE_CHECKING:
+    from sgat.action_transformer import Transformer
+
+ActionKind = Literal["residual", "gait"]
+Info = dict[str, Any]
+Environment: TypeAlias = gym.Env[Any, Any]
+
+
+class WalkEnv(Environment):
+    """One robot that walks straight ahead for 7.5 s, or until it falls.
+
+    ## Action space
+
+    | `action` | space | what it is |
+    |---|---|---|
+    | `"residual"` | `Box(-1, 1, (joints,), float32)` | times `residual_rad`, added to the walk engine's joint commands for one tick of 10 ms |
+    | `"gait"` | `Box(-1, 1, (16,), float32)` | a gait, each parameter's bounds at -1 and 1, in the order of `walk_engine.PARAMETERS`; one step is a whole rollout |
+
+    ## Observation space
+
+    `Box(76, float64)` for the NAO with its 20 joints, measured on board and held within
+    the sensors' bounds; noisy and late in the real world. After a rollout in the mode
+    `"gait"` it is that of the last tick.
+
+    | columns | what it is | unit | bounds |
+    |---|---|---|---|
+    | 0 to 19 | joint positions | rad | ±2π |
+    | 20 to 39 | joint velocities | rad/s | ±50 |
+    | 40 to 42 | gyroscope, torso frame | rad/s | ±50 |
+    | 43 to 45 | accelerometer, torso frame | m/s² | ±1000 |
+    | 46 to 53 | foot forces: four of the left foot, four of the right | N | 0 to 10000 |
+    | 54 to 73 | what the walk engine commands next | rad | ±2π |
+    | 74 | the foot that supports: 1 left, -1 right, 0 both | 1 | ±1 |
+    | 75 | time since the step began | s | 0 to 10 |
+
+    ## Reward
+
+    Forward progress in cm over `limit_s`, less 15 at a fall: a whole episode is worth
+    `experiments.reward.reward_cm_s`, in cm/s.
+
+    ## Start
+
+    Upright and crouched in the engine's pose with normal noise of `start_spread_rad`,
+    on ground of its own: terrain, sensor noise, pose and the transformer's noise follow
+    from the seed of `reset`.
+
+    ## End
+
+    Terminated by a fall, or physics that blow up; in the mode `"gait"` after its one
+    step. Truncated when `limit_s` are over, or the robot walks off its ground.
+
+    `info` has `distance_m`, `time_s` and `ended`.
+
+    ## Arguments
+
+    See `__init__`. The ids `Groundwalk/Nao-Sim-v0`, `-Real-v0` and `-Grounded-v0` of
+    `experiments.walk_env.ids` differ in `world`.
+
+    ## Version history
+
+    - v0: first.
+    """  # noqa: E501  # tables cannot be broken
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}  # type: ignore[misc]
+
+    def __init__(
+        self,
+        world: WorldName = "sim",
+        *,
+        action: ActionKind = "residual",
+        robot: str | Description = "nao",
+        gait: str | Gait = "start",
+        terrain: str | Heightfield | None = None,
+        limit_s: float = SEARCH_TRIAL.limit_s,
+        residual_rad: float = 0.1,
+        start_spread_rad: float = 0.01,
+        transformer: "Transformer | str | Path | None" = None,
+        options: WorldOptions | None = None,
+    ) -> None:
+        """Say who walks where; nothing is simulated yet.
+
+        Args:
+          world: "sim", "real", or "grounded": the sim behind an action transformer.
+          action: what an action is.
+          robot: its name, or a description.
+          gait: that actions are added to: a name, a JSON file or a gait.
+          terrain: such as "lumps:amplitude_m=0.005", drawn anew at each reset, or a
+            ground of your own; the world's own where None.
+          limit_s: time limit of an episode.
+          residual_rad: what an action of 1 adds to a joint's command.
+          start_spread_rad: standard deviation of the joints at the start.
+          transformer: of a grounded world: an object, of which this environment gets a
+            copy, or the folder that `sgat.transformer_files` has written.
+          options: of the world, such as its latency; its own where None.
+
+        Raises:
+          BadValueError: a value cannot be, or world and transformer do not fit.
+          UnknownNameError: there is no such world, kind of action, robot or gait.
+        """
+        if action not in get_args(ActionKind):
+            raise UnknownNameError("kind of action", action, get_args(ActionKind))
+        if not 0 < residual_rad < np.inf:
+            raise BadValueError(f"residual_rad is {residual_rad}; it must be positive")
+        description = robots.get(robot) if isinstance(robot, str) else robot
+        self._place = EnvWorld(world, description, terrain, transformer, options)
+        self._gait = load_gait(gait) if isinstance(gait, str) else gait
+        self._rules = TrialRules(limit_s, start_spread_rad=start_spread_rad)
+        self._residual_rad = residual_rad
+        self._action = action
+        self._joints = len(description.joints)
+        wide = self._joints if action == "residual" else len(PARAMETERS)
+        self.action_space = Box(-1.0, 1.0, (wide,), np.float32)
+        self._box = self.observation_space = senses_box(self._joints)
+        self._world: World | None = None
+        self._episode: WalkEpisode | None = None
+
+    def reset(
+        self, *, seed: int | None = None, options: Info | None = None
+    ) -> tuple[FloatArray, Info]:
+        """Start an episode; what it meets follows from the seed.
+
+        Args:
+          seed: of this episode and all that follow; see `gymnasium.Env.reset`.
+          options: there are none.
+        """
+        super().reset(seed=seed)
+        self.close()
+        of_ground, of_noise, self._of_pose = episode_seeds(self.np_random)
+        self._world = self._place.make(of_ground, of_noise)
+        self._begin(self._gait)
+        return self._seen(), self._info()
+
+    def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, Info]:
+        """One tick with a residual, or one rollout with a gait; see the class."""
+        if self._episode is None:
+            raise ResetNeeded("call reset before step")
+        asked = np.clip(np.asarray(action, float), -1.0, 1.0)
+        if self._action == "gait":
+            self._begin(Gait.from_vector(from_unit((asked + 1.0) / 2.0)))
+            reward = self._walk_to_the_end()
+        else:
+            reward = self._tick(self._residual_rad * asked)
+        fell = self._episode.ended in FALLS
+        terminated = fell or self._action == "gait"
+        truncated = self._episode.is_over and not terminated
+        return self._seen(), reward, terminated, truncated, self._info()
+
+    def close(self) -> None:
+        """Give back the world's processes."""
+        if self._world is not None:
+            self._world.close()
+        self._world = self._episode = None
+
+    def _begin(self, gait: Gait) -> None:
+        assert self._world is not None
+        self._episode = WalkEpisode(self._world, gait, self._rules, self._of_pose)
+
+    def _tick(self, added_rad: FloatArray) -> float:
+        """Walk on for a tick; what that is worth."""
+        assert self._episode is not None
+        before = self._worth()
+        if not self._episode.is_over:
+            self._episode.step(added_rad)
+        return self._worth() - before
+
+    def _walk_to_the_end(self) -> float:
+        assert self._episode is not None
+        nothing = np.zeros(self._joints)
+        while not self._episode.is_over:
+            self._episode.step(nothing)
+        return self._worth()
+
+    def _worth(self) -> float:
+        assert self._episode is not None
+        trials = self._episode.trials()
+        return float(reward_cm_s(trials, self._rules.limit_s)[0])
+
+    def _seen(self) -> FloatArray:
+        assert self._episode is not None
+        return senses_of(self._episode, self._box)
+
+    def _info(self) -> Info:
+        assert self._episode is not None
+        trials = self._episode.trials()
+        return {
+            "distance_m": float(trials.distance_m[0]),
+            "time_s": float(trials.time_s[0]),
+            "ended": str(trials.ended[0]),
+        }

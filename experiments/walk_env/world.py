@@ -1,0 +1,108 @@
+"""The world of an episode of the Gymnasium environment."""
+
+import copy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+import worlds
+from groundwalk.errors import BadValueError, UnknownNameError
+from robots import Description
+from terrain import Heightfield, TerrainSpec, parse
+from worlds import World, WorldOptions
+
+if TYPE_CHECKING:
+    from sgat.action_transformer import Transformer
+
+WorldName = Literal["sim", "real", "grounded"]
+
+
+@dataclass(frozen=True, eq=False)
+class EnvWorld:
+    """Makes a world with one robot, for one episode after the other.
+
+    Attributes:
+      name: "sim", "real", or "grounded": the sim behind a transformer.
+      description: the robot.
+      terrain: in words, drawn anew for each episode, or a ground; the world's own
+        where None.
+      transformer: of a grounded world; an object, which is copied so that no two
+        environments share one, or the folder of a written one.
+      options: of the world inside; its own where None.
+    """
+
+    name: WorldName
+    description: Description
+    terrain: str | Heightfield | None = None
+    transformer: "Transformer | str | Path | None" = None
+    options: WorldOptions | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what does not fit together, and read or copy the transformer."""
+        if self.name not in get_args(WorldName):
+            raise UnknownNameError("world", self.name, get_args(WorldName))
+        if (self.name == "grounded") != (self.transformer is not None):
+            raise BadValueError(
+                "a grounded world, and no other, needs a transformer: an object, or "
+                "the folder that sgat.transformer_files has written"
+            )
+        terrain = self.terrain or worlds.kind(self.inner).terrain
+        if isinstance(terrain, str):
+            parse(terrain)
+        object.__setattr__(self, "terrain", terrain)
+        object.__setattr__(self, "transformer", _own(self.transformer))
+
+    @property
+    def inner(self) -> str:
+        """The world that computes the physics."""
+        return "sim" if self.name == "grounded" else self.name
+
+    def make(
+        self, of_ground: np.random.SeedSequence, of_noise: np.random.SeedSequence
+    ) -> World:
+        """The world of an episode.
+
+        Args:
+          of_ground: seed of a terrain that is given in words.
+          of_noise: seed of the sensors' noise, and of the transformer's.
+        """
+        grounds = [self._ground(of_ground)]
+        robot, seeds = self.description, [of_noise]
+        world = worlds.make(self.inner, robot, grounds, seeds, self.options)
+        if self.transformer is None:
+            return world
+        from experiments.grounded_walks.data import leg_senses
+        from sgat.grounded_world import GroundedWorld
+
+        assert not isinstance(self.transformer, str | Path)
+        senses = leg_senses(self.description)
+        return GroundedWorld(world, senses, self.transformer, [of_noise])
+
+    def _ground(self, seed: np.random.SeedSequence) -> Heightfield:
+        if isinstance(self.terrain, Heightfield):
+            return self.terrain
+        number = int(seed.generate_state(1)[0])
+        return TerrainSpec(*parse(str(self.terrain)), seed=number).make()
+
+
+def episode_seeds(
+    generator: np.random.Generator,
+) -> tuple[np.random.SeedSequence, np.random.SeedSequence, np.random.SeedSequence]:
+    """Seeds of an episode's ground, of its noise and of its start pose.
+
+    Args:
+      generator: the environment's `np_random`.
+    """
+    root = np.random.SeedSequence(int(generator.integers(2**63)))
+    ground, noise, pose = root.spawn(3)
+    return ground, noise, pose
+
+
+def _own(given: "Transformer | str | Path | None") -> "Transformer | None":
+    if not isinstance(given, str | Path):
+        return copy.deepcopy(given)
+    from sgat.transformer_files import read_transformer
+
+    return read_transformer(Path(given))
