@@ -1,13 +1,12 @@
 """One picture of several robots' walks, all of one scale."""
 
-import io
 from collections.abc import Mapping
 from pathlib import Path
 
+from experiments.figure_file import write_figure
 from experiments.scenes import make_scenes
 from experiments.walk_figure import walk_figure
 from experiments.walk_strip import walk_strip
-from groundwalk.files import write_bytes
 from worlds import Recording
 
 COLUMNS = 3
@@ -26,6 +25,5 @@ def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
     figure = walk_figure(
         {f"{i % COLUMNS}/{i // COLUMNS}": strip for i, strip in enumerate(strips)}
     )
-    png = io.BytesIO()
-    figure.savefig(png, format="png", dpi=DOTS_PER_INCH)
-    write_bytes(path, png.getvalue())
+    figure.set_dpi(DOTS_PER_INCH)
+    write_figure(figure, path)
