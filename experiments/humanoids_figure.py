@@ -22,8 +22,5 @@ def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
       path: the file.
     """
     strips = [walk_strip(scene) for scene in make_scenes(recordings)]
-    figure = walk_figure(
-        {f"{i % COLUMNS}/{i // COLUMNS}": strip for i, strip in enumerate(strips)}
-    )
-    figure.set_dpi(DOTS_PER_INCH)
-    write_figure(figure, path)
+    placed = {f"{i % COLUMNS}/{i // COLUMNS}": strip for i, strip in enumerate(strips)}
+    write_figure(walk_figure(placed, DOTS_PER_INCH), path)
