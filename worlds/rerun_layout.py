@@ -35,8 +35,9 @@ def blueprint(
     if not pages and len(scenes) > MOST_ABREAST:
         tabs = [_scene_tab(scene) for scene in scenes]
     if tabs:
-        robots = rrb.Grid(*map(_robot_view, scenes), grid_columns=_ROBOT_COLUMNS)
-        rows = [robots] if scenes else []
+        abreast = min(len(scenes), _ROBOT_COLUMNS)
+        robots = map(_robot_view, scenes)
+        rows = [rrb.Grid(*robots, grid_columns=abreast)] if scenes else []
         rows.append(rrb.Tabs(*tabs))
     else:
         rows = [rrb.Horizontal(*map(_scene_views, scenes))]
