@@ -61,15 +61,19 @@ def main(config: ConcealedRun) -> None:
             f"{BASELINE_ANSWERS}/{config.by}",
             partial(by_baseline, config.by),
         )
-    if not unanswered(config.folder, kind):
-        return
+    _note_code(config, kind)
+    answer_all(config.folder, kind, answer, config.seed, config.threads)
+
+
+def _note_code(config: ConcealedRun, kind: str) -> None:
+    """Write down what answers; not beside answers of code that nobody noted."""
     answers = RunFolder(config.folder / kind)
-    if answers.has(PROVENANCE):
+    missing, cases = unanswered(config.folder, kind), cases_of(config.folder)
+    if missing and answers.has(PROVENANCE):
         answers.note_resumed()
-    else:
+    elif missing == cases:
         command = {"command": repeat_command(VERB, config)}
         answers.write_json(PROVENANCE, command | provenance())
-    answer_all(config.folder, kind, answer, config.seed, config.threads)
 
 
 def unanswered(folder: Path, kind: str) -> list[Path]:

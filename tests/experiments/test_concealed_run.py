@@ -92,11 +92,31 @@ def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkey
     assert noted_code["packages"]["mujoco"] == "4.0.0"
 
 
-def test_code_that_found_everything_answered_is_not_noted(folder, in_this_process):
+@pytest.mark.parametrize("left", [0, 1])
+def test_code_is_not_noted_beside_answers_of_unknown_code(
+    folder, in_this_process, monkeypatch, left
+):
     in_this_process(concealed_run)
+    monkeypatch.setattr(concealed_run, "diagnosed", noted)
     answer_all(folder, ANSWERS, noted, seed=5, threads=1)
+    for path in list((folder / ANSWERS).iterdir())[:left]:
+        path.unlink()
     main(ConcealedRun(folder, threads=1))
+    assert len(answers(folder)) == 3
     assert not (folder / ANSWERS / "provenance.json").exists()
+
+
+def test_other_code_that_goes_on_is_noted_too(folder, in_this_process, monkeypatch):
+    in_this_process(concealed_run)
+    monkeypatch.setattr(concealed_run, "diagnosed", noted)
+    main(ConcealedRun(folder, threads=1))
+    path = folder / ANSWERS / "provenance.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"commit": "earlier"}))
+    (folder / ANSWERS / "case_001.json").unlink()
+    main(ConcealedRun(folder, threads=1))
+    told = json.loads(path.read_text())
+    assert told["commit"] == "earlier"
+    assert len(told["resumed"]) == 1
 
 
 def test_a_folder_without_cases_is_refused(tmp_path):
