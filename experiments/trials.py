@@ -85,6 +85,24 @@ class Trials:
         return np.array([end in FALLS for end in self.ended])
 
 
+def start_pose(
+    engine: WalkEngine, rules: TrialRules, seeds: Sequence[np.random.SeedSequence]
+) -> FloatArray:
+    """(n, joints) poses [rad] in which n trials begin.
+
+    Args:
+      engine: of n gaits.
+      rules: how far the poses spread.
+      seeds: n, if they do.
+    """
+    pose_rad = engine.start_pose()
+    if rules.start_spread_rad == 0:
+        return pose_rad
+    joints = pose_rad.shape[1]
+    spread = [np.random.default_rng(seed).standard_normal(joints) for seed in seeds]
+    return pose_rad + rules.start_spread_rad * np.stack(spread)
+
+
 def walk_trials(
     world: World,
     gaits: Sequence[Gait] | FloatArray,
@@ -104,12 +122,7 @@ def walk_trials(
       on_end: called once for each robot whose trial is over.
     """
     engine = WalkEngine(biped(world.description), gaits, TICK_S)
-    pose_rad = engine.start_pose()
-    if rules.start_spread_rad > 0:
-        pose_rad = pose_rad + rules.start_spread_rad * np.stack(
-            [np.random.default_rng(s).standard_normal(pose_rad.shape[1]) for s in seeds]
-        )
-    observation = world.reset(pose_rad)
+    observation = world.reset(start_pose(engine, rules, seeds))
     start_m = world.truth().base_position_m[:, 0]
     time_s = np.zeros(world.n)
     ahead = Velocity.forward()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from experiments.trials import TrialRules, Trials
+from experiments.trials import TrialRules, Trials, start_pose
 from groundwalk.arrays import FloatArray
 from robots import biped
 from walk_engine import Gait, Velocity, WalkEngine
@@ -32,11 +32,7 @@ class WalkEpisode:
         """
         self._world, self._rules = world, rules
         self._engine = WalkEngine(biped(world.description), [gait], TICK_S)
-        pose_rad = self._engine.start_pose()
-        if rules.start_spread_rad > 0:
-            generator = np.random.default_rng(seed)
-            spread = generator.standard_normal(pose_rad.shape[1])
-            pose_rad = pose_rad + rules.start_spread_rad * spread
+        pose_rad = start_pose(self._engine, rules, [seed])
         self.observation: Observation = world.reset(pose_rad)
         self._start_m = world.truth().base_position_m[:, 0]
         self.ticks = 0
