@@ -2,6 +2,7 @@
 
 import dataclasses
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,10 +29,10 @@ from experiments.run_folder import (
 from experiments.run_options import RunOptions
 from experiments.run_pictures import picture_run
 from experiments.score_table import print_json
-from experiments.search import GaitSearch, check_search
-from experiments.search_run import RATINGS, Entry, best_mean, run_search
+from experiments.search import check_search
 from experiments.text_table import print_table
 from experiments.trials import TrialRules, walk_trials
+from experiments.tuning import Budget, tune
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from robots import Description
@@ -161,26 +162,9 @@ def _search(
     seed: np.random.SeedSequence,
 ) -> Gait:
     """The best mean gait of a short search on flat ground in the sim."""
-    of_strategy, *of_walks, of_ratings = seed.spawn(2 + config.generations)
-
-    def generation(number: int, search: GaitSearch) -> Entry:
-        tried = np.vstack([search.ask(), search.mean.to_vector()])
-        rewards, fell = _rate(config, description, tried, of_walks[number])
-        search.tell(rewards[:-1])
-        return {
-            "mean_reward": float(rewards[-1]),
-            "mean_fell": float(fell[-1]),
-            "fell": float(fell[:-1].mean()),
-        }
-
-    means = run_search(
-        folder.path / CHECKPOINT,
-        lambda: GaitSearch(START, config.population, config.sigma, of_strategy),
-        generation,
-        config.generations,
-    )
-    poses = of_ratings.spawn(RATINGS)
-    return best_mean(means, [_rate(config, description, means, p)[0] for p in poses])
+    budget = Budget(config.population, config.generations, config.sigma)
+    rater = partial(_rate, config, description)
+    return tune(folder.path / CHECKPOINT, START, budget, rater, seed)
 
 
 def _rate(
@@ -188,8 +172,8 @@ def _rate(
     description: Description,
     tried: FloatArray,
     seed: np.random.SeedSequence,
-) -> tuple[FloatArray, FloatArray]:
-    """Rewards (n,) [cm/s] of n gaits, and the share of their walks that fell."""
+) -> FloatArray:
+    """Rewards (n,) [cm/s] of n gaits: see `experiments.tuning.Rater`."""
     study = config.studies()["sim"]
     # The same poses for all gaits: what differs between them is their own.
     poses = seed.spawn(WALKS) * len(tried)
@@ -198,11 +182,7 @@ def _rate(
     trials = walk_trials(world, np.repeat(tried, WALKS, axis=0), SEARCHED, poses)
     penalty = FALL_PENALTY_CM_S * description.scale.speed
     rewards = reward_cm_s(trials, SEARCHED.limit_s, penalty)
-    of_gait = (len(tried), WALKS)
-    return (
-        rewards.reshape(of_gait).mean(axis=1),
-        trials.fell.reshape(of_gait).mean(axis=1),
-    )
+    return np.asarray(rewards.reshape(len(tried), WALKS).mean(axis=1))
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ from experiments.concealed.information import level_of
 from experiments.concealed.reading import read_case
 from experiments.concealed.score_truth import TrueCase
 from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.blas import one_blas_thread
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,7 @@ def answer_key(found: Sequence[Found]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
+@one_blas_thread
 def consult(
     folder: Path, case: TrueCase, answers: Mapping[str, Sequence[Found]]
 ) -> Oracle:

@@ -1,6 +1,6 @@
 """What rates gaits in a search: worlds of several kinds, several walks of each gait."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,10 +29,6 @@ where falls are counted, there is more than twice the time to fall in."""
 REAL_GROUNDS = 10
 """Grounds of a generation on real: on a single one, all gaits may fall or none."""
 
-Rater = Callable[[FloatArray, np.random.SeedSequence], FloatArray]
-"""(n,) rewards [cm/s] of (n, 16) gaits. All get the same random numbers, so that what
-differs between them is the gaits' own."""
-
 
 @dataclass(frozen=True)
 class GroundedRater:
@@ -49,7 +45,7 @@ class GroundedRater:
     rules: TrialRules = RATED
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `Rater`."""
+        """See `experiments.tuning.Rater`."""
         trials = walk_in_sim(self.sim, vectors, self.repeats, seed, self.rules)
         rewards = _reward_cm_s(trials, self.rules)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
@@ -70,7 +66,7 @@ class RandomisedRater:
     friction: tuple[float, float] = (0.4, 1.0)
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `Rater`."""
+        """See `experiments.tuning.Rater`."""
         grounds = [terrain.make("flat", 0)] * len(vectors)
         rewards = []
         for child in seed.spawn(self.repeats):
@@ -102,7 +98,7 @@ class RealRater:
     course: RealCourse
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `Rater`."""
+        """See `experiments.tuning.Rater`."""
         grounds = self.course.grounds(seed.spawn(REAL_GROUNDS))
         trials = []
         for first in range(0, len(vectors), MOST_AT_ONCE):

@@ -11,7 +11,6 @@ from experiments.command_line import run_verb
 from experiments.corrected_sims import check_correction
 from experiments.grounded_walks.places import Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
-from experiments.grounded_walks.tuning import Budget
 from experiments.progress import progress
 from experiments.run_folder import RESULT, RunFolder, open_run
 from experiments.run_options import RunOptions
@@ -29,6 +28,7 @@ from experiments.transfer.nao_study import (
     Effort,
     NaoStudy,
 )
+from experiments.tuning import Budget
 from groundwalk.errors import BadValueError, UnknownNameError
 from worlds.hidden_effects import Hidden
 from worlds.hidden_robot import check_hidden

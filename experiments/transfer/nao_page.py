@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from experiments.grounded_walks.data import ON_COURSE
+from experiments.grounded_walks.grounding import LUMPS_MARGIN
 from experiments.grounded_walks.groundings import GAT, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.groundings_words import UNEVEN_MEANS
 from experiments.grounded_walks.places import RealCourse
 from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S, RATED
-from experiments.grounded_walks.tuning import LUMPS_MARGIN
 from experiments.intervals import wilson
 from experiments.report import markdown_table
 from experiments.run_folder import RunFolder

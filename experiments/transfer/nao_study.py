@@ -10,6 +10,7 @@ import numpy as np
 import robots
 from experiments.evaluation import Study, evaluate
 from experiments.grounded_walks.data import GaitCloud
+from experiments.grounded_walks.grounding import Grounding, cloud_around
 from experiments.grounded_walks.groundings import (
     GAT,
     NONE,
@@ -21,13 +22,12 @@ from experiments.grounded_walks.places import Places, RealCourse
 from experiments.grounded_walks.raters import (
     GroundedRater,
     RandomisedRater,
-    Rater,
     RealRater,
 )
 from experiments.grounded_walks.sim import ROBOT, GroundedSim
-from experiments.grounded_walks.tuning import Budget, Grounding, cloud_around, tune
 from experiments.run_folder import HISTORY, RunFolder
 from experiments.transfer.nao_page import CELLS, DIAGNOSED, DIAGNOSED_SIM
+from experiments.tuning import Budget, Rater, tune
 from walk_engine import Gait, gaits
 
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"

@@ -1,6 +1,7 @@
 """Tasks side by side: as if alone, with their questions in common batches."""
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -29,6 +30,23 @@ def test_tasks_get_the_answers_to_their_own_questions():
     oracle = Oracle()
     assert lockstep([asks(1, 2), asks(10, 20), asks(3, 4)], oracle) == [5, 500, 25]
     assert [sorted(batch) for batch in oracle.batches] == [[1, 3, 10], [2, 4, 20]]
+
+
+def test_questions_come_in_the_tasks_order_whoever_asks_first():
+    asking = threading.Event()
+
+    def late(ask):
+        asking.wait()
+        time.sleep(0.05)
+        return ask(1)
+
+    def early(ask):
+        asking.set()
+        return ask(2)
+
+    oracle = Oracle()
+    assert lockstep([late, early], oracle) == [1, 4]
+    assert oracle.batches == [[1, 2]]
 
 
 def test_tasks_may_be_of_different_lengths():

@@ -8,6 +8,7 @@ import scipy.stats
 import robots
 from diagnosis.corrected_sim import CorrectedSim
 from experiments.grounded_walks.data import FLAT_TICKS, GaitCloud, on_lumps
+from experiments.grounded_walks.grounding import Grounding
 from experiments.grounded_walks.groundings import GAT, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.places import (
     LUMPS_M,
@@ -17,7 +18,6 @@ from experiments.grounded_walks.places import (
     world_at,
 )
 from experiments.grounded_walks.records import RealWalks
-from experiments.grounded_walks.tuning import Grounding
 from experiments.run_folder import HISTORY, RunFolder
 from experiments.transfer.nao import TransferNao, main
 from experiments.transfer.nao_figure import cells_figure

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from experiments.grounded_walks.tuning import RATINGS, Budget, tune
+from experiments.search_run import RATINGS
+from experiments.tuning import Budget, tune
 from walk_engine import gaits
 from walk_engine.gait import PARAMETERS
 

@@ -1,15 +1,14 @@
-"""A search for a gait, and the grounding steps that it may walk in."""
+"""The grounding steps that a search may walk in."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
 from experiments.grounded_walks.data import ON_COURSE, GaitCloud
 from experiments.grounded_walks.groundings import GROUNDINGS, UNEVEN, WalkModels
 from experiments.grounded_walks.places import SHORT_START_M, Places
-from experiments.grounded_walks.raters import RATED, GroundedRater, Rater
+from experiments.grounded_walks.raters import RATED, GroundedRater
 from experiments.grounded_walks.records import (
     RealWalks,
     WalkRecords,
@@ -17,62 +16,11 @@ from experiments.grounded_walks.records import (
     record_real,
     record_walks,
 )
-from experiments.search import GaitSearch
-from experiments.search_run import RATINGS, Entry, best_mean, run_search
 from walk_engine import Gait
 
 LUMPS_MARGIN = 1.2
 """A search's lumps are higher than real's by this. Gaits tuned on lumps as high as
 those lie where falls begin, and fell on 10 and 15 of 40 real courses."""
-
-
-@dataclass(frozen=True)
-class Budget:
-    """How much is searched.
-
-    Attributes:
-      population: gaits in a generation.
-      generations: of a search.
-      sigma: spread of the first generation, as a part of each parameter's range.
-    """
-
-    population: int
-    generations: int
-    sigma: float
-
-    @property
-    def rated(self) -> int:
-        """Ratings of a search: of samples and means, then of all means again."""
-        means = self.generations + 1
-        return self.generations * (self.population + 1) + RATINGS * means
-
-
-def tune(
-    checkpoint: Path,
-    start: Gait,
-    budget: Budget,
-    rater: Rater,
-    seed: np.random.SeedSequence,
-) -> Gait:
-    """The best of all generations' mean gaits, in a search that begins at another gait.
-
-    All are rated `RATINGS` times more, each time with other random numbers.
-    """
-    of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
-
-    def generation(number: int, search: GaitSearch) -> Entry:
-        tried = np.vstack([search.ask(), search.mean.to_vector()])
-        rewards = rater(tried, of_walks[number])
-        search.tell(rewards[:-1])
-        return {"mean_reward": float(rewards[-1])}
-
-    means = run_search(
-        checkpoint,
-        lambda: GaitSearch(start, budget.population, budget.sigma, of_search),
-        generation,
-        budget.generations,
-    )
-    return best_mean(means, [rater(means, one) for one in of_ratings.spawn(RATINGS)])
 
 
 class Grounding:
