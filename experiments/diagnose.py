@@ -25,10 +25,11 @@ from experiments.diagnosis_report.facts import ReportFacts
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import write_report
 from experiments.diagnosis_report.series import ChannelSeries, ReportSeries
+from experiments.extras import extra
 from experiments.report_origin import command_of
 from experiments.run_folder import PROVENANCE, RunFolder, check_free, to_plain
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError, UnknownNameError
+from groundwalk.errors import BadValueError, GroundwalkError
 from worlds import ServoGains
 
 VERB = "diagnose"
@@ -103,7 +104,8 @@ def main(config: Diagnose) -> None:
     if config.json:
         print(verdict.to_json(), end="")
     else:
-        print_verdict(verdict, [folder.path / name for name in (REPORT, OVERLAY)])
+        written = [folder.path / name for name in (REPORT, OVERLAY)]
+        print_verdict(verdict, [path for path in written if path.exists()])
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
@@ -117,13 +119,15 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     folder = RunFolder.create(VERB, config)
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
-    write_correction(folder, found)
+    with extra(CORRECTED_XML):
+        write_correction(folder, found)
     series = held_out(found)
-    facts = _facts(config, folder, found)
-    write_report(folder.path / REPORT, found.verdict, series, facts)
-    write_overlay(
-        folder.path / OVERLAY, series, found.verdict.fit, _description(config)
-    )
+    with extra(REPORT):
+        facts = _facts(config, folder, found)
+        write_report(folder.path / REPORT, found.verdict, series, facts)
+    with extra(OVERLAY):
+        fit = found.verdict.fit
+        write_overlay(folder.path / OVERLAY, series, fit, _description(config))
     return folder, found.verdict
 
 
@@ -164,9 +168,10 @@ def _by_trace(predictor: Predictor, model: Model) -> Sequence[FloatArray]:
 
 
 def _description(config: Diagnose) -> robots.Description | None:
+    """What the overlay draws; None for a robot that is no biped, such as an arm."""
     try:
         return robots.get(config.robot)
-    except UnknownNameError:
+    except GroundwalkError:
         return None
 
 

@@ -10,6 +10,7 @@ import robots
 import worlds
 from experiments.command_line import run_verb
 from experiments.evaluation import Study, evaluate, keep
+from experiments.extras import extra
 from experiments.gait_files import load_gaits
 from experiments.result_page import write_page
 from experiments.run_folder import RESULT, open_run
@@ -69,7 +70,8 @@ def main(config: Evaluate) -> None:
         outcomes = evaluate(config.study(world), robots.get(config.robot), gaits, seed)
         result[world] = keep(folder, world, outcomes)
         folder.write_json(RESULT, result)
-    picture_run(folder)
+    with extra("a picture of the walks"):
+        picture_run(folder)
     write_page(folder, "How fast and how surely do these gaits walk 3 m?", result)
     if config.json:
         print_json(result)

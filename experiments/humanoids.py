@@ -10,6 +10,7 @@ import numpy as np
 import robots
 from experiments.command_line import run_verb
 from experiments.evaluation import Study, evaluate, keep
+from experiments.extras import extra
 from experiments.humanoids_facts import reach, saturation, sole
 from experiments.humanoids_figure import draw_humanoids
 from experiments.humanoids_page import (
@@ -112,9 +113,11 @@ def main(config: Humanoids) -> None:
             own = RunFolder(folder.path / folder_name(name))
             result[name] = _robot(config, own, robots.get(name))
             folder.write_json(RESULT, result)
-            picture_run(own)
-    walks = {name: _walk(folder, name) for name in config.robots}
-    draw_humanoids(walks, folder.path / PICTURE)
+            with extra(f"{own.path}: a picture"):
+                picture_run(own)
+    with extra(PICTURE):
+        walks = {name: _walk(folder, name) for name in config.robots}
+        draw_humanoids(walks, folder.path / PICTURE)
     write_humanoids_page(folder, result)
     if config.json:
         print_json(result)

@@ -12,6 +12,7 @@ import robots
 from experiments.command_line import run_verb
 from experiments.corrected_sims import check_correction, make_sim
 from experiments.evaluation import Study, evaluate, keep
+from experiments.extras import extra
 from experiments.gait_files import load_gait
 from experiments.recorder import Recorder
 from experiments.result_page import write_page
@@ -127,7 +128,8 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
         table = _evaluate(config, folder, tuned)
         folder.write_json(RESULT, {**table, "gait": dict(tuned)})
     result = folder.read_json(RESULT)
-    picture_run(folder)
+    with extra("a picture of the walks"):
+        picture_run(folder)
     write_page(folder, TITLE, {world: result[world] for world in WORLDS})
     return folder, Gait.from_mapping(result["gait"])
 

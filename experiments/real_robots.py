@@ -10,6 +10,7 @@ from diagnosis.search_result import Rules
 from experiments.command_line import run_verb
 from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_report.console import print_verdict
+from experiments.extras import extra
 from experiments.real_robots_cases import ROBOTS, RealRobot
 from experiments.real_robots_page import write_real_page
 from experiments.report import REPORT
@@ -70,9 +71,12 @@ class RealRobots:
 def main(config: RealRobots) -> None:
     """Diagnose, write the page, and say what was found."""
     folder, verdict = run_diagnosis(config.diagnose())
-    (folder.path / REPORT).rename(folder.path / DIAGNOSIS)
-    write_real_page(folder, ROBOTS[config.robot], verdict)
-    print_verdict(verdict, [folder.path / name for name in (REPORT, DIAGNOSIS)])
+    report, diagnosis = folder.path / REPORT, folder.path / DIAGNOSIS
+    if report.exists():
+        report.rename(diagnosis)
+    with extra(REPORT):
+        write_real_page(folder, ROBOTS[config.robot], verdict)
+    print_verdict(verdict, [path for path in (report, diagnosis) if path.exists()])
 
 
 def _model(case: RealRobot, folder: Path) -> str:

@@ -11,6 +11,7 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
+from experiments.extras import extra
 from experiments.gait_files import load_gaits
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
@@ -100,8 +101,9 @@ def main(config: TerrainStress) -> None:
     curves = curves_of(cells)
     result = {"curves": curves, "worst": write_worst(folder, config, gaits, cells)}
     folder.write_json(RESULT, result)
-    draw_comparison(curves, folder.path)
-    draw_heat_maps(curves, folder.path)
+    with extra("the pictures"):
+        draw_comparison(curves, folder.path)
+        draw_heat_maps(curves, folder.path)
     write_stress_page(folder, curves)
     if config.json:
         print_json(result)

@@ -27,6 +27,7 @@ from experiments.concealed.score_truth import (
     read_baselines,
     read_truth,
 )
+from experiments.extras import extra
 from experiments.progress import progress
 from experiments.repeat_command import repeat_command
 from experiments.report_origin import Origin
@@ -79,7 +80,8 @@ def main(config: ConcealedScore) -> None:
     score["provenance"] = command | provenance()
     score["answered_by"] = _code_that_answered(folder)
     write_text(folder / SCORE, json.dumps(score, indent=1) + "\n")
-    draw_score(score, folder / FIGURE)
+    with extra(FIGURE):
+        draw_score(score, folder / FIGURE)
     score_report(score, FIGURE).write(folder, PAGE)
     print_table(*score_rows(score))
     if score["missing"]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
 
+from experiments.extras import extra
 from experiments.run_folder import RECORDINGS, RunFolder
 from experiments.stress.curves import Cell, trials_of
 from experiments.stress.families import Place
@@ -101,4 +102,5 @@ def _write(folder: RunFolder, name: str, walks: Sequence[Walk]) -> None:
         stem = walk.scene.name.replace("/", "_")
         path = folder.path / RECORDINGS / f"{stem}.parquet"
         write_recording(walk.scene.recording, path)
-    write_rrd(folder.path / name, [walk.scene for walk in walks])
+    with extra(name):
+        write_rrd(folder.path / name, [walk.scene for walk in walks])

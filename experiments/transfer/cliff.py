@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.command_line import run_verb
+from experiments.extras import extra
 from experiments.progress import progress
 from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.run_options import RunOptions
@@ -59,7 +60,8 @@ def main(config: TransferCliff) -> None:
     claims = check_claims(rows)
     result = {"rows": rows, "claims": [claim.to_json() for claim in claims]}
     folder.write_json(RESULT, result)
-    draw_cliff(rows, (config.rows, config.columns), folder.path / FIGURE)
+    with extra(FIGURE):
+        draw_cliff(rows, (config.rows, config.columns), folder.path / FIGURE)
     write_cliff_page(folder, config.study(), rows, claims)
     if config.json:
         print_json(result)

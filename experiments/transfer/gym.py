@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any, ClassVar
 
+from experiments.extras import extra
 from experiments.progress import progress
 from experiments.run_folder import RESULT, RunFolder, open_run
 from experiments.run_options import RunOptions
@@ -99,7 +100,8 @@ def run_study(verb: str, title: str, figure: str, config: TransferGym) -> None:
         "cells": cells,
     }
     folder.write_json(RESULT, result)
-    draw_returns(rows, folder.path / figure)
+    with extra(figure):
+        draw_returns(rows, folder.path / figure)
     write_gym_page(folder, title, figure, (config.size, study), result)
     if config.json:
         print_json(result)

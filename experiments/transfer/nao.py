@@ -9,6 +9,7 @@ import robots
 import worlds
 from experiments.command_line import run_verb
 from experiments.corrected_sims import check_correction
+from experiments.extras import extra
 from experiments.grounded_walks.places import Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
 from experiments.progress import progress
@@ -154,7 +155,8 @@ def _write(
 ) -> None:
     """Write down what is known so far: a study takes hours."""
     folder.write_json(RESULT, {CELLS: cells})
-    draw_cells(cells, folder.path / FIGURE)
+    with extra(FIGURE):
+        draw_cells(cells, folder.path / FIGURE)
     write_nao_page(folder, cells, len(config.plan), config.places.real)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 import robots
 from experiments.command_line import run_verb
+from experiments.extras import extra
 from experiments.grounded_walks.data import GaitCloud, walk
 from experiments.grounded_walks.groundings import GROUNDINGS, WalkModels
 from experiments.grounded_walks.places import Places, RealCourse
@@ -76,8 +77,10 @@ def main(config: TransferNaoFalls) -> None:
             bar.advance(f"{stage} done")
     rows = prediction_rows(state)
     folder.write_json(RESULT, {"predictions": rows, MEASURES: state[MEASURES]})
-    draw_measures(state[MEASURES], folder.path / MEASURES_FIGURE)
-    draw_falls(state, folder.path / FIGURE)
+    with extra(MEASURES_FIGURE):
+        draw_measures(state[MEASURES], folder.path / MEASURES_FIGURE)
+    with extra(FIGURE):
+        draw_falls(state, folder.path / FIGURE)
     write_falls_page(folder, rows, state, config.trials)
     if config.json:
         print_json(folder.read_json(RESULT))

@@ -46,6 +46,38 @@ def test_a_diagnosis_writes_all_that_it_promises(recording, tmp_path, capsys):
 
 
 @pytest.mark.slow
+def test_an_arm_from_a_urdf_is_diagnosed_to_the_end(tmp_path, capsys):
+    """Two feet are asked of walking robots only: an arm's overlay has its curves."""
+    path = tmp_path / "arm.parquet"
+    record(Record(robot="so101", motion="steps", duration=5.0, out=path))
+    model = path.with_name("arm.nominal.urdf")
+    main(Diagnose((path,), str(model), out=tmp_path / "run"))
+    written = {path.name for path in (tmp_path / "run").iterdir()}
+    assert written >= {"diagnosis.json", "report.html", "overlay.rrd"}
+    assert "not written" not in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_a_verdict_outlives_an_overlay_that_fails(
+    recording, tmp_path, capsys, monkeypatch
+):
+    def fail(*arguments):
+        raise RuntimeError("no colours\nleft")
+
+    monkeypatch.setattr("experiments.diagnose.write_overlay", fail)
+    model = recording.with_name("swing.nominal.xml")
+    main(Diagnose((recording,), str(model), out=tmp_path / "run"))
+    written = {path.name for path in (tmp_path / "run").iterdir()}
+    assert written >= {"diagnosis.json", "report.html", "corrected.json"}
+    assert "overlay.rrd" not in written
+    said = capsys.readouterr()
+    assert said.err.endswith(
+        "groundwalk: overlay.rrd is not written: no colours left\n"
+    )
+    assert "verdict" in said.out
+
+
+@pytest.mark.slow
 def test_what_was_there_before_is_no_finding(recording, tmp_path, capsys):
     model = recording.with_name("swing.nominal.xml")
     out = tmp_path / "run"
