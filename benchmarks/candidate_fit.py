@@ -19,14 +19,14 @@ from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
 from diagnosis.baselines.sysid import fitted
 from diagnosis.baselines.sysid_models import Unknown, unknowns
-from diagnosis.channels import channels_of
-from diagnosis.effect import Placed
-from diagnosis.fitting import fit_all
-from diagnosis.library import effect
-from diagnosis.plant import Plant
-from diagnosis.predictor import Model, Predictor
-from diagnosis.trace import Trace
-from diagnosis.trace_reading import read_traces
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import fit_all
+from diagnosis.traces.read import read_traces
+from diagnosis.traces.trace import Trace
 from experiments.record import Record
 from experiments.record import main as record
 

@@ -22,12 +22,12 @@ import terrain
 import worlds
 from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
-from experiments.trials import TrialRules, walk_trials
+from experiments.walking.trials import TrialRules, walk_trials
 from groundwalk.arrays import FloatArray
 from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.gait import PARAMETERS, from_unit, to_unit
-from worlds.mujoco_model import mujoco_model
-from worlds.sim import SimWorld
+from worlds.sim.model import mujoco_model
+from worlds.sim.world import SimWorld
 
 ROBOTS = 150
 TICKS = 200

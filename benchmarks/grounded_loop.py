@@ -16,16 +16,16 @@ import terrain
 import worlds
 from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
+from experiments.grounded_walks.courses import SimPlace
 from experiments.grounded_walks.data import GaitCloud, leg_senses, walk
-from experiments.grounded_walks.places import SimPlace
-from experiments.trials import TrialRules, walk_trials
-from sgat.action_transformer import ActionTransformer
-from sgat.block_noise import BlockNoise
-from sgat.forward_config import ForwardConfig
-from sgat.forward_model import ForwardModel
-from sgat.grounded_world import GroundedWorld
-from sgat.inverse_model import InverseModel
-from sgat.network_config import NetworkConfig
+from experiments.walking.trials import TrialRules, walk_trials
+from sgat.models.forward_config import ForwardConfig
+from sgat.models.forward_model import ForwardModel
+from sgat.models.inverse_model import InverseModel
+from sgat.models.network_config import NetworkConfig
+from sgat.transformers.action_transformer import ActionTransformer
+from sgat.transformers.block_noise import BlockNoise
+from sgat.walks.grounded_world import GroundedWorld
 from walk_engine import gaits
 
 ROBOTS = 150

@@ -6,33 +6,33 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.answer import effects_of, kind_of, sure
-from diagnosis.audit import audit
-from diagnosis.audit_result import Audit
-from diagnosis.belief import alternatives
-from diagnosis.channels import channels_of
-from diagnosis.compared import compared
-from diagnosis.evidence import Evidence
-from diagnosis.final_test import FinalTest
-from diagnosis.fitting import fit_all
-from diagnosis.next_experiment import next_experiment
-from diagnosis.plant import Plant
-from diagnosis.power import smallest_detectable
-from diagnosis.predictor import Model, Predictor
+from diagnosis.audit.audit import audit
+from diagnosis.audit.result import Audit
+from diagnosis.conclude.answer import effects_of, kind_of, sure
+from diagnosis.conclude.confidence import alternatives
+from diagnosis.conclude.detectable import smallest_detectable
+from diagnosis.conclude.held_out_errors import FinalTest
+from diagnosis.conclude.next_experiment import next_experiment
+from diagnosis.conclude.surprise import refutes, surprises
+from diagnosis.plant.plant import Plant
 from diagnosis.preparing import prepared
-from diagnosis.proven import proven
-from diagnosis.reference import said_of, standing_of, well_of
-from diagnosis.regimes import mismatch
-from diagnosis.search import Search
-from diagnosis.search_result import Found as Searched
-from diagnosis.search_result import Rules
-from diagnosis.simpler import needed, simpler
-from diagnosis.surprise import refutes, surprises
-from diagnosis.torque_drive import DriveBy
-from diagnosis.trace import Trace
-from diagnosis.unexplained import unexplained
-from diagnosis.verdict import Amount, Verdict, VerdictKind
-from diagnosis.widespread import widespread
+from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.data_sets import Evidence
+from diagnosis.residuals.mismatch_map import mismatch
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.unexplained import unexplained
+from diagnosis.search.all_joints import widespread
+from diagnosis.search.compared import compared
+from diagnosis.search.fitting import fit_all
+from diagnosis.search.proven import proven
+from diagnosis.search.reference import said_of, standing_of, well_of
+from diagnosis.search.result import Found as Searched
+from diagnosis.search.result import Rules
+from diagnosis.search.search import Search
+from diagnosis.search.simpler import needed, simpler
+from diagnosis.traces.torque_drive import DriveBy
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Amount, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 from groundwalk.errors import BadRecordingError
 

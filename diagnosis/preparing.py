@@ -4,12 +4,12 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from diagnosis.lag_jumps import said_of_stalls, steady
-from diagnosis.plant import Plant
-from diagnosis.pulses import pulses_of, without_pulses
-from diagnosis.torque_drive import DriveBy, driven_by_torques
-from diagnosis.trace import Trace
-from diagnosis.verdict import Pulse
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.pulses import pulses_of, without_pulses
+from diagnosis.traces.stalls import said_of_stalls, steady
+from diagnosis.traces.torque_drive import DriveBy, driven_by_torques
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Pulse
 
 
 @dataclass(frozen=True, eq=False)

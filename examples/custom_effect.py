@@ -13,10 +13,10 @@ import numpy as np
 import tyro
 
 from diagnosis.diagnose import diagnose
-from diagnosis.effect import Effect, Parameter
-from diagnosis.library import also_known
-from diagnosis.trace_reading import read_traces
-from diagnosis.verdict import Verdict
+from diagnosis.effects.effect import Effect, Parameter
+from diagnosis.effects.library import also_known
+from diagnosis.traces.read import read_traces
+from diagnosis.verdict.verdict import Verdict
 from experiments.diagnosis_report.console import print_verdict
 from worlds import Recording, RecordingMetadata, ServoGains, write_recording
 

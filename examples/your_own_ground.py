@@ -11,7 +11,7 @@ import tyro
 
 import robots
 import worlds
-from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walking.trials import TrialRules, Trials, walk_trials
 from terrain import Heightfield
 from walk_engine import gaits
 

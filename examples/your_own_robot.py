@@ -12,7 +12,7 @@ import tyro
 import robots
 import terrain
 import worlds
-from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walking.trials import TrialRules, Trials, walk_trials
 from walk_engine import gaits
 
 

@@ -50,7 +50,9 @@ VERBS = {
     "visualize": Verb("visualize", "Visualize", "see rollouts and searches in Rerun"),
     "render": Verb("render", "Render", "draw a film strip or a film of walks"),
     "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
-    "list": Verb("list", "List", "show the robots, terrains or gaits that there are"),
+    "list": Verb(
+        "list_names", "List", "show the robots, terrains or gaits that there are"
+    ),
     "doctor": Verb(
         "doctor", "DoctorConfig", "say what is installed and what is missing"
     ),

@@ -10,24 +10,24 @@ import numpy as np
 import tyro
 
 import robots
-from diagnosis.corrected_mjcf import CORRECTED_XML, corrected_mjcf
-from diagnosis.corrected_model import CORRECTED_JSON, Correction
+from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
+from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.diagnose import Diagnosis, diagnose
-from diagnosis.predictor import Model, Predictor
-from diagnosis.reference_reading import read_reference
-from diagnosis.search_result import Rules
-from diagnosis.torque_drive import DriveBy
-from diagnosis.trace_reading import read_traces
-from diagnosis.verdict import Verdict
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.result import Rules
+from diagnosis.traces.read import read_traces
+from diagnosis.traces.reference_reading import read_reference
+from diagnosis.traces.torque_drive import DriveBy
+from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
-from experiments.diagnosis_report.facts import ReportFacts
+from experiments.diagnosis_report.held_out_series import ChannelSeries, ReportSeries
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import write_report
-from experiments.diagnosis_report.series import ChannelSeries, ReportSeries
-from experiments.extras import extra
-from experiments.report_origin import command_of
-from experiments.run_folder import PROVENANCE, RunFolder, check_free, to_plain
+from experiments.diagnosis_report.run_facts import ReportFacts
+from experiments.reports.origin import command_of
+from experiments.runs.extras import extra
+from experiments.runs.folder import PROVENANCE, RunFolder, check_free, to_plain
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from worlds import ServoGains

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from experiments.doctor_checks import Finding, State, examine
+from experiments.runs.doctor_checks import Finding, State, examine
 
 
 @dataclass(frozen=True)

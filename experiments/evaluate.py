@@ -9,14 +9,14 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.evaluation import Study, evaluate, keep
-from experiments.extras import extra
-from experiments.gait_files import load_gaits
-from experiments.result_page import write_page
-from experiments.run_folder import RESULT, open_run
-from experiments.run_options import RunOptions
-from experiments.run_pictures import picture_run
-from experiments.score_table import print_json, print_scores
+from experiments.reports.score_table import print_json, print_scores
+from experiments.runs.extras import extra
+from experiments.runs.folder import RESULT, open_run
+from experiments.runs.gait_files import load_gaits
+from experiments.runs.options import RunOptions
+from experiments.seeing.run_pictures import picture_run
+from experiments.seeing.score_page import write_page
+from experiments.walking.evaluation import Study, evaluate, keep
 from groundwalk.errors import BadValueError
 
 VERB = "evaluate"

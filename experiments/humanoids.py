@@ -9,31 +9,31 @@ import numpy as np
 
 import robots
 from experiments.command_line import run_verb
-from experiments.evaluation import Study, evaluate, keep
-from experiments.extras import extra
-from experiments.humanoids_facts import reach, saturation, sole
-from experiments.humanoids_figure import draw_humanoids
-from experiments.humanoids_page import (
+from experiments.humanoid_study.facts import reach, saturation, sole
+from experiments.humanoid_study.figure import draw_humanoids
+from experiments.humanoid_study.page import (
     PICTURE,
     folder_name,
     robot_rows,
     write_humanoids_page,
 )
-from experiments.reward import reward_cm_s
-from experiments.run_folder import (
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import (
     CHECKPOINT,
     RECORDINGS,
     RESULT,
     RunFolder,
     open_run,
 )
-from experiments.run_options import RunOptions
-from experiments.run_pictures import picture_run
-from experiments.score_table import print_json
-from experiments.search import check_search
-from experiments.text_table import print_table
-from experiments.trials import TrialRules, walk_trials
-from experiments.tuning import Budget, tune
+from experiments.runs.options import RunOptions
+from experiments.seeing.run_pictures import picture_run
+from experiments.walking.evaluation import Study, evaluate, keep
+from experiments.walking.reward import reward_cm_s
+from experiments.walking.search import check_search
+from experiments.walking.trials import TrialRules, walk_trials
+from experiments.walking.tuning import Budget, tune
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from robots import Description
@@ -176,7 +176,7 @@ def _rate(
     tried: FloatArray,
     seed: np.random.SeedSequence,
 ) -> FloatArray:
-    """Rewards (n,) [cm/s] of n gaits: see `experiments.tuning.Rater`."""
+    """Rewards (n,) [cm/s] of n gaits: see `experiments.walking.tuning.Rater`."""
     study = config.studies()["sim"]
     # The same poses for all gaits: what differs between them is their own.
     poses = seed.spawn(WALKS) * len(tried)

@@ -10,26 +10,26 @@ import numpy as np
 
 import robots
 from experiments.command_line import run_verb
-from experiments.corrected_sims import check_correction, make_sim
-from experiments.evaluation import Study, evaluate, keep
-from experiments.extras import extra
-from experiments.gait_files import load_gait
-from experiments.recorder import Recorder
-from experiments.result_page import write_page
-from experiments.reward import FALL_PENALTY_CM_S, reward_cm_s
-from experiments.run_folder import (
+from experiments.reports.score_table import print_json, print_scores
+from experiments.runs.extras import extra
+from experiments.runs.folder import (
     CHECKPOINT,
     HISTORY,
     RESULT,
     RunFolder,
     open_run,
 )
-from experiments.run_options import RunOptions
-from experiments.run_pictures import picture_run
-from experiments.score_table import print_json, print_scores
-from experiments.search import GaitSearch, check_search
-from experiments.search_run import RATINGS, best_mean, run_search
-from experiments.trials import SEARCH_TRIAL, TrialRules, Trials, walk_trials
+from experiments.runs.gait_files import load_gait
+from experiments.runs.options import RunOptions
+from experiments.seeing.run_pictures import picture_run
+from experiments.seeing.score_page import write_page
+from experiments.walking.evaluation import Study, evaluate, keep
+from experiments.walking.recorder import Recorder
+from experiments.walking.reward import FALL_PENALTY_CM_S, reward_cm_s
+from experiments.walking.search import GaitSearch, check_search
+from experiments.walking.search_run import RATINGS, best_mean, run_search
+from experiments.walking.sims import check_correction, make_sim
+from experiments.walking.trials import SEARCH_TRIAL, TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from terrain import Heightfield, TerrainSpec, parse

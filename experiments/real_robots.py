@@ -6,14 +6,14 @@ from typing import Annotated, Literal
 
 import tyro
 
-from diagnosis.search_result import Rules
+from diagnosis.search.result import Rules
 from experiments.command_line import run_verb
 from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_report.console import print_verdict
-from experiments.extras import extra
-from experiments.real_robots_cases import ROBOTS, RealRobot
-from experiments.real_robots_page import write_real_page
-from experiments.report import REPORT
+from experiments.real_robot_study.cases import ROBOTS, RealRobot
+from experiments.real_robot_study.page import write_real_page
+from experiments.reports.report import REPORT
+from experiments.runs.extras import extra
 from groundwalk.errors import BadValueError
 
 DATA = Path("../shared/data")

@@ -8,23 +8,23 @@ import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, table_feed
-from experiments.excitation import MOTIONS, Excitation
-from experiments.excitation_standing import (
+from experiments.motions.in_the_air import MOTIONS, Excitation
+from experiments.motions.on_feet import (
     STANDING_MOTIONS,
     standing_commands,
     walking_feed,
 )
-from experiments.new_file import check_new
+from experiments.runs.new_file import check_new
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from groundwalk.files import write_text
-from worlds.hidden_clock import Clock
-from worlds.hidden_effects import Hidden
-from worlds.hidden_plant import HiddenPlant, hidden_plant
-from worlds.hidden_run import Feed, run_hidden
-from worlds.hidden_sensors import HiddenSensors, hidden_recording
-from worlds.recording_files import write_recording
-from worlds.recording_metadata import RecordingMetadata
+from worlds.hidden.clock import Clock
+from worlds.hidden.effects import Hidden
+from worlds.hidden.plant import HiddenPlant, hidden_plant
+from worlds.hidden.recorded import HiddenSensors, hidden_recording
+from worlds.hidden.run import Feed, run_hidden
+from worlds.recordings.files import write_recording
+from worlds.recordings.metadata import RecordingMetadata
 
 ENGINES = {"sim": "mujoco", "real": "bullet"}
 _RATE_HZ = 100.0

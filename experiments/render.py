@@ -8,9 +8,9 @@ from typing import Annotated
 import tyro
 
 from experiments.command_line import run_verb
-from experiments.new_file import check_new
-from experiments.render_film import Film, film_bytes, strip_bytes
-from experiments.scenes import make_scenes
+from experiments.runs.new_file import check_new
+from experiments.seeing.film import Film, film_bytes, strip_bytes
+from experiments.seeing.scenes import make_scenes
 from experiments.visualize import check_paths, gather
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_bytes

@@ -11,19 +11,19 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.extras import extra
-from experiments.gait_files import load_gaits
-from experiments.progress import progress
-from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
-from experiments.run_options import RunOptions
-from experiments.score_table import print_json
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
+from experiments.runs.gait_files import load_gaits
+from experiments.runs.options import RunOptions
+from experiments.runs.progress import progress
 from experiments.stress.curves import curves_of
 from experiments.stress.families import FAMILIES, FLAT, Place, leg_length_m
 from experiments.stress.figure import draw_comparison, draw_heat_maps
 from experiments.stress.page import HALF_HEADINGS, half_rows, write_stress_page
 from experiments.stress.walks import walk_at
-from experiments.stress.worst import write_worst
-from experiments.text_table import print_table
+from experiments.stress.worst_rollouts import write_worst
 from groundwalk.errors import BadValueError, UnknownNameError
 from walk_engine import Gait
 

@@ -9,15 +9,15 @@ from typing import Annotated
 import tyro
 
 from experiments.command_line import run_verb
-from experiments.new_file import check_new
-from experiments.run_folder import RECORDINGS, RunFolder
-from experiments.run_pictures import WALK_RERUN, picture_search
-from experiments.scenes import make_scenes, read_recordings, scene_names
-from experiments.visualize_search import visualize_search
+from experiments.runs.folder import RECORDINGS, RunFolder
+from experiments.runs.new_file import check_new
+from experiments.seeing.run_pictures import WALK_RERUN, picture_search
+from experiments.seeing.scenes import make_scenes, read_recordings, scene_names
+from experiments.seeing.visualize_search import visualize_search
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from worlds import Recording, read_recording
-from worlds.rerun_log import write_rrd
-from worlds.viewer import open_viewer
+from worlds.rerun_files.log import write_rrd
+from worlds.rerun_files.viewer import open_viewer
 
 _HEAD_BYTES = 4096
 

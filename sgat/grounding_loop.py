@@ -7,7 +7,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from groundwalk.errors import BadValueError
-from sgat.action_transformer import Transformer
+from sgat.transformers.action_transformer import Transformer
 from sgat.transitions import Transitions
 
 P = TypeVar("P")

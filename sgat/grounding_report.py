@@ -8,7 +8,6 @@ from typing import Any, Self
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from sgat.forward_model import ForwardModel
 from sgat.measures import (
     Advance,
     action_bias,
@@ -21,6 +20,7 @@ from sgat.measures import (
     root_mean_square,
     spread_ratio,
 )
+from sgat.models.forward_model import ForwardModel
 from sgat.transitions import Transitions
 
 LEVELS = (0.5, 0.8, 0.9, 0.95, 0.99)

@@ -23,10 +23,10 @@ def quick_processes():
     begin as they do elsewhere.
     """
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["mujoco", "worlds.bullet_worker"])
+    context.set_forkserver_preload(["mujoco", "worlds.real.worker"])
     with pytest.MonkeyPatch.context() as patch:
         copying = SimpleNamespace(get_context=lambda _: context)
-        patch.setattr("worlds.real.multiprocessing", copying)
+        patch.setattr("worlds.real.world.multiprocessing", copying)
         yield
 
 

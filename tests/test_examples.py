@@ -80,7 +80,7 @@ def test_custom_effect(tmp_path, capsys):
     assert (found.name, found.place) == ("water_drag", "swing")
     assert found.parameters["coefficient"].value == pytest.approx(0.3, rel=0.1)
     assert "water drag at the joint swing" in capsys.readouterr().out
-    from diagnosis.library import effect
+    from diagnosis.effects.library import effect
 
     with pytest.raises(UnknownNameError, match="water_drag"):
         effect("water_drag")  # known within the block alone

@@ -11,7 +11,6 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-RERUN = ("balance", "columns", "layout", "search", "search_walk")
 HEAVY = {"mujoco", "pybullet", "rerun", "cma", "torch", "matplotlib"}
 
 
@@ -30,23 +29,25 @@ def lint_imports(folder):
 @pytest.fixture
 def small_house(tmp_path):
     """Empty rooms under our own contracts, with the imports that are allowed."""
-    inside = "def inside():\n    import rerun"
     files = {
         "terrain/field.py": "import groundwalk",
         "robots/model.py": "def model():\n    import mujoco",
-        "worlds/rerun_log.py": "import rerun, terrain",
-        **{f"worlds/rerun_{name}.py": inside for name in RERUN},
-        "worlds/real.py": "def real():\n    import pybullet, robots",
+        "worlds/rerun_files/log.py": "import rerun, terrain",
+        "worlds/real/world.py": "def real():\n    import pybullet, robots",
         "walk_engine/engine.py": "from robots import model",
-        "sgat/forward_model.py": "import torch, worlds",
-        "experiments/search.py": "import cma, sgat, walk_engine, worlds",
+        "sgat/models/forward_model.py": "import torch, worlds",
+        "experiments/walking/search.py": "import cma, sgat, walk_engine, worlds",
     }
     (tmp_path / "pyproject.toml").write_bytes((ROOT / "pyproject.toml").read_bytes())
     for package in PROJECT["tool"]["importlinter"]["root_packages"]:
         (tmp_path / package).mkdir()
         (tmp_path / package / "__init__.py").touch()
     for name, code in files.items():
-        (tmp_path / name).write_text(f"{code}\n")
+        path = tmp_path / name
+        for folder in path.relative_to(tmp_path).parents:
+            (tmp_path / folder).mkdir(exist_ok=True)
+            (tmp_path / folder / "__init__.py").touch()
+        path.write_text(f"{code}\n")
     return tmp_path
 
 

@@ -2,9 +2,9 @@
 
 from worlds.catalog import WORLDS, kind, make
 from worlds.observation import Observation, Truth
-from worlds.recording import Recording
-from worlds.recording_files import read_recording, write_recording
-from worlds.recording_metadata import RecordingMetadata, ServoGains
+from worlds.recordings.files import read_recording, write_recording
+from worlds.recordings.metadata import RecordingMetadata, ServoGains
+from worlds.recordings.recording import Recording
 from worlds.sensor_noise import SensorNoise
 from worlds.world import FALLS, TICK_S, End, World, WorldOptions
 

@@ -8,10 +8,10 @@ import numpy as np
 from groundwalk.errors import UnknownNameError
 from robots.description import Description
 from terrain import Heightfield
-from worlds.real import RealWorld
+from worlds.real.world import RealWorld
 from worlds.rollouts import RolloutWorld
 from worlds.sensor_noise import SensorNoise
-from worlds.sim import SimWorld
+from worlds.sim.world import SimWorld
 from worlds.world import World, WorldOptions
 
 REAL_LATENCY_S = 0.036

@@ -9,7 +9,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots.description import Description
 from robots.sole import FRICTION
-from worlds.hidden_effects import Hidden
+from worlds.hidden.effects import Hidden
 from worlds.observation import Observation, Truth
 from worlds.sensor_noise import SensorNoise
 

@@ -7,9 +7,9 @@ would fit, and a verdict that can be scored beside the diagnosis' own.
 from collections.abc import Callable, Mapping, Sequence
 
 from diagnosis.baselines import bic, sparse, sysid
-from diagnosis.plant import Plant
-from diagnosis.trace import Trace
-from diagnosis.verdict import Verdict
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Verdict
 
 BASELINES: Mapping[str, Callable[[Plant, Sequence[Trace]], Verdict]] = {
     "sysid": sysid.answer,

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.baselines.naming import NORMAL_80, found_effect
-from diagnosis.fitting import Fit, fit_all
-from diagnosis.plant import Plant
-from diagnosis.predictor import Predictor
-from diagnosis.screening import Screen
-from diagnosis.signatures import signatures
-from diagnosis.trace import Trace
-from diagnosis.usage import Usage
-from diagnosis.verdict import Recordings, Verdict
+from diagnosis.baselines.found import NORMAL_80, found_effect
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.fitting import Fit, fit_all
+from diagnosis.search.screening import Screen
+from diagnosis.search.signatures import signatures
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
+from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray
 
 CANDIDATES = 8

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.baselines.naming import NORMAL_80, found_effect
+from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.baselines.sparse_columns import Column, torque_columns
 from diagnosis.baselines.sparse_torques import Torques
-from diagnosis.effect import Placed
-from diagnosis.library import effect
-from diagnosis.plant import Plant
-from diagnosis.trace import Trace
-from diagnosis.verdict import Recordings, Verdict
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray, IntArray
 
 THRESHOLD = 0.1

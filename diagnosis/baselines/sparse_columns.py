@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnosis.baselines.sparse_torques import Torques, inverse_nm
-from diagnosis.effect import Placed
-from diagnosis.library import effect
-from diagnosis.plant import Plant
-from diagnosis.predictor import variants_of
-from diagnosis.trace import Trace
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.predictor import variants_of
+from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:

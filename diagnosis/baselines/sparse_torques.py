@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.inverse_dynamics import inverse_dynamics
-from diagnosis.plant import Plant
-from diagnosis.smoothing import smooth
-from diagnosis.trace import Trace
+from diagnosis.plant.inverse_dynamics import inverse_dynamics
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:

@@ -13,19 +13,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.baselines.naming import NORMAL_80, found_effect
+from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.baselines.sysid_models import (
     SysidModels,
     Unknown,
     sequence_of,
     unknowns,
 )
-from diagnosis.channels import channels_of
-from diagnosis.effect import Placed
-from diagnosis.plant import Plant
-from diagnosis.predictor import WARM_UP_S
-from diagnosis.trace import Trace
-from diagnosis.verdict import Recordings, Verdict
+from diagnosis.effects.effect import Placed
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.predictor import WARM_UP_S
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.batch_friction import SOLIMP_FRICTION, stops_in_a_step
-from diagnosis.drive import Held
-from diagnosis.library import effect
-from diagnosis.plant import Plant
-from diagnosis.run import Run
-from diagnosis.servo import Servo
-from diagnosis.trace import Trace
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.plant.servo import Servo
+from diagnosis.replay.drive import Held
+from diagnosis.replay.friction import SOLIMP_FRICTION, stops_in_a_step
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:

@@ -1,1 +1,1 @@
-"""The effects, one file each; `diagnosis.library` lists them."""
+"""The effects, one file each; `diagnosis.effects.library` lists them."""

@@ -7,7 +7,7 @@ import numpy as np
 from groundwalk.arrays import IntArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
+    from diagnosis.plant.plant import Plant
 
 
 def ground_geoms(plant: "Plant") -> IntArray:

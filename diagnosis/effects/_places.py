@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from diagnosis.effect import Effect, PlaceKind
+from diagnosis.effects.effect import Effect, PlaceKind
 from groundwalk.arrays import BoolArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.trace import Trace
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
 
 
 class JointEffect(Effect):

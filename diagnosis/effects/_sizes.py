@@ -7,7 +7,7 @@ import numpy as np
 from groundwalk.gravity import GRAVITY_M_S2
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
+    from diagnosis.plant.plant import Plant
 
 REFERENCE_SPEED_RAD_S, REFERENCE_SPEED_M_S = 5.0, 0.5
 """A brisk joint, where nothing better is known: a hinge and a slide."""

@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effect import Parameter
 from diagnosis.effects._places import ServoEffect
+from diagnosis.effects.effect import Parameter
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
 
 
 class Backlash(ServoEffect):
@@ -17,7 +17,7 @@ class Backlash(ServoEffect):
     The servo closes its loop on the motor's side; the encoder that is recorded sits at
     the joint. Within the gap the motor follows its command alone, braked by its
     damping; at the gap's edges it pushes the joint. Gap is the total play. The motion
-    is that of `diagnosis.batch_gaps`.
+    is that of `diagnosis.replay.gaps`.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model.

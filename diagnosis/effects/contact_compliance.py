@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from diagnosis.effect import Effect, Parameter, PlaceKind
 from diagnosis.effects._ground import foot_geoms, has_ground_contact
 from diagnosis.effects._sizes import mass_kg, weight_n
+from diagnosis.effects.effect import Effect, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.trace import Trace
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
 
 DAMPING_RATIO = 0.1
 """Of critical, for the whole robot on one foot."""

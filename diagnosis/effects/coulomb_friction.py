@@ -2,14 +2,14 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effect import Parameter
 from diagnosis.effects._places import JointEffect
 from diagnosis.effects._sizes import torque_nm
+from diagnosis.effects.effect import Parameter
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
 
 
 class CoulombFriction(JointEffect):

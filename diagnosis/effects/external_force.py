@@ -2,15 +2,15 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effect import Parameter
 from diagnosis.effects._places import BodyEffect
 from diagnosis.effects._sizes import weight_n
-from diagnosis.variants import Push
+from diagnosis.effects.effect import Parameter
+from diagnosis.effects.variants import Push
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
 
 _EARLIEST_S, _LONGEST_S = -2.0, 600.0
 """What began before the recording pushes from its first row on."""

@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from diagnosis.effect import Effect, Parameter, PlaceKind
 from diagnosis.effects._ground import ground_geoms
+from diagnosis.effects.effect import Effect, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.trace import Trace
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
 
 
 class GroundSlope(Effect):

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from diagnosis.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.trace import Trace
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
 
 
 class GyroBias(Effect):

@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.effect import Parameter
 from diagnosis.effects._places import ServoEffect
 from diagnosis.effects._sizes import speed_rad_s
+from diagnosis.effects.effect import Parameter
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.trace import Trace
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
 
 
 class SpeedLimit(ServoEffect):

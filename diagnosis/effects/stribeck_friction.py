@@ -2,14 +2,14 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effect import Parameter, Placed
 from diagnosis.effects._places import JointEffect
 from diagnosis.effects._sizes import torque_nm
+from diagnosis.effects.effect import Parameter, Placed
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
 
 GROWN_SPEEDS_RAD_S = (0.02, 0.07, 0.25)
 

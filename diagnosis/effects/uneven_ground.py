@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from diagnosis.effect import Effect, Parameter, PlaceKind
 from diagnosis.effects._ground import has_ground_contact
+from diagnosis.effects.effect import Effect, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.plant import Plant
-    from diagnosis.trace import Trace
-    from diagnosis.variants import Variants
+    from diagnosis.effects.variants import Variants
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
 
 
 class UnevenGround(Effect):
@@ -18,9 +18,9 @@ class UnevenGround(Effect):
 
     Where each bump is cannot be known. A replay puts the ground where the recorded
     soles stood as a window began, no farther from the plane than the height
-    (`diagnosis.conforming_ground`). So the height found is about the largest that was
-    trodden on, bumps of less than 0.6 mm are not seen, and where a foot is put down
-    later the ground is taken to be flat.
+    (`diagnosis.replay.conforming_ground`). So the height found is about the largest
+    that was trodden on, bumps of less than 0.6 mm are not seen, and where a foot is put
+    down later the ground is taken to be flat.
 
     Source: ground profiles as random processes, ISO 8608:2016.
     """

@@ -16,17 +16,17 @@ from experiments.concealed.draw import (
     drawn_effects,
     drawn_sensors,
 )
-from experiments.concealed.information import drawn_nats, ease_that_tells, nats
 from experiments.concealed.motion import CaseMotion
 from experiments.concealed.reading import PLANT_FILE, RECORDINGS, REFERENCE
+from experiments.concealed.size_by_information import drawn_nats, ease_that_tells, nats
 from groundwalk.errors import GroundwalkError
 from groundwalk.files import write_text
-from worlds.hidden_effects import Hidden
-from worlds.hidden_run import Run, run_hidden
-from worlds.hidden_scales import Scales, scales
-from worlds.hidden_sensors import HiddenSensors, hidden_recording
-from worlds.recording_files import write_recording
-from worlds.recording_metadata import RecordingMetadata
+from worlds.hidden.effects import Hidden
+from worlds.hidden.recorded import HiddenSensors, hidden_recording
+from worlds.hidden.run import Run, run_hidden
+from worlds.hidden.scales import Scales, scales
+from worlds.recordings.files import write_recording
+from worlds.recordings.metadata import RecordingMetadata
 
 REFERENCES = (0, 2)
 _SCALE_STEP_S = 0.0005

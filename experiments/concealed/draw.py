@@ -1,7 +1,7 @@
 """What a concealed case is: plant, engine, effects, sensors; drawn from (seed, i).
 
 Nothing is drawn that could not be told even from perfect recordings: effects only
-where they differ from all others (`experiments.concealed.places`), and two together
+where they differ from all others (`experiments.concealed.where`), and two together
 only if they are not one and the same (`APART`). In pairs and triples sizes are from the
 easier half, so that every one of them matters.
 """
@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.concealed.places import LEAST_MOTION_RAD, Spot, spots
 from experiments.concealed.setting import Setting
 from experiments.concealed.sizes import sized
-from worlds.hidden_effects import KINDS, Hidden
-from worlds.hidden_plant import HiddenPlant
-from worlds.hidden_scales import Scales
-from worlds.hidden_sensors import HiddenSensors
+from experiments.concealed.where import LEAST_MOTION_RAD, Spot, spots
+from worlds.hidden.effects import KINDS, Hidden
+from worlds.hidden.plant import HiddenPlant
+from worlds.hidden.recorded import HiddenSensors
+from worlds.hidden.scales import Scales
 
 PLANTS = {
     "pendulum": 0.25,

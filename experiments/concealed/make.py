@@ -1,7 +1,7 @@
 """`groundwalk concealed make`: draw cases, write recordings, seal the truth.
 
 How cases are drawn, such that their truth can be told: `experiments.concealed.draw`,
-`experiments.concealed.places`, `experiments.concealed.motion`; docs/concealed.md.
+`experiments.concealed.where`, `experiments.concealed.motion`; docs/concealed.md.
 """
 
 import hashlib
@@ -18,7 +18,7 @@ import tyro
 
 from experiments.command_line import run_verb
 from experiments.concealed.case import case_name, make_case
-from experiments.progress import progress
+from experiments.runs.progress import progress
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_text
 

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.excitation import MOTIONS, Excitation
-from experiments.excitation_standing import standing_commands, walking_feed
+from experiments.motions.in_the_air import MOTIONS, Excitation
+from experiments.motions.on_feet import standing_commands, walking_feed
 from groundwalk.arrays import BoolArray, FloatArray
-from worlds.hidden_clock import Clock
-from worlds.hidden_plant import HiddenPlant, hidden_plant
-from worlds.hidden_run import Feed
+from worlds.hidden.clock import Clock
+from worlds.hidden.plant import HiddenPlant, hidden_plant
+from worlds.hidden.run import Feed
 
 STEP_S = 0.00025
 FLOATING_STEP_S = 0.0005

@@ -3,10 +3,10 @@
 import json
 from pathlib import Path
 
-from diagnosis.plant import Plant
-from diagnosis.reference_reading import read_reference
-from diagnosis.trace import Trace
-from diagnosis.trace_reading import read_traces
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.read import read_traces
+from diagnosis.traces.reference_reading import read_reference
+from diagnosis.traces.trace import Trace
 from groundwalk.errors import RunFolderError
 
 RECORDINGS, REFERENCE, PLANT_FILE = "recordings", "reference", "plant.json"

@@ -14,13 +14,13 @@ import tyro
 
 from diagnosis.baselines import BASELINES
 from diagnosis.diagnose import diagnose
-from diagnosis.split import split
-from diagnosis.verdict import Verdict
+from diagnosis.traces.split import split
+from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, read_case
-from experiments.progress import progress
-from experiments.repeat_command import repeat_command
-from experiments.run_folder import PROVENANCE, RunFolder, provenance
+from experiments.runs.folder import PROVENANCE, RunFolder, provenance
+from experiments.runs.progress import progress
+from experiments.runs.repeat_command import repeat_command
 from groundwalk.blas import one_blas_thread
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from groundwalk.files import write_text

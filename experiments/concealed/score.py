@@ -11,28 +11,28 @@ from typing import Annotated, Any
 
 import tyro
 
-from diagnosis.verdict import Found, Verdict
+from diagnosis.verdict.verdict import Found, Verdict
 from experiments.command_line import run_verb
 from experiments.concealed.make import CASES
 from experiments.concealed.reading import ANSWERS
-from experiments.concealed.score_figure import draw_score
-from experiments.concealed.score_marks import NAMED_KINDS, mark
-from experiments.concealed.score_measures import measures
-from experiments.concealed.score_oracle import Oracle, answer_key, consult
-from experiments.concealed.score_page import score_report, score_rows
-from experiments.concealed.score_truth import (
+from experiments.concealed.scoring.figure import draw_score
+from experiments.concealed.scoring.marks import NAMED_KINDS, mark
+from experiments.concealed.scoring.measures import measures
+from experiments.concealed.scoring.oracle import Oracle, answer_key, consult
+from experiments.concealed.scoring.page import score_report, score_rows
+from experiments.concealed.scoring.truth import (
     TrueCase,
     Truth,
     read_answers,
     read_baselines,
     read_truth,
 )
-from experiments.extras import extra
-from experiments.progress import progress
-from experiments.repeat_command import repeat_command
-from experiments.report_origin import Origin
-from experiments.run_folder import PROVENANCE, RunFolder, provenance
-from experiments.text_table import print_table
+from experiments.reports.origin import Origin
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import PROVENANCE, RunFolder, provenance
+from experiments.runs.progress import progress
+from experiments.runs.repeat_command import repeat_command
 from groundwalk.errors import BadValueError
 from groundwalk.files import write_text
 

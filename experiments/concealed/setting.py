@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from experiments.concealed.places import Spot, moved_by_many
+from experiments.concealed.where import Spot, moved_by_many
 from groundwalk.arrays import FloatArray
-from worlds.hidden_plant import HiddenPlant
-from worlds.hidden_scales import Scales
+from worlds.hidden.plant import HiddenPlant
+from worlds.hidden.scales import Scales
 
 
 class Span(NamedTuple):

@@ -1,7 +1,7 @@
 """How large a concealed effect is: from easy to see to hard, for every kind.
 
 The ranges are parts of what the nominal robot itself does in the same motions: of its
-torques, speeds, masses, reach (`worlds.hidden_scales`).
+torques, speeds, masses, reach (`worlds.hidden.scales`).
 """
 
 import math
@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from experiments.concealed.places import LEAST_LEVER_M
 from experiments.concealed.setting import Setting
+from experiments.concealed.where import LEAST_LEVER_M
 from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
-from worlds.hidden_effects import Hidden
+from worlds.hidden.effects import Hidden
 
 Maker = Callable[[Setting], dict[str, float]]
 

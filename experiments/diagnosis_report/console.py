@@ -5,9 +5,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from diagnosis.verdict import EffectAt, Fit, Found, Verdict
+from diagnosis.verdict.verdict import EffectAt, Fit, Found, Verdict
 from experiments.diagnosis_report.numbers import amount_text, errors_text, percent
-from experiments.diagnosis_report.places import at_words, choice, listing
+from experiments.diagnosis_report.place_words import at_words, choice, listing
 from experiments.diagnosis_report.pulses import pulse_sentences
 from experiments.diagnosis_report.text import (
     BADGES,

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from diagnosis.verdict import Fit, Unexplained
-from experiments.diagnosis_report.look import (
+from diagnosis.verdict.verdict import Fit, Unexplained
+from experiments.diagnosis_report.figure_style import (
     CONTROL,
     CORRECTED,
     NOISE,
@@ -14,8 +14,12 @@ from experiments.diagnosis_report.look import (
     note,
     plain,
 )
+from experiments.diagnosis_report.held_out_series import (
+    ChannelSeries,
+    ReportSeries,
+    rms,
+)
 from experiments.diagnosis_report.numbers import error_unit, errors_text
-from experiments.diagnosis_report.series import ChannelSeries, ReportSeries, rms
 from experiments.diagnosis_report.svg import new_figure
 from groundwalk.arrays import FloatArray
 

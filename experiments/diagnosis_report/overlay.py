@@ -13,16 +13,20 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.verdict import Fit
-from experiments.diagnosis_report.series import ChannelSeries, ReportSeries, by_error
-from experiments.scenes import scene_names
+from diagnosis.verdict.verdict import Fit
+from experiments.diagnosis_report.held_out_series import (
+    ChannelSeries,
+    ReportSeries,
+    by_error,
+)
+from experiments.seeing.scenes import scene_names
 from robots.description import Description
 from worlds import Recording, RecordingMetadata
-from worlds.recording_columns import vector_columns
-from worlds.rerun_log import write_rrd
-from worlds.scene import Scene
-from worlds.scene_colours import accent
-from worlds.scene_traces import Curve, Trace
+from worlds.recordings.columns import vector_columns
+from worlds.rerun_files.log import write_rrd
+from worlds.scenes.colours import accent
+from worlds.scenes.curves import Curve, Trace
+from worlds.scenes.scene import Scene
 
 COLOURS = {name: accent(index) for index, name in enumerate(ChannelSeries._fields)}
 """Those of the three robots."""

@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from diagnosis.verdict import Errors, Fit, Found, Verdict
-from experiments.diagnosis_report.facts import ReportFacts
+from diagnosis.verdict.verdict import Errors, Fit, Found, Verdict
 from experiments.diagnosis_report.figures import (
     View,
     bars_figure,
     overlay_figure,
     unexplained_figure,
 )
-from experiments.diagnosis_report.map import mismatch_figure, worst_cells
+from experiments.diagnosis_report.held_out_series import ReportSeries, by_error
+from experiments.diagnosis_report.mismatch_map import mismatch_figure, worst_cells
 from experiments.diagnosis_report.numbers import (
     DASH,
     amount_text,
@@ -20,8 +20,8 @@ from experiments.diagnosis_report.numbers import (
     errors_text,
     percent,
 )
-from experiments.diagnosis_report.places import place_words
-from experiments.diagnosis_report.series import ReportSeries, by_error
+from experiments.diagnosis_report.place_words import place_words
+from experiments.diagnosis_report.run_facts import ReportFacts
 from experiments.diagnosis_report.svg import inline_svg
 from experiments.diagnosis_report.text import (
     BADGES,
@@ -32,7 +32,7 @@ from experiments.diagnosis_report.text import (
     question,
 )
 from experiments.diagnosis_report.words import effect_words
-from experiments.report_html import render
+from experiments.reports.html import render
 from groundwalk.files import write_text
 
 TEMPLATE = "diagnosis_report.html.jinja"

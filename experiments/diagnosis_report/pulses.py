@@ -5,9 +5,9 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
-from diagnosis.verdict import Pulse
+from diagnosis.verdict.verdict import Pulse
 from experiments.diagnosis_report.numbers import percent
-from experiments.diagnosis_report.places import place_words
+from experiments.diagnosis_report.place_words import place_words
 
 _WAYS = {
     "actuator input": "came in at the input of the actuator of {joint}",

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from diagnosis.verdict import Fit, Found, Verdict
+from diagnosis.verdict.verdict import Fit, Found, Verdict
 from experiments.diagnosis_report.numbers import (
     error_unit,
     errors_text,
     estimate_text,
     percent,
 )
-from experiments.diagnosis_report.places import (
+from experiments.diagnosis_report.place_words import (
     answer_words,
     at_words,
     channel_words,

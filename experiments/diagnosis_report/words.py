@@ -3,8 +3,8 @@
 import inspect
 from typing import NamedTuple
 
-from diagnosis.effect import Effect
-from diagnosis.library import EFFECTS
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.library import EFFECTS
 from groundwalk.errors import UnknownNameError
 
 

@@ -7,14 +7,14 @@ from functools import reduce
 
 import numpy as np
 
-from experiments.evaluation import MOST_AT_ONCE
-from experiments.grounded_walks.places import RealCourse, SimPlace, world_at
-from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.grounded_walks.courses import RealCourse, SimPlace, world_at
+from experiments.walking.evaluation import MOST_AT_ONCE
+from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
 from robots import Description, biped
 from sgat.transitions import Transitions
-from sgat.walk_senses import WalkSenses
-from sgat.watched_world import WatchedWorld
+from sgat.walks.walk_senses import WalkSenses
+from sgat.walks.watched_world import WatchedWorld
 from walk_engine import Gait
 from walk_engine.gait import NAMES, from_unit, to_unit
 

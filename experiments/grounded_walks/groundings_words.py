@@ -1,6 +1,6 @@
 """What the pages say of groundings that are not the paper's."""
 
-from experiments.grounded_walks.groundings import UNEVEN
+from experiments.grounded_walks.methods import UNEVEN
 
 UNEVEN_MEANS = (
     f"{UNEVEN}: chance has its place where it arises. The sim has lumps of its own, as",

@@ -8,12 +8,12 @@ import numpy as np
 import robots
 import terrain
 import worlds
-from experiments.evaluation import MOST_AT_ONCE
+from experiments.grounded_walks.courses import RealCourse
 from experiments.grounded_walks.data import ON_COURSE
-from experiments.grounded_walks.places import RealCourse
 from experiments.grounded_walks.sim import ROBOT, GroundedSim, walk_in_sim
-from experiments.reward import reward_cm_s
-from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walking.evaluation import MOST_AT_ONCE
+from experiments.walking.reward import reward_cm_s
+from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield
 from worlds import WorldOptions
@@ -45,7 +45,7 @@ class GroundedRater:
     rules: TrialRules = RATED
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `experiments.tuning.Rater`."""
+        """See `experiments.walking.tuning.Rater`."""
         trials = walk_in_sim(self.sim, vectors, self.repeats, seed, self.rules)
         rewards = _reward_cm_s(trials, self.rules)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
@@ -66,7 +66,7 @@ class RandomisedRater:
     friction: tuple[float, float] = (0.4, 1.0)
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `experiments.tuning.Rater`."""
+        """See `experiments.walking.tuning.Rater`."""
         grounds = [terrain.make("flat", 0)] * len(vectors)
         rewards = []
         for child in seed.spawn(self.repeats):
@@ -98,7 +98,7 @@ class RealRater:
     course: RealCourse
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `experiments.tuning.Rater`."""
+        """See `experiments.walking.tuning.Rater`."""
         grounds = self.course.grounds(seed.spawn(REAL_GROUNDS))
         trials = []
         for first in range(0, len(vectors), MOST_AT_ONCE):

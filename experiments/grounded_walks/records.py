@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 import robots
+from experiments.grounded_walks.courses import LUMPS_M, Places, RealCourse
 from experiments.grounded_walks.data import ON_COURSE, on_lumps, walk
-from experiments.grounded_walks.places import LUMPS_M, Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
 from groundwalk.arrays import BoolArray, FloatArray
 from sgat.transitions import Transitions

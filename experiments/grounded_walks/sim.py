@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import robots
+from experiments.grounded_walks.courses import SimPlace, world_at
 from experiments.grounded_walks.data import WALK, leg_senses
-from experiments.grounded_walks.places import SimPlace, world_at
-from experiments.trials import TrialRules, Trials, walk_trials
+from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
-from sgat.action_transformer import Transformer
-from sgat.grounded_world import GroundedWorld
+from sgat.transformers.action_transformer import Transformer
+from sgat.walks.grounded_world import GroundedWorld
 
 ROBOT = "nao"
 

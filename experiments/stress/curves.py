@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from experiments.intervals import wilson
+from experiments.reports.intervals import wilson
 from experiments.stress.families import FAMILIES, FLAT
-from experiments.stress.half import half_fall
+from experiments.stress.half_fall import half_fall
 from experiments.stress.walks import Trial
 
 Cell = Mapping[str, Any]

@@ -9,7 +9,7 @@ import numpy as np
 from experiments.stress import fall_cause_events as events
 from experiments.stress.fall_cause_signals import Signals
 from worlds import End
-from worlds.scene import Scene
+from worlds.scenes.scene import Scene
 
 LOSS_TILT_RAD = math.radians(15)
 """Beyond this the torso does not come back: upright walks stay below."""

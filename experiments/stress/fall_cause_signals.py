@@ -10,9 +10,9 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from robots import biped
 from robots.sole import contact_points
-from worlds.forward_kinematics import LinkPoses, link_poses
-from worlds.recording_columns import SUPPORT
-from worlds.scene import Scene
+from worlds.recordings.columns import SUPPORT
+from worlds.scenes.forward_kinematics import LinkPoses, link_poses
+from worlds.scenes.scene import Scene
 
 
 @dataclass(frozen=True, eq=False)

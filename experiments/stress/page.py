@@ -3,14 +3,14 @@
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from experiments.report import Report, markdown_table
-from experiments.report_origin import Origin
-from experiments.run_folder import RunFolder
+from experiments.reports.origin import Origin
+from experiments.reports.report import Report, markdown_table
+from experiments.runs.folder import RunFolder
 from experiments.stress.curves import Curve, causes_by_family
 from experiments.stress.fall_cause import Cause
 from experiments.stress.families import FLAT
 from experiments.stress.figure import COMPARISON, heat_map_name
-from experiments.stress.words import family_text, half_text, severity_text
+from experiments.stress.severity_text import family_text, half_text, severity_text
 
 QUESTION = "How rough may the ground be before these gaits fall?"
 HALF_HEADINGS = (

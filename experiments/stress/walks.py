@@ -10,17 +10,17 @@ import numpy as np
 
 import robots
 import worlds
-from experiments.evaluation import MOST_AT_ONCE
-from experiments.recorder import Recorder, servo_gains
 from experiments.stress.fall_cause import fall_cause
 from experiments.stress.families import Place, leg_length_m
-from experiments.trials import TrialRules, walk_trials
+from experiments.walking.evaluation import MOST_AT_ONCE
+from experiments.walking.recorder import Recorder, servo_gains
+from experiments.walking.trials import TrialRules, walk_trials
 from groundwalk.gravity import GRAVITY_M_S2
 from robots import Description
 from terrain import TerrainSpec
 from walk_engine import Gait
 from worlds import FALLS, End, RecordingMetadata
-from worlds.scene import Scene
+from worlds.scenes.scene import Scene
 
 COURSE_LEGS = 8.0
 """Length of the course in leg lengths; on the NAO 2 m."""

@@ -5,19 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.command_line import run_verb
-from experiments.extras import extra
-from experiments.progress import progress
-from experiments.run_folder import HISTORY, RESULT, RunFolder, open_run
-from experiments.run_options import RunOptions
-from experiments.score_table import print_json
-from experiments.text_table import print_table
-from experiments.transfer.cliff_claims import check_claims
-from experiments.transfer.cliff_figure import FIGURE, draw_cliff
-from experiments.transfer.cliff_page import returns_table, write_cliff_page
-from experiments.transfer.cliff_study import CliffStudy, Row, compare
-from experiments.transfer.page import claim_lines
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
+from experiments.runs.options import RunOptions
+from experiments.runs.progress import progress
+from experiments.transfer.claims import claim_lines
+from experiments.transfer.cliff_study.claims import check_claims
+from experiments.transfer.cliff_study.figure import FIGURE, draw_cliff
+from experiments.transfer.cliff_study.page import returns_table, write_cliff_page
+from experiments.transfer.cliff_study.study import CliffStudy, Row, compare
 from groundwalk.errors import BadValueError
-from sgat.tabular_loop import TabularLoop
+from sgat.tabular.loop import TabularLoop
 
 VERB = "transfer-cliff"
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from experiments.command_line import run_verb
-from experiments.transfer.gym import TransferGym, run_study
-from experiments.transfer.gym_environments import HALF_CHEETAH, Domain
-from experiments.transfer.gym_sizes import SMOKE, Size
-from experiments.transfer.gym_training import TrpoConfig
+from experiments.transfer.gym_studies.environments import HALF_CHEETAH, Domain
+from experiments.transfer.gym_studies.sizes import SMOKE, Size
+from experiments.transfer.gym_studies.training import TrpoConfig
+from experiments.transfer.gym_studies.verb import TransferGym, run_study
 
 VERB = "transfer-half-cheetah"
 TITLE = "Half cheetah: from the sim to noisy worlds, one of them heavier"

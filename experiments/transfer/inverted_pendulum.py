@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from experiments.command_line import run_verb
-from experiments.transfer.gym import TransferGym, run_study
-from experiments.transfer.gym_environments import INVERTED_PENDULUM, Domain
-from experiments.transfer.gym_sizes import SMOKE, Size
-from experiments.transfer.gym_training import TrpoConfig
+from experiments.transfer.gym_studies.environments import INVERTED_PENDULUM, Domain
+from experiments.transfer.gym_studies.sizes import SMOKE, Size
+from experiments.transfer.gym_studies.training import TrpoConfig
+from experiments.transfer.gym_studies.verb import TransferGym, run_study
 
 VERB = "transfer-inverted-pendulum"
 TITLE = "Inverted pendulum: from the sim to a noisy world with a heavier pole"

@@ -8,19 +8,22 @@ from typing import Any
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.corrected_sims import check_correction
-from experiments.extras import extra
-from experiments.grounded_walks.places import Places, RealCourse
+from experiments.grounded_walks.courses import Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
-from experiments.progress import progress
-from experiments.run_folder import RESULT, RunFolder, open_run
-from experiments.run_options import RunOptions
-from experiments.score_table import print_json
-from experiments.search import check_search
-from experiments.text_table import print_table
-from experiments.transfer.nao_figure import FIGURE, draw_cells
-from experiments.transfer.nao_page import CELLS, HEADINGS, table_of, write_nao_page
-from experiments.transfer.nao_study import (
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import RESULT, RunFolder, open_run
+from experiments.runs.options import RunOptions
+from experiments.runs.progress import progress
+from experiments.transfer.nao_studies.figure import FIGURE, draw_cells
+from experiments.transfer.nao_studies.page import (
+    CELLS,
+    HEADINGS,
+    table_of,
+    write_nao_page,
+)
+from experiments.transfer.nao_studies.study import (
     METHODS,
     PLAN,
     START,
@@ -29,10 +32,12 @@ from experiments.transfer.nao_study import (
     Effort,
     NaoStudy,
 )
-from experiments.tuning import Budget
+from experiments.walking.search import check_search
+from experiments.walking.sims import check_correction
+from experiments.walking.tuning import Budget
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden_effects import Hidden
-from worlds.hidden_robot import check_hidden
+from worlds.hidden.effects import Hidden
+from worlds.real.hidden_robot import check_hidden
 
 VERB = "transfer-nao"
 SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,

@@ -8,31 +8,31 @@ import numpy as np
 
 import robots
 from experiments.command_line import run_verb
-from experiments.extras import extra
+from experiments.grounded_walks.courses import Places, RealCourse
 from experiments.grounded_walks.data import GaitCloud, walk
-from experiments.grounded_walks.groundings import GROUNDINGS, WalkModels
-from experiments.grounded_walks.places import Places, RealCourse
+from experiments.grounded_walks.methods import GROUNDINGS, WalkModels
 from experiments.grounded_walks.records import record_real, record_walks
 from experiments.grounded_walks.sim import ROBOT, walk_in_sim
-from experiments.progress import progress
-from experiments.run_folder import HISTORY, RESULT, open_run
-from experiments.run_options import RunOptions
-from experiments.score_table import print_json
-from experiments.text_table import print_table
-from experiments.transfer.nao_falls_figure import FIGURE, draw_falls
-from experiments.transfer.nao_falls_measures import (
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import HISTORY, RESULT, open_run
+from experiments.runs.options import RunOptions
+from experiments.runs.progress import progress
+from experiments.transfer.nao_studies.falls_figure import FIGURE, draw_falls
+from experiments.transfer.nao_studies.falls_measures import (
     MEASURES_FIGURE,
     draw_measures,
     measures_of,
 )
-from experiments.transfer.nao_falls_page import (
+from experiments.transfer.nao_studies.falls_page import (
     HEADINGS,
     MEASURES,
     prediction_rows,
     table_of,
     write_falls_page,
 )
-from experiments.trials import Trials
+from experiments.walking.trials import Trials
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 

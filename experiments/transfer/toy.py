@@ -7,21 +7,21 @@ from typing import Any
 import numpy as np
 
 from experiments.command_line import run_verb
-from experiments.progress import progress
-from experiments.report import markdown_table
-from experiments.run_folder import RESULT, open_run
-from experiments.run_options import RunOptions
-from experiments.score_table import print_json
-from experiments.text_table import print_table
-from experiments.transfer.page import Claim, write_transfer_page
+from experiments.reports.report import markdown_table
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.folder import RESULT, open_run
+from experiments.runs.options import RunOptions
+from experiments.runs.progress import progress
+from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.toy_mdps import TOYS, Toy
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from sgat.tabular_grounding import grounded_sim
-from sgat.tabular_mdp import FiniteMdp
-from sgat.tabular_models import counted_forward_model
-from sgat.tabular_planning import action_values, policy_iteration
-from sgat.tabular_rollouts import roll_out
+from sgat.tabular.grounding import grounded_sim
+from sgat.tabular.mdp import FiniteMdp
+from sgat.tabular.models import counted_forward_model
+from sgat.tabular.planning import action_values, policy_iteration
+from sgat.tabular.rollouts import roll_out
 
 VERB = "transfer-toy"
 TITLE = "Toy worlds: does planning in a grounded sim find what is best on real?"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sgat.tabular_mdp import FiniteMdp
+from sgat.tabular.mdp import FiniteMdp
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,12 @@ from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box
 
 import robots
-from experiments.gait_files import load_gait
-from experiments.reward import reward_cm_s
-from experiments.trials import SEARCH_TRIAL, TrialRules
+from experiments.runs.gait_files import load_gait
 from experiments.walk_env.episode import WalkEpisode
 from experiments.walk_env.senses_table import senses_box, senses_of
 from experiments.walk_env.world import EnvWorld, WorldName, episode_seeds
+from experiments.walking.reward import reward_cm_s
+from experiments.walking.trials import SEARCH_TRIAL, TrialRules
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 from robots import Description
@@ -24,7 +24,7 @@ from walk_engine.gait import from_unit
 from worlds import FALLS, World, WorldOptions
 
 if TYPE_CHECKING:
-    from sgat.action_transformer import Transformer
+    from sgat.transformers.action_transformer import Transformer
 
 ActionKind = Literal["residual", "gait"]
 Info = dict[str, Any]
@@ -61,7 +61,7 @@ class WalkEnv(Environment):
     ## Reward
 
     Forward progress in cm over `limit_s`, less 15 at a fall: a whole episode is worth
-    `experiments.reward.reward_cm_s`, in cm/s.
+    `experiments.walking.reward.reward_cm_s`, in cm/s.
 
     ## Start
 
@@ -115,7 +115,7 @@ class WalkEnv(Environment):
           residual_rad: what an action of 1 adds to a joint's command.
           start_spread_rad: standard deviation of the joints at the start.
           transformer: of a grounded world: an object, of which this environment gets a
-            copy, or the folder that `sgat.transformer_files` has written.
+            copy, or the folder that `sgat.transformers.transformer_files` has written.
           options: of the world, such as its latency; its own where None.
 
         Raises:

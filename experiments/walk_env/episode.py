@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from experiments.trials import TrialRules, Trials, start_pose
+from experiments.walking.trials import TrialRules, Trials, start_pose
 from groundwalk.arrays import FloatArray
 from robots import biped
 from walk_engine import Gait, Velocity, WalkEngine
@@ -10,7 +10,7 @@ from worlds import TICK_S, End, Observation, World
 
 
 class WalkEpisode:
-    """A trial of `experiments.trials.walk_trials`, one tick at a time.
+    """A trial of `experiments.walking.trials.walk_trials`, one tick at a time.
 
     Where nothing is added to the commands it is that trial, to the bit.
 

@@ -14,7 +14,7 @@ from terrain import Heightfield, TerrainSpec, parse
 from worlds import World, WorldOptions
 
 if TYPE_CHECKING:
-    from sgat.action_transformer import Transformer
+    from sgat.transformers.action_transformer import Transformer
 
 WorldName = Literal["sim", "real", "grounded"]
 
@@ -46,7 +46,7 @@ class EnvWorld:
         if (self.name == "grounded") != (self.transformer is not None):
             raise BadValueError(
                 "a grounded world, and no other, needs a transformer: an object, or "
-                "the folder that sgat.transformer_files has written"
+                "the folder that sgat.transformers.transformer_files has written"
             )
         terrain = self.terrain or worlds.kind(self.inner).terrain
         if isinstance(terrain, str):
@@ -74,7 +74,7 @@ class EnvWorld:
         if self.transformer is None:
             return world
         from experiments.grounded_walks.data import leg_senses
-        from sgat.grounded_world import GroundedWorld
+        from sgat.walks.grounded_world import GroundedWorld
 
         assert not isinstance(self.transformer, str | Path)
         senses = leg_senses(self.description)
@@ -103,6 +103,6 @@ def episode_seeds(
 def _own(given: "Transformer | str | Path | None") -> "Transformer | None":
     if not isinstance(given, str | Path):
         return copy.deepcopy(given)
-    from sgat.transformer_files import read_transformer
+    from sgat.transformers.transformer_files import read_transformer
 
     return read_transformer(Path(given))

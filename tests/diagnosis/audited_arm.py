@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from diagnosis.audit import audit
-from diagnosis.servo import Servo
+from diagnosis.audit.audit import audit
+from diagnosis.plant.servo import Servo
 
 HZ, SECONDS = 100, 20
 NOISE, QUANTUM = 3e-4, 1.5e-3

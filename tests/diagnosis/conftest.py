@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 from audited_arm import HZ, NOISE, QUANTUM, SECONDS, motions, servo
 
-from diagnosis.plant import Plant
-from diagnosis.trace import Trace
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
 
 
 @pytest.fixture(scope="module")

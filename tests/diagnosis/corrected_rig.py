@@ -6,12 +6,12 @@ import numpy as np
 from joint_rigs import smooth_command, ticks
 
 import robots
-from diagnosis.corrected_sim import CorrectedSim
-from diagnosis.effect import Placed
+from diagnosis.corrected.sim import CorrectedSim
+from diagnosis.effects.effect import Placed
 from robots import biped
 from walk_engine import WalkEngine, gaits
 from worlds import WorldOptions
-from worlds.sim import SimWorld
+from worlds.sim.world import SimWorld
 
 NAO = robots.get("nao")
 CROUCH = WalkEngine(biped(NAO), [gaits.get("start")], 0.01).start_pose()[0]

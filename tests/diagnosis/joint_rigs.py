@@ -6,13 +6,13 @@ import mujoco
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from diagnosis.effect import Placed
-from diagnosis.plant import Plant
-from diagnosis.predictor import variants_of
-from diagnosis.replay import replay
-from diagnosis.run import Run
-from diagnosis.servo import Servo
-from diagnosis.trace import Trace
+from diagnosis.effects.effect import Placed
+from diagnosis.plant.plant import Plant
+from diagnosis.plant.servo import Servo
+from diagnosis.replay.replay import replay
+from diagnosis.residuals.predictor import variants_of
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.windows import Run
 
 INERTIA = 0.02
 """Of the wheel and of the pendulum, about their axes [kg m^2]."""

@@ -4,8 +4,8 @@ import numpy as np
 from joint_rigs import arm_law, integrated, ticks, trace_of
 from made_up_traces import GAINS, arm, arm_command
 
-from diagnosis.predictor import Channels
-from diagnosis.search_result import Rules
+from diagnosis.residuals.predictor import Channels
+from diagnosis.search.result import Rules
 
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))

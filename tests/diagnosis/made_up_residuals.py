@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from made_up_traces import arm, recorded
 
-from diagnosis.predictor import Channels, Predictor
+from diagnosis.residuals.predictor import Channels, Predictor
 
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, 4e-4))
 START_S = 5.0

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from diagnosis.effect import Placed
-from diagnosis.fitting import Coordinates, Fit
-from diagnosis.search_result import Found, Judged
+from diagnosis.effects.effect import Placed
+from diagnosis.search.fitting import Coordinates, Fit
+from diagnosis.search.result import Found, Judged
 
 VALUES = {
     "viscous_friction": (0.1,),

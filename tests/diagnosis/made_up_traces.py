@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from joint_rigs import ARM, plant_of, run_from, ticks, trace_of
 
-from diagnosis.effect import Placed
-from diagnosis.predictor import variants_of
-from diagnosis.replay import replay
+from diagnosis.effects.effect import Placed
+from diagnosis.replay.replay import replay
+from diagnosis.residuals.predictor import variants_of
 
 FINE_S = 5e-4
 NOISE_RAD = 3e-4

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from joint_rigs import servo_of
 
-from diagnosis.plant import Plant
-from diagnosis.trace import Trace
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
 
 KP, KD = 12.0, 0.6
 STEP_S, TICK_S = 2.5e-4, 0.01

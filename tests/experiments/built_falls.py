@@ -7,16 +7,16 @@ import numpy as np
 
 import robots
 import worlds
-from experiments.recorder import Recorder, servo_gains
+from experiments.walking.recorder import Recorder, servo_gains
 from robots import biped
 from terrain import TerrainSpec
 from walk_engine import Velocity, WalkEngine, gaits
 from worlds import TICK_S, Recording, RecordingMetadata
-from worlds.hidden_clock import Clock
-from worlds.hidden_effects import Hidden
-from worlds.hidden_plant import hidden_plant
-from worlds.hidden_run import run_hidden
-from worlds.scene import Scene
+from worlds.hidden.clock import Clock
+from worlds.hidden.effects import Hidden
+from worlds.hidden.plant import hidden_plant
+from worlds.hidden.run import run_hidden
+from worlds.scenes.scene import Scene
 
 AREA = {"x_range_m": (-1.0, 3.0), "y_range_m": (-2.0, 2.0)}
 FINE_S = 0.0005

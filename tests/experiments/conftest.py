@@ -5,7 +5,7 @@ from functools import partial
 
 import pytest
 
-from experiments.trials import TrialRules
+from experiments.walking.trials import TrialRules
 
 SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
 TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
@@ -30,9 +30,9 @@ def in_this_process(monkeypatch):
 @pytest.fixture
 def short_walks(monkeypatch):
     """Walks of the NAO studies that end soon: where they lead to does not matter."""
-    from experiments.evaluation import Study
     from experiments.grounded_walks.data import walk
     from experiments.grounded_walks.sim import walk_in_sim
+    from experiments.walking.evaluation import Study
 
     def short_walk(place, robot, vectors, seed, exploration_rad=(0.0,), rules=SHORT):
         return walk(place, robot, vectors, seed, exploration_rad, rules)

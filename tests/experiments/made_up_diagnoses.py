@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnosis.verdict import (
+from diagnosis.verdict.verdict import (
     Amount,
     ChannelFit,
     EffectAt,
@@ -16,8 +16,8 @@ from diagnosis.verdict import (
     Verdict,
     When,
 )
-from experiments.diagnosis_report.facts import ReportFacts
-from experiments.diagnosis_report.series import ChannelSeries, ReportSeries
+from experiments.diagnosis_report.held_out_series import ChannelSeries, ReportSeries
+from experiments.diagnosis_report.run_facts import ReportFacts
 
 JOINTS = (
     "LHipYawPitch", "LHipRoll", "LHipPitch", "LKneePitch", "LAnklePitch", "LAnkleRoll",

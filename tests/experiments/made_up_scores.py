@@ -1,10 +1,10 @@
 """Made-up truths, answers and oracles of concealed cases."""
 
-from diagnosis.corrected_model import EffectValues
-from diagnosis.verdict import EffectAt, Estimate, Found, Unexplained, Verdict
+from diagnosis.corrected.effects_json import EffectValues
+from diagnosis.verdict.verdict import EffectAt, Estimate, Found, Unexplained, Verdict
 from experiments.concealed.score import DIAGNOSIS, score_of
-from experiments.concealed.score_oracle import Oracle
-from experiments.concealed.score_truth import TrueCase, Truth
+from experiments.concealed.scoring.oracle import Oracle
+from experiments.concealed.scoring.truth import TrueCase, Truth
 
 KNEE, HIP = "LKneePitch", "LHipPitch"
 DRY = EffectValues("coulomb_friction", KNEE, {"torque": 0.2})

@@ -3,7 +3,7 @@ import sys
 
 import pytest
 
-from diagnosis.verdict import Verdict
+from diagnosis.verdict.verdict import Verdict
 from experiments.diagnose import Diagnose, main
 from experiments.record import Record
 from experiments.record import main as record

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from experiments import doctor, doctor_checks
+from experiments import doctor
 from experiments.doctor import DoctorConfig, main, print_lines
-from experiments.doctor_checks import (
+from experiments.runs import doctor_checks
+from experiments.runs.doctor_checks import (
     Finding,
     State,
     check_folder,

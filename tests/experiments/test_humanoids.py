@@ -10,10 +10,10 @@ import pytest
 import robots
 import terrain
 import worlds
+from experiments.humanoid_study.facts import reach, saturation, sole
+from experiments.humanoid_study.page import answer, folder_name, robot_rows, why
 from experiments.humanoids import Humanoids, main
-from experiments.humanoids_facts import reach, saturation, sole
-from experiments.humanoids_page import answer, folder_name, robot_rows, why
-from experiments.trials import TrialRules, walk_trials
+from experiments.walking.trials import TrialRules, walk_trials
 from groundwalk.errors import GroundwalkError
 from walk_engine import gaits
 from worlds import Recording, RecordingMetadata

@@ -4,7 +4,7 @@ import sys
 import pytest
 
 import terrain
-from experiments.list import TABLES, List, main
+from experiments.list_names import TABLES, List, main
 from groundwalk.errors import UnknownNameError
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from experiments.optimize_gait import OptimizeGait, search
-from experiments.run_folder import RunFolder, open_run
+from experiments.runs.folder import RunFolder, open_run
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 

@@ -3,16 +3,16 @@ from dataclasses import replace
 import pytest
 from made_up_diagnoses import KINDS
 
-from diagnosis.verdict import Estimate, Found, Pulse, Recordings
+from diagnosis.verdict.verdict import Estimate, Found, Pulse, Recordings
 from experiments import real_robots
 from experiments.diagnosis_report.console import console_lines
 from experiments.diagnosis_report.text import answer
 from experiments.diagnosis_report.words import WORDS
+from experiments.real_robot_study.cases import ROBOTS, Published, RealRobot, Sane
+from experiments.real_robot_study.claims import claims_of
+from experiments.real_robot_study.page import write_real_page
 from experiments.real_robots import RealRobots, main
-from experiments.real_robots_cases import ROBOTS, Published, RealRobot, Sane
-from experiments.real_robots_claims import claims_of
-from experiments.real_robots_page import write_real_page
-from experiments.run_folder import RunFolder
+from experiments.runs.folder import RunFolder
 from groundwalk.errors import BadValueError
 
 KNOWN = Published("viscous_friction", "coefficient", 3.0, "oil")

@@ -8,9 +8,9 @@ from made_up_runs import steady
 from PIL import Image
 
 from experiments.render import Render, main
-from experiments.render_film import GIF_BYTES, Film, film_bytes, window_s
-from experiments.run_folder import RunFolder
-from experiments.scenes import make_scenes
+from experiments.runs.folder import RunFolder
+from experiments.seeing.film import GIF_BYTES, Film, film_bytes, window_s
+from experiments.seeing.scenes import make_scenes
 from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
 from worlds import write_recording
 
@@ -151,7 +151,7 @@ def test_no_engine_and_no_display_is_needed():
 
 
 def test_a_gif_that_would_be_too_large_gets_fewer_colours(monkeypatch):
-    from experiments import render_film
+    from experiments.seeing import film as render_film
 
     frames = [np.random.default_rng(1).integers(0, 256, (40, 40, 3), np.uint8)] * 2
 

@@ -9,7 +9,7 @@ import pytest
 import robots
 import terrain
 import worlds
-from experiments.run_folder import HISTORY, RESULT, RunFolder
+from experiments.runs.folder import HISTORY, RESULT, RunFolder
 from experiments.stress.families import (
     FAMILIES,
     FLAT,

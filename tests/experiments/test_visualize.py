@@ -7,7 +7,7 @@ from made_up_runs import history, steady
 from rerun.chunk import RrdReader
 
 from experiments import visualize
-from experiments.run_folder import RunFolder
+from experiments.runs.folder import RunFolder
 from experiments.visualize import Visualize, default_out, gather, main
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 from worlds import write_recording

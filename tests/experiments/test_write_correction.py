@@ -8,14 +8,14 @@ import pytest
 
 import robots
 import terrain
-from diagnosis.corrected_sim import CorrectedSim
-from diagnosis.effect import Placed
-from diagnosis.plant_sources import load_plant
-from experiments.corrected_sims import make_sim
+from diagnosis.corrected.sim import CorrectedSim
+from diagnosis.effects.effect import Placed
+from diagnosis.plant.load import load_plant
 from experiments.diagnose import write_correction
-from experiments.run_folder import RunFolder
+from experiments.runs.folder import RunFolder
+from experiments.walking.sims import make_sim
 from worlds import WorldOptions
-from worlds.sim import SimWorld
+from worlds.sim.world import SimWorld
 
 WEAK = Placed("servo_gain", "LKneePitch", (0.5,))
 PLAY = Placed("backlash", "LKneePitch", (0.03,))

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from known_dynamics import LIGHT, bent, linear, noisy_actions, roll
 
-from sgat.forward_config import ForwardConfig
-from sgat.forward_model import ForwardModel
-from sgat.inverse_model import InverseModel
-from sgat.network_config import NetworkConfig
+from sgat.models.forward_config import ForwardConfig
+from sgat.models.forward_model import ForwardModel
+from sgat.models.inverse_model import InverseModel
+from sgat.models.network_config import NetworkConfig
 
 NOISE = 0.3
 

@@ -8,7 +8,7 @@ import pytest
 import terrain
 import worlds
 from worlds import WorldOptions
-from worlds.rerun_log import write_rrd
+from worlds.rerun_files.log import write_rrd
 
 SETTLE_TICKS = 150
 

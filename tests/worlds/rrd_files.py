@@ -9,9 +9,9 @@ from rerun.chunk import RrdReader
 from scipy.spatial.transform import Rotation
 
 import robots
-from worlds.recording import Recording
-from worlds.recording_metadata import RecordingMetadata
-from worlds.scene import Scene
+from worlds.recordings.metadata import RecordingMetadata
+from worlds.recordings.recording import Recording
+from worlds.scenes.scene import Scene
 
 NAO = robots.get("nao")
 TICKS = 40

@@ -1,0 +1,1 @@
+"""What recordings are worth before anything is read out of them."""

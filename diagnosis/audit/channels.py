@@ -1,0 +1,170 @@
+"""The channels of a trace: noise, quantum, what is missing, stuck or repeated."""
+
+import numpy as np
+
+from diagnosis.audit.result import ChannelAudit, Finding, Severity
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.noise import noise_of
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import BoolArray, FloatArray
+from worlds.recordings.columns import vector_columns
+
+_OF_JOINTS = {
+    "position": "position_rad",
+    "velocity": "velocity_rad_s",
+    "command": "command_rad",
+    "command_torque": "command_torque_nm",
+    "torque": "torque_nm",
+}
+_OF_VECTORS = {
+    "gyroscope": "gyroscope_rad_s",
+    "accelerometer": "accelerometer_m_s2",
+    "foot_force": "foot_force_n",
+    "base.position": "base_position_m",
+    "base.orientation": "base_orientation",
+    "base.linear_velocity": "base_linear_velocity_m_s",
+    "base.angular_velocity": "base_angular_velocity_rad_s",
+}
+COMMANDS = ("command.", "command_torque.")
+_MOST_MISSING = 0.5
+_BURST_S = 0.1
+_STUCK_ROWS = 4
+_STAYS, _LONG_STAY_ROWS = 2, 10
+"""One short stay may be chance."""
+_ARRIVAL = 4.0
+"""A channel is clipped if it reaches its extreme at this many steps of noise a row."""
+_REPEATED = 0.05
+
+
+def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
+    """Every channel of a trace by its column's name, (T,) each.
+
+    A joint's quantity that was never recorded is left out.
+    """
+    channels: dict[str, FloatArray] = {}
+    for quantity, field in _OF_JOINTS.items():
+        values = getattr(trace, field)
+        for column, joint in enumerate(plant.joints if values is not None else ()):
+            if quantity == "position" or np.isfinite(values[:, column]).any():
+                channels[f"{quantity}.{joint}"] = values[:, column]
+    for vector, field in _OF_VECTORS.items():
+        values = getattr(trace, field)
+        for column, name in enumerate(
+            vector_columns(vector) if values is not None else ()
+        ):
+            channels[name] = values[:, column]
+    return channels
+
+
+def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
+    """Measure one channel."""
+    there = values[np.isfinite(values)]
+    noise = noise_of(trace.time_s, values)
+    constant = len(there) > 0 and bool(np.ptp(there) == 0)
+    measured = len(there) > 0 and not constant and not name.startswith(COMMANDS)
+    return ChannelAudit(
+        name=name,
+        noise_std=noise.std,
+        quantum=noise.quantum,
+        constant=constant,
+        clipped_share=_clipped_share(name, values, noise.step) if measured else 0.0,
+        missing_share=1 - len(there) / max(len(values), 1),
+        longest_missing_s=_longest_s(trace.time_s, ~np.isfinite(values)),
+    )
+
+
+def channel_findings(trace: Trace, channel: ChannelAudit) -> list[Finding]:
+    """What a channel's numbers mean."""
+    severity: Severity
+    found = []
+    where = f"{channel.name} of {trace.name}"
+    if channel.missing_share > _MOST_MISSING:
+        driving = channel.name.startswith(("position.", "command."))
+        text = f"{where}: {channel.missing_share:.0%} of the values are missing"
+        severity = "refuse" if driving else "limit"
+        found.append(Finding(severity, text, trace.name, channel.name))
+    elif channel.longest_missing_s >= _BURST_S:
+        text = (
+            f"{where}: {channel.missing_share:.1%} of the values are missing, up to "
+            f"{channel.longest_missing_s:.2g} s at a stretch; nothing is said of those"
+        )
+        found.append(Finding("limit", text, trace.name, channel.name))
+    elif channel.missing_share > 0:
+        text = f"{where}: {channel.missing_share:.1%} of the values are missing"
+        found.append(Finding("note", text, trace.name, channel.name))
+    if channel.clipped_share > 0:
+        text = (
+            f"{where} is stuck at an extreme in {channel.clipped_share:.1%} of the "
+            "rows, as if the sensor or the motor had reached its limit"
+        )
+        is_position = channel.name.startswith("position.")
+        severity = "note" if is_position else "limit"
+        found.append(Finding(severity, text, trace.name, channel.name))
+    return found
+
+
+def repeated_share(trace: Trace, steps: FloatArray) -> float:
+    """Share of moving rows whose positions are all those of the row before.
+
+    Args:
+      trace: with T rows and j joints.
+      steps: (j,) quanta, 0 for continuous positions: noise alone never repeats them.
+    """
+    position = trace.position_rad
+    if len(position) < 4:
+        return 0.0
+    around = np.abs(position[3:] - position[:-3]) > 3 * _ARRIVAL * steps
+    moving = around.any(axis=1)
+    same = (position[2:-1] == position[1:-2]).all(axis=1)
+    return float(np.mean(same[moving])) if moving.any() else 0.0
+
+
+def repeated_findings(trace: Trace, share: float) -> list[Finding]:
+    """What repeated rows mean."""
+    if share < _REPEATED:
+        return []
+    text = (
+        f"{trace.name}: {share:.0%} of the rows taken in motion repeat the positions "
+        "of the row before; the sensors are slower than the recording, and delays of "
+        "that length are not told from it"
+    )
+    return [Finding("limit", text, trace.name)]
+
+
+def _clipped_share(name: str, values: FloatArray, step: float) -> float:
+    """Share of rows in long stays at an extreme that was reached at speed.
+
+    What slows down before it stands still has come to rest. A foot without load
+    rests at no force at all.
+    """
+    stays = []
+    ends = (np.nanmax(values), np.nanmin(values))
+    for extreme in ends[:1] if name.startswith("foot_force") else ends:
+        for start, stop in _runs(values == extreme):
+            if stop - start < _STUCK_ROWS or start < 3:
+                continue
+            # the last step to the extreme is cut off, so speed is that before it
+            first, speed = np.abs(np.diff(values[start - 3 : start]))
+            at_speed = speed > _ARRIVAL * step
+            if at_speed and abs(extreme - values[start - 2]) > first:
+                stays.append(stop - start)
+    if len(stays) < _STAYS and sum(stays) < _LONG_STAY_ROWS:
+        return 0.0
+    return sum(stays) / len(values)
+
+
+def _longest_s(time_s: FloatArray, mask: BoolArray) -> float:
+    """Longest stretch of rows in a mask, to the row after it."""
+    longest = 0.0
+    for start, stop in _runs(mask):
+        end = min(stop, len(time_s) - 1)
+        longest = max(longest, float(time_s[end] - time_s[max(start - 1, 0)]))
+    return longest
+
+
+def _runs(mask: BoolArray) -> list[tuple[int, int]]:
+    """First row and row after the last of each stretch."""
+    edges = np.flatnonzero(
+        np.diff(np.concatenate([[False], mask, [False]]).astype(int))
+    )
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -1,0 +1,97 @@
+"""How well each joint's position follows each joint's command."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray
+
+_LONGEST_LAG_S = 0.25
+_LAGS = 8
+_STILL_RAD = 2e-3
+_LEAST_ROWS = 50
+
+
+@dataclass(frozen=True, eq=False)
+class Following:
+    """The m joints whose command and position both move; constant offsets are left out.
+
+    Attributes:
+      columns: of these joints in the trace.
+      misfit: (m, m) rms of a position (second) less a command (first), at the lag
+        that fits best.
+      correlation: (m, m) at the lag at which it is largest in size.
+      slope: (m,) of a position on its own command.
+      flipped: (m,) as misfit, of a position less its own command upside down.
+    """
+
+    columns: tuple[int, ...]
+    misfit: FloatArray
+    correlation: FloatArray
+    slope: FloatArray
+    flipped: FloatArray
+
+
+def following(trace: Trace) -> Following:
+    """Compare all commands with all positions, up to a quarter of a second later.
+
+    Rows in which a value is missing are left out.
+    """
+    command, position = trace.command_rad, trace.position_rad
+    nothing = Following((), *(np.zeros(shape) for shape in ((0, 0), (0, 0), 0, 0)))
+    if command is None:
+        return nothing
+    moving = np.flatnonzero(
+        (_spread(command) > _STILL_RAD) & (_spread(position) > _STILL_RAD)
+    )
+    command, position = command[:, moving], position[:, moving]
+    if not len(moving):
+        return nothing
+    lags = np.unique(np.linspace(0, _LONGEST_LAG_S / trace.tick_s, _LAGS).astype(int))
+    lags = lags[len(command) - lags >= _LEAST_ROWS]
+    tables = [_compare(command[: len(command) - lag], position[lag:]) for lag in lags]
+    if not tables:
+        return nothing
+    misfit, flipped, correlation, slope = (
+        np.stack(parts) for parts in zip(*tables, strict=True)
+    )
+    own = np.abs(np.diagonal(correlation, axis1=1, axis2=2)).argmax(axis=0)
+    best = np.abs(correlation).argmax(axis=0)
+    return Following(
+        tuple(int(column) for column in moving),
+        misfit.min(axis=0),
+        np.take_along_axis(correlation, best[None], axis=0)[0],
+        np.take_along_axis(slope, own[None], axis=0)[0],
+        flipped.min(axis=0),
+    )
+
+
+def _compare(
+    command: FloatArray, position: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Misfit (m, m), misfit upside down (m,), correlation (m, m) and slope (m,)."""
+    there = np.isfinite(command).all(axis=1) & np.isfinite(position).all(axis=1)
+    count = max(int(there.sum()), 1)
+    c = command[there] - command[there].mean(axis=0) if there.any() else command[:0]
+    q = position[there] - position[there].mean(axis=0) if there.any() else position[:0]
+    cross = c.T @ q / count
+    command_power = (c**2).sum(axis=0) / count
+    position_power = (q**2).sum(axis=0) / count
+    both = command_power[:, None] + position_power
+    own = np.diagonal(cross)
+    size = np.sqrt(np.outer(command_power, position_power))
+    return (
+        np.sqrt(np.maximum(both - 2 * cross, 0.0)),
+        np.sqrt(np.maximum(np.diagonal(both) + 2 * own, 0.0)),
+        cross / np.maximum(size, np.finfo(float).tiny),
+        own / np.maximum(command_power, np.finfo(float).tiny),
+    )
+
+
+def _spread(values: FloatArray) -> FloatArray:
+    """Range of each column; 0 where nothing is there."""
+    there = np.isfinite(values)
+    low = np.where(there, values, np.inf).min(axis=0)
+    high = np.where(there, values, -np.inf).max(axis=0)
+    return np.asarray(np.maximum(high - low, 0.0), float)

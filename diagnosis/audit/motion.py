@@ -1,0 +1,101 @@
+"""Excitation: how the joints moved, and what that leaves open."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.audit.result import ChannelAudit, Finding, JointAudit, TraceAudit
+from diagnosis.traces.smoothing import Smoothed
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray
+
+_MOVES_NOISES, _MOVES_QUANTA, _MOVES_RAD = 8.0, 6.0, 1e-3
+_FAST = 0.05
+"""Speeds below this share of the largest are standstill."""
+_LEAST_REVERSALS = 2
+
+
+def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointAudit:
+    """How one joint moved.
+
+    Args:
+      joint: its name.
+      channel: of its position.
+      smoothed: the same position.
+    """
+    low, high = float(np.min(smoothed.value)), float(np.max(smoothed.value))
+    noise = channel.noise
+    least = max(
+        _MOVES_NOISES * noise.total, _MOVES_QUANTA * (noise.quantum or 0), _MOVES_RAD
+    )
+    moves = high - low > least
+    return JointAudit(
+        name=joint,
+        low_rad=low,
+        high_rad=high,
+        speed_rad_s=float(np.quantile(np.abs(smoothed.rate), 0.99)),
+        reversals=_reversals(smoothed.rate) if moves else 0,
+        moves=moves,
+    )
+
+
+def stuck_findings(
+    trace: Trace, joints: Sequence[str], channels: dict[str, ChannelAudit]
+) -> list[Finding]:
+    """Channels that never change although something should change them."""
+    found, dead = [], []
+    commanded = []
+    for joint in joints:
+        command = channels.get(
+            f"command.{joint}", channels.get(f"command_torque.{joint}")
+        )
+        if command is not None and not command.constant:
+            commanded.append(joint)
+            if channels[f"position.{joint}"].constant:
+                dead.append(joint)
+    for joint in dead:
+        name = f"position.{joint}"
+        every = len(dead) == len(commanded)
+        text = (
+            f"{name} of {trace.name} never changes although its command does"
+            + (", and so for all joints" if every and len(dead) > 1 else "")
+            + ": the joint is jammed or its sensor dead"
+        )
+        found.append(Finding("refuse" if every else "limit", text, trace.name, name))
+    for name, channel in channels.items():
+        if channel.constant and name.startswith(("gyroscope", "accelerometer")):
+            text = f"{name} of {trace.name} never changes; it is left out"
+            found.append(Finding("limit", text, trace.name, name))
+    return found
+
+
+def excitation_findings(traces: Sequence[TraceAudit]) -> list[Finding]:
+    """What no trace can tell of a joint."""
+    found = []
+    for column, first in enumerate(traces[0].joints if traces else ()):
+        joints = [trace.joints[column] for trace in traces]
+        text = _left_open(first.name, [joint for joint in joints if joint.moves])
+        if text:
+            found.append(Finding("limit", text, channel=f"position.{first.name}"))
+    return found
+
+
+def _left_open(name: str, moving: Sequence[JointAudit]) -> str:
+    if not moving:
+        return (
+            f"{name} never moves: nothing can be said of its friction, inertia or play"
+        )
+    reversals = sum(joint.reversals for joint in moving)
+    if reversals < _LEAST_REVERSALS:
+        return (
+            f"{name} reverses {reversals} times: its Coulomb friction and an offset of "
+            "its torque or its encoder cannot be told apart, nor can play be seen"
+        )
+    return ""
+
+
+def _reversals(rate: FloatArray) -> int:
+    """Changes of direction between times of notable speed."""
+    fast = np.abs(rate) > _FAST * np.quantile(np.abs(rate), 0.995)
+    direction = np.sign(rate[fast])
+    return int(np.count_nonzero(np.diff(direction)))

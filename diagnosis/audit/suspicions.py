@@ -1,0 +1,191 @@
+"""Recordings that cannot be what they say: units, signs and joints mixed up."""
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from diagnosis.audit.following import Following, following
+from diagnosis.audit.result import Finding
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.smoothing import Smoothed
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray, IntArray
+
+_FAR_BEYOND, _FAR_BEYOND_RAD = 1.0, 1.0
+"""Positions outside of the range by its width and this much are in another unit."""
+_BEYOND = 0.05
+_FAR_BETTER = 0.4
+_ALIKE = 0.8
+_UNIT_SLACK = 1.4
+_UNITS = {np.degrees(1): "degrees instead of radians", 1e3: "thousandths of the unit"}
+_RATE_SLACK = 2.0
+
+
+def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
+    """Positions and commands against the model's joint ranges."""
+    found = []
+    for column, joint in enumerate(plant.joints):
+        number = plant.model.joint(joint).id
+        if not plant.model.jnt_limited[number]:
+            continue
+        low, high = plant.model.jnt_range[number]
+        for quantity, values in _targets(trace):
+            most = _excess(values[:, column], low, high)
+            name = f"{quantity}.{joint}"
+            said = f"{name} of {trace.name} goes {most:.3g} beyond"
+            ends = f"its range of {low:.3g} to {high:.3g} in the model"
+            if most > max(_FAR_BEYOND * (high - low), _FAR_BEYOND_RAD):
+                text = f"{said} {ends}; are angles in degrees instead of radians?"
+                found.append(Finding("refuse", text, trace.name, name))
+            elif most > _BEYOND * (high - low):
+                text = f"{said} {ends}; the model's end stop would act there"
+                found.append(Finding("limit", text, trace.name, name))
+    return found
+
+
+def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
+    """Joints that follow no command, another's command or their own upside down."""
+    if trace.command_rad is None:
+        return []
+    follow = following(trace)
+    found = _swapped(trace, plant, follow)
+    for k, column in enumerate(follow.columns):
+        name = f"position.{plant.joints[column]}"
+        slope, alike = follow.slope[k], follow.correlation[k, k]
+        unit = _unit(slope)
+        if abs(alike) > _ALIKE and unit:
+            text = (
+                f"{name} of {trace.name} moves {slope:.3g} times as far as its "
+                f"command; is one of them in {unit}?"
+            )
+            found.append(Finding("refuse", text, trace.name, name))
+        elif alike < -_ALIKE and follow.flipped[k] < _FAR_BETTER * follow.misfit[k, k]:
+            text = (
+                f"{name} of {trace.name} runs against its command (correlation "
+                f"{alike:.2f}); is a sign wrong?"
+            )
+            found.append(Finding("refuse", text, trace.name, name))
+    return found
+
+
+def velocity_findings(
+    trace: Trace, plant: Plant, smoothed: list[Smoothed], moves: list[bool]
+) -> list[Finding]:
+    """Measured velocities against the rate of the positions."""
+    found: list[Finding] = []
+    if trace.velocity_rad_s is None:
+        return found
+    for column, joint in enumerate(plant.joints):
+        rate, measured = smoothed[column].rate, trace.velocity_rad_s[:, column]
+        there = np.isfinite(measured) & np.isfinite(rate)
+        if not moves[column] or there.sum() < 2 or np.ptp(measured[there]) == 0:
+            continue
+        cross = float(np.mean(rate[there] * measured[there]))
+        factor = cross / float(np.mean(rate[there] ** 2))
+        alike = cross / float(
+            np.sqrt(np.mean(rate[there] ** 2) * np.mean(measured[there] ** 2))
+        )
+        right = 1 / _RATE_SLACK < factor < _RATE_SLACK
+        if abs(alike) > _ALIKE and not right:
+            name = f"velocity.{joint}"
+            text = (
+                f"{name} of {trace.name} is {factor:.3g} times the rate of its "
+                "positions; are their units, signs and the time's the same?"
+            )
+            found.append(Finding("refuse", text, trace.name, name))
+    return found
+
+
+def drive_findings(trace: Trace, plant: Plant) -> list[Finding]:
+    """What a replay needs and the trace lacks."""
+    found = []
+    if plant.base == "floating" and (
+        trace.base_position_m is None or trace.base_orientation is None
+    ):
+        text = (
+            f"{trace.name} has a floating base without base.position and "
+            "base.orientation; nothing says where it is"
+        )
+        found.append(Finding("refuse", text, trace.name))
+    for column, joint in enumerate(plant.joints):
+        if _is_driven(trace, column) and not _follows_unknown(trace, column):
+            continue
+        name = f"command.{joint}"
+        text = (
+            f"{name} of {trace.name}: no servo gains are known; give them as options "
+            "or in the recording's metadata"
+            if _is_driven(trace, column)
+            else f"{trace.name}: nothing says what drove {joint}"
+        )
+        found.append(Finding("refuse", text, trace.name, name))
+    return found
+
+
+def _swapped(trace: Trace, plant: Plant, follow: Following) -> list[Finding]:
+    """Joints of which each is far better explained by the next one's command."""
+    if len(follow.columns) < 2:
+        return []
+    _, of_command = linear_sum_assignment(follow.misfit**2)
+    source = np.argsort(of_command)  # the command that explains each position best
+    positions = np.arange(len(source))
+    own = follow.misfit[positions, positions]
+    better = follow.misfit[source, positions] < _FAR_BETTER * own
+    better &= follow.correlation[source, positions] > _ALIKE
+    found = []
+    for k in positions[source != positions]:
+        if not all(better[member] for member in _cycle(source, int(k))):
+            continue
+        joint, other = (plant.joints[follow.columns[i]] for i in (k, source[k]))
+        name = f"position.{joint}"
+        text = (
+            f"{name} of {trace.name} follows the command of {other} within "
+            f"{follow.misfit[source[k], k]:.2g}, its own only within {own[k]:.2g}; are "
+            "joints swapped?"
+        )
+        found.append(Finding("refuse", text, trace.name, name))
+    return found
+
+
+def _cycle(source: IntArray, start: int) -> list[int]:
+    members, k = [start], int(source[start])
+    while k != start:
+        members.append(k)
+        k = int(source[k])
+    return members
+
+
+def _unit(slope: float) -> str:
+    for factor, unit in _UNITS.items():
+        for size in (factor, 1 / factor):
+            if 1 / _UNIT_SLACK < abs(slope) / size < _UNIT_SLACK:
+                return unit
+    return ""
+
+
+def _targets(trace: Trace) -> list[tuple[str, FloatArray]]:
+    pairs = [("position", trace.position_rad), ("command", trace.command_rad)]
+    return [(name, values) for name, values in pairs if values is not None]
+
+
+def _excess(values: FloatArray, low: float, high: float) -> float:
+    """How far all but single values go beyond a range."""
+    there = values[np.isfinite(values)]
+    least, most = np.quantile(there, (0.01, 0.99)) if len(there) else (low, high)
+    return float(max(most - high, low - least, 0.0))
+
+
+def _is_driven(trace: Trace, column: int) -> bool:
+    drives = (trace.command_rad, trace.command_torque_nm, trace.torque_nm)
+    return any(
+        values is not None and bool(np.isfinite(values[:, column]).any())
+        for values in drives
+    )
+
+
+def _follows_unknown(trace: Trace, column: int) -> bool:
+    """Whether only a position command drives a joint whose servo is unknown."""
+    torques = (trace.command_torque_nm, trace.torque_nm)
+    by_torque = any(
+        values is not None and bool(np.isfinite(values[:, column]).any())
+        for values in torques
+    )
+    return bool(trace.servo.kp_nm_rad[column] == 0) and not by_torque

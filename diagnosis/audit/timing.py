@@ -1,0 +1,95 @@
+"""The clock of a trace: is there enough, is it even, does it run forward."""
+
+import numpy as np
+
+from diagnosis.audit.result import Finding, TraceAudit
+from diagnosis.traces.trace import Trace
+
+_LEAST_S, _LEAST_ROWS = 1.0, 50
+_GAP = 2.5
+"""Ticks longer than this many median ones are gaps ..."""
+_LONG_GAP_S = 0.1
+"""... and from this length on a simulation cannot be carried across them."""
+_SLOWEST_HZ, _SLOW_HZ = 5.0, 45.0
+_UNEVEN = 0.1
+"""Jitter above this share of a tick is worth a note."""
+
+
+def audit_timing(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
+    """Rate, jitter and gaps of a trace, and what follows from them."""
+    name, time_s = trace.name, trace.time_s
+    ticks = np.diff(time_s)
+    if len(time_s) < 2 or (ticks <= 0).any() or not np.isfinite(time_s).all():
+        return _without_clock(trace)
+    tick_s = trace.tick_s
+    is_gap = ticks > _GAP * tick_s
+    audit = TraceAudit(
+        name=name,
+        rows=trace.ticks,
+        duration_s=trace.duration_s,
+        rate_hz=1 / tick_s,
+        jitter_s=float(np.std(ticks[~is_gap])),
+        gaps=int(is_gap.sum()),
+        longest_gap_s=float(ticks[is_gap].max(initial=0.0)),
+    )
+    return audit, [*_amount(audit), *_rate(audit), *_evenness(audit)]
+
+
+def _without_clock(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
+    backwards = np.flatnonzero(~(np.diff(trace.time_s) > 0))
+    text = f"{trace.name} has {trace.ticks} rows; at least {_LEAST_ROWS} are needed"
+    if len(backwards):
+        row = int(backwards[0]) + 1
+        text = (
+            f"{trace.name}: time does not run forward at row {row}: "
+            f"{trace.time_s[row - 1]:.6g} s, then {trace.time_s[row]:.6g} s"
+        )
+    audit = TraceAudit(trace.name, trace.ticks, 0.0, 0.0, 0.0, 0, 0.0)
+    return audit, [Finding("refuse", text, trace.name, "time")]
+
+
+def _amount(audit: TraceAudit) -> list[Finding]:
+    name, found = audit.name, []
+    if audit.duration_s < _LEAST_S:
+        found.append(
+            f"{name} lasts {audit.duration_s:.3g} s; at least {_LEAST_S:g} s are needed"
+        )
+    if audit.rows < _LEAST_ROWS:
+        found.append(f"{name} has {audit.rows} rows; at least {_LEAST_ROWS} are needed")
+    return [Finding("refuse", text, name, "time") for text in found]
+
+
+def _rate(audit: TraceAudit) -> list[Finding]:
+    name, rate = audit.name, audit.rate_hz
+    if rate < _SLOWEST_HZ:
+        text = (
+            f"{name} has {rate:.3g} rows a second, too few for any motion; is its time "
+            "in milliseconds instead of seconds?"
+        )
+        return [Finding("refuse", text, name, "time")]
+    if rate < _SLOW_HZ:
+        text = (
+            f"{name} has {rate:.3g} rows a second; below about 50 nothing is said of "
+            "delays, armature and elasticity"
+        )
+        return [Finding("limit", text, name, "time")]
+    return []
+
+
+def _evenness(audit: TraceAudit) -> list[Finding]:
+    name, found = audit.name, []
+    if audit.gaps:
+        is_long = audit.longest_gap_s >= _LONG_GAP_S
+        after = "; nothing is said of what happened in them" if is_long else ""
+        text = (
+            f"{name} has {audit.gaps} gaps, the longest of "
+            f"{1e3 * audit.longest_gap_s:.3g} ms{after}"
+        )
+        found.append(Finding("limit" if is_long else "note", text, name, "time"))
+    if audit.jitter_s * audit.rate_hz > _UNEVEN:
+        text = (
+            f"{name}: ticks of {1e3 / audit.rate_hz:.3g} ms vary by "
+            f"{1e3 * audit.jitter_s:.2g} ms; shorter delays are not told from jitter"
+        )
+        found.append(Finding("limit", text, name, "time"))
+    return found

@@ -1,0 +1,54 @@
+"""Fitted numbers as parts of a verdict."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.verdict.verdict import EffectAt, Estimate, Found
+
+NORMAL_80 = 1.2815515655446004
+"""Half of an 80 % interval, in standard deviations."""
+
+_LARGEST = 1e12
+
+
+def found_effect(
+    plant: Plant,
+    placed: Placed,
+    spans: Sequence[tuple[float, float]],
+    probability: float,
+    confusable_with: Sequence[Placed] = (),
+) -> Found:
+    """An effect with its values and their 80 % intervals, within the bounds.
+
+    Args:
+      plant: nominal.
+      placed: what was found.
+      spans: (low, high) of each value; clipped to what makes sense.
+      probability: that it is right.
+      confusable_with: what else would explain the same.
+    """
+    kind = effect(placed.effect)
+    estimates = {}
+    for parameter, value, span in zip(
+        kind.parameters(plant, placed.place), placed.values, spans, strict=True
+    ):
+        least, most = max(parameter.low, -_LARGEST), min(parameter.high, _LARGEST)
+        value, low, high = (
+            float(np.clip(np.nan_to_num(each, nan=value), least, most))
+            for each in (value, *span)
+        )
+        estimates[parameter.name] = Estimate(
+            value, min(low, value), max(high, value), parameter.unit
+        )
+    return Found(
+        placed.effect,
+        placed.place,
+        estimates,
+        float(np.clip(probability, 0.0, 1.0)),
+        tuple(EffectAt(other.effect, other.place) for other in confusable_with),
+        native=kind.native,
+    )

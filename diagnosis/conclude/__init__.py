@@ -1,0 +1,1 @@
+"""From the outcome of a search to a verdict: intervals, doubts, controls."""

@@ -1,0 +1,115 @@
+"""What a search's outcome means: the kind of verdict, and the effects believed."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from diagnosis.audit.result import Audit
+from diagnosis.conclude.confidence import confusable, gap, probability, twins
+from diagnosis.conclude.estimates import estimates
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.fitting import Fit as FittedModel
+from diagnosis.search.result import Found as Searched
+from diagnosis.verdict.verdict import EffectAt, Found, VerdictKind, When
+
+LEAST_CLOSED = 0.95
+"""A model that takes away less of the energy above the noise is not all there is ..."""
+
+MOST_LEFT = 0.5
+"""... unless what it leaves is below so large a part of the noise's own energy."""
+
+
+UNSURE_NATS, WEAK = 15.0, 4.0
+"""With a smaller gap to models without it an effect may as well be another; so many
+times the least gain of a search is a weak reason to believe it all the same."""
+
+
+def sure(searched: Searched, least_gain: float) -> Searched:
+    """What a search came to, less an effect that is unsure and hardly needed.
+
+    Where two sims of the same physics differ a little, some effect always explains it.
+
+    Args:
+      searched: that is to be believed.
+      least_gain: that the search asked of an effect [nats].
+    """
+    winner = searched.winner
+    if winner is None or searched.chosen == 1:
+        return searched
+    least = min(gap(searched, placed) for placed in winner.model)
+    smaller = searched.best[searched.chosen - 1][0]
+    weak = smaller.selected - winner.selected < WEAK * least_gain
+    if least >= UNSURE_NATS or not weak or not smaller.keys < winner.keys:
+        return searched
+    return sure(replace(searched, chosen=searched.chosen - 1), least_gain)
+
+
+def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
+    """The kind of verdict.
+
+    Args:
+      searched: what the search came to.
+      plant: nominal.
+      audited: says which joints moved.
+    """
+    selected, fitted = searched.nothing, searched.nothing_fit
+    if searched.winner:
+        selected, fitted = searched.winner.selected, searched.winner.fit.energy
+    much = selected > (1 + MOST_LEFT) * searched.floor
+    much |= fitted > (1 + MOST_LEFT) * searched.floor_fit
+    closed = searched.closed(searched.winner) if searched.winner else 0.0
+    if much and closed < LEAST_CLOSED:
+        return "unknown"
+    still = set(plant.joints) - audited.moving
+    at_rest = still | plant.at_rest(still)
+    if searched.winner and not {one.place for one in searched.winner.model} <= at_rest:
+        return "effects"
+    return "not_identifiable" if still else "none"
+
+
+def effects_of(
+    both: Predictor, searched: Searched, refitted: FittedModel | None
+) -> tuple[Found, ...]:
+    """The effects believed, the surest first.
+
+    Args:
+      both: predicts the data learned from.
+      searched: what the search came to.
+      refitted: its model, fitted to all of these data; None for no effect.
+    """
+    if refitted is None or searched.winner is None:
+        return ()
+    values = estimates(both, refitted)
+    found = [
+        Found(
+            name=placed.effect,
+            place=placed.place,
+            parameters=own,
+            probability=probability(searched, placed),
+            confusable_with=_distinct(
+                confusable(searched, placed) + twins(both.plant, placed)
+            ),
+            when=_when(both, placed),
+            native=effect(placed.effect).native,
+        )
+        for placed, own in zip(refitted.model, values, strict=True)
+    ]
+    return tuple(sorted(found, key=lambda one: -one.probability))
+
+
+def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
+    return tuple(dict.fromkeys(effects))
+
+
+def _when(both: Predictor, placed: Placed) -> When:
+    first_s = min(trace.time_s[0] for trace in both.traces)
+    last_s = max(trace.time_s[-1] for trace in both.traces)
+    if placed.effect == "servo_fade":
+        return When("drift", float(first_s), float(last_s))
+    if placed.effect == "external_force":
+        start_s, duration_s = placed.values[3:]
+        if start_s > first_s or start_s + duration_s < last_s:
+            return When("burst", start_s, start_s + duration_s)
+    return When()

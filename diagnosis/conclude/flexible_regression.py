@@ -1,0 +1,127 @@
+"""How far a flexible regression without physics gets: the ceiling of any model.
+
+It alarms, it does not explain: what it finds beyond a named effect is structure that no
+effect of the library has (Kennedy and O'Hagan 2001 on model discrepancy).
+"""
+
+import numpy as np
+
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.traces.trace import filled
+from groundwalk.arrays import FloatArray
+
+FEATURES = 150
+FINE = 3.0
+"""Of the waves of one input: standard deviation of their rates, inputs scaled."""
+
+LAGS = (0, 1, 3, 6, 12)
+"""Rows before now that the regression sees of each input."""
+
+FEWEST = 200
+"""Rows that a regression needs."""
+
+PENALTIES = (1.0, 10.0, 100.0, 1000.0)
+
+
+def ceiling_errors(
+    learn: Predictor, judge: Predictor, seed: np.random.SeedSequence
+) -> FloatArray:
+    """(c,) rms [noise] of what is left of the plant's own error on data to be judged.
+
+    Ridge regression on random Fourier features (Rahimi and Recht 2007) of what the
+    nominal sim did, what was commanded, and the time, for each channel; the penalty is
+    chosen on every fourth row.
+
+    Args:
+      learn: of the data to learn from.
+      judge: of the data to be judged, with the same channels.
+      seed: of the features.
+    """
+    rng = np.random.default_rng(seed)
+    known, wrong, seen = _data(learn)
+    asked, left, scored = _data(judge)
+    errors, c = [], len(learn.channels.names)
+    for channel in range(c):
+        column = channel % len(learn.plant.joints)
+        inputs = _inputs(known, column, c)
+        lift = _Lift(inputs, rng)
+        rows, used = seen[:, channel], scored[:, channel]
+        model = _ridge(lift(inputs)[rows], wrong[rows, channel])
+        rest = left[:, channel] - lift(_inputs(asked, column, c)) @ model
+        errors.append(np.sqrt(np.mean(rest[used] ** 2)) if used.any() else 0.0)
+    return np.array(errors)
+
+
+class _Lift:
+    """Inputs as they are, scaled, and random cosines of them.
+
+    Half of the cosines are of all inputs and smooth. The others are of one input, with
+    shorter waves: a motor's cogging, say, which cosines of all inputs would not show.
+    """
+
+    def __init__(self, inputs: FloatArray, rng: np.random.Generator) -> None:
+        width = inputs.shape[1]
+        self._middle, self._scale = inputs.mean(axis=0), inputs.std(axis=0) + 1e-9
+        self._weight = rng.normal(0, 1 / np.sqrt(width), (width, FEATURES))
+        own = rng.integers(0, width, FEATURES // 2)
+        columns = np.arange(len(own))
+        self._weight[:, columns] = 0.0
+        self._weight[own, columns] = rng.normal(0, FINE, len(own))
+        self._phase = rng.uniform(0, 2 * np.pi, FEATURES)
+
+    def __call__(self, inputs: FloatArray) -> FloatArray:
+        z = (inputs - self._middle) / self._scale
+        cosines = np.cos(z @ self._weight + self._phase)
+        return np.hstack([z, cosines, np.ones((len(z), 1))])
+
+
+def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Coefficients; none where there are too few rows to choose the penalty."""
+    if len(wanted) < FEWEST:
+        return np.zeros(features.shape[1])
+    held = np.arange(len(wanted)) // 50 % 4 == 3
+    best: tuple[float, float] | None = None
+    for penalty in PENALTIES:
+        model = _solved(features[~held], wanted[~held], penalty)
+        error = float(np.mean((wanted[held] - features[held] @ model) ** 2))
+        if best is None or error < best[0]:
+            best = error, penalty
+    assert best is not None
+    return _solved(features, wanted, best[1])
+
+
+def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatArray:
+    gram = features.T @ features + penalty * np.eye(features.shape[1])
+    return np.asarray(np.linalg.solve(gram, features.T @ wanted))
+
+
+def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArray]:
+    """What a regression may see, what it shall explain, and where that counts."""
+    c = len(predictor.channels.names)
+    nominal = predictor.predict([()])[0]
+    wrong = predictor.residuals([()])[0].reshape(-1, c)
+    scored = predictor.scored.reshape(-1, c)
+    blocks, first = [], 0
+    for trace in predictor.traces:
+        last = first + trace.ticks
+        command = trace.command_rad
+        if command is None:
+            command = nominal[first:last, : trace.position_rad.shape[1]]
+        time_s = (trace.time_s - trace.time_s[0])[:, None]
+        blocks.append(np.hstack([nominal[first:last], filled(command), time_s]))
+        first = last
+    return blocks, wrong, scored
+
+
+def _inputs(blocks: list[FloatArray], column: int, c: int) -> FloatArray:
+    """Present and past of one joint's sim and command, its speed, and the time."""
+    parts = []
+    for block in blocks:
+        own = block[:, [column, c + column]]
+        lagged = [
+            np.vstack([own[:1].repeat(lag, axis=0), own[: len(own) - lag]])
+            for lag in LAGS
+        ]
+        speed = np.gradient(own[:, :1], axis=0)
+        parts.append(np.hstack([*lagged, speed, np.sign(speed), block[:, -1:]]))
+    return np.vstack(parts)

@@ -1,0 +1,110 @@
+"""The recording that would tell two answers apart best."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.conclude.confidence import TIED_NATS
+from diagnosis.plant.plant import Plant
+from diagnosis.replay.replay import replay
+from diagnosis.residuals.predictor import Model, variants_of
+from diagnosis.search.result import Found
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
+from diagnosis.traces.windows import Run
+from diagnosis.verdict.verdict import NextExperiment
+from groundwalk.arrays import FloatArray
+
+DURATION_S = 6.0
+TICK_S = 0.01
+REACH = 0.8
+"""Of the range that the recordings used."""
+
+Motion = Callable[[FloatArray, float], FloatArray]
+"""(T,) positions in -1 to 1 of (T,) times [s] and the duration [s]."""
+
+MOTIONS: dict[str, Motion] = {
+    "slow ramp there and back": lambda t, d: 1 - 2 * np.abs(1 - 2 * t / d),
+    "steps": lambda t, d: np.sign(np.sin(2 * np.pi * t / 1.5)),
+    "chirp from 0.2 to 5 Hz": lambda t, d: (
+        0.3 * np.sin(2 * np.pi * (0.2 * t + 2.4 * t**2 / d))
+    ),
+    "slow sine of full reach": lambda t, d: np.sin(2 * np.pi * t / d),
+    "small fast sine": lambda t, d: 0.1 * np.sin(2 * np.pi * 3 * t),
+    "hold at mirrored poses": lambda t, d: np.where(t < d / 2, 0.8, -0.8),
+}
+STIFFER = "the same with servos of twice the stiffness and half the damping"
+
+
+def next_experiment(
+    plant: Plant, found: Found, traces: Sequence[Trace]
+) -> NextExperiment | None:
+    """The motion whose predictions by the two best answers differ most (T-optimality).
+
+    Hunter and Reiner 1965: the experiment with the largest expected difference.
+
+    Args:
+      plant: nominal.
+      found: of the search.
+      traces: the recordings so far; their reach is kept.
+
+    Returns:
+      None if one answer is clear, or there are no position commands to choose.
+    """
+    rivals = _rivals(found)
+    if rivals is None or any(trace.command_rad is None for trace in traces):
+        return None
+    usage = Usage.of(plant, traces)
+    place = next((p.place for p in rivals[0] if p.place in plant.joints), None)
+    difference = {
+        name: _difference(plant, rivals, _trace(plant, usage, motion, traces[0]))
+        for name, motion in MOTIONS.items()
+    }
+    best = max(difference, key=lambda name: difference[name])
+    other = _changed_servo(_trace(plant, usage, MOTIONS[best], traces[0]))
+    motion, apart = best, difference[best]
+    apart_stiffer = _difference(plant, rivals, other)
+    if apart_stiffer > 2 * apart:
+        motion, apart = f"{best}; {STIFFER}", apart_stiffer
+    names = [" and ".join(placed.key for placed in model) for model in rivals]
+    why = f"there {names[0]} and {names[1]} differ by {1e3 * apart:.2g} mrad rms"
+    return NextExperiment(motion, place, why)
+
+
+def _rivals(found: Found) -> tuple[Model, Model] | None:
+    winner = found.winner
+    if winner is None:
+        return None
+    others = [
+        judged
+        for judged in found.best[found.chosen]
+        if judged.keys != winner.keys and found.worse(judged) <= TIED_NATS
+    ]
+    return (winner.model, others[0].model) if others else None
+
+
+def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
+    """The motion at all joints, within what they did before."""
+    time_s = np.arange(0, DURATION_S, TICK_S)
+    middle = (usage.low_rad + usage.high_rad) / 2
+    half = REACH * (usage.high_rad - usage.low_rad) / 2
+    command = middle + half * motion(time_s, DURATION_S)[:, None]
+    return Trace("next", time_s, command, like.servo, command_rad=command)
+
+
+def _changed_servo(trace: Trace) -> Trace:
+    servo = replace(
+        trace.servo,
+        kp_nm_rad=2 * trace.servo.kp_nm_rad,
+        kd_nm_s_rad=0.5 * trace.servo.kd_nm_s_rad,
+    )
+    return replace(trace, servo=servo)
+
+
+def _difference(plant: Plant, models: Sequence[Model], trace: Trace) -> float:
+    """Rms [rad] between what two models predict."""
+    start = Run(trace, trace.position_rad[0], np.zeros(len(plant.joints)))
+    position = replay([start], variants_of(plant, models))[0].position_rad
+    wrong = position[0] - position[1]
+    return float(np.sqrt(np.mean(wrong[np.isfinite(wrong)] ** 2)))

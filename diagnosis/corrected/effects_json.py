@@ -1,0 +1,185 @@
+"""What a diagnosis found, as a file that a sim can take: `corrected.json`."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from diagnosis.effects._ground import has_ground_contact
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.ground_slope import GroundSlope
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Base, Plant
+from diagnosis.residuals.predictor import Model
+from diagnosis.verdict.as_json import from_plain, to_plain
+from diagnosis.verdict.verdict import Verdict
+from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
+
+CORRECTED_JSON, DIAGNOSIS_JSON = "corrected.json", "diagnosis.json"
+FORMAT = 1
+
+
+@dataclass(frozen=True)
+class EffectValues:
+    """An effect at a place, and its parameters by name in SI units."""
+
+    name: str
+    place: str
+    parameters: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Correction:
+    """The effects that a sim lacked.
+
+    Attributes:
+      robot: the plant's name.
+      base: how it was held in the recordings.
+      native: effects that MuJoCo has, so that `corrected.xml` holds them.
+      per_tick: effects that something beside MuJoCo must do at every step.
+    """
+
+    robot: str
+    base: Base
+    native: tuple[EffectValues, ...]
+    per_tick: tuple[EffectValues, ...]
+
+    @classmethod
+    def of(cls, plant: Plant, model: Model) -> "Correction":
+        """What a model changes of a plant."""
+        parts = [
+            EffectValues(
+                placed.effect,
+                placed.place,
+                dict(zip(_parameters(plant, placed), placed.values, strict=True)),
+            )
+            for placed in model
+        ]
+        return cls(plant.name, plant.base, *_sorted(parts))
+
+    @classmethod
+    def of_verdict(cls, verdict: Verdict, robot: str, base: Base) -> "Correction":
+        """The best estimates of a verdict, which does not say whose it is."""
+        parts = [
+            EffectValues(
+                found.name,
+                found.place,
+                {name: one.value for name, one in found.parameters.items()},
+            )
+            for found in verdict.effects
+        ]
+        return cls(robot, base, *_sorted(parts))
+
+    def to_json(self) -> str:
+        """As text; the same correction gives the same text."""
+        plain = {"format": FORMAT, **to_plain(self)}
+        return json.dumps(plain, indent=1, allow_nan=False) + "\n"
+
+    def model(self, plant: Plant) -> Model:
+        """The effects for a plant of the same robot.
+
+        Raises:
+          BadModelError: they are another robot's, lack parameters, or cannot be there.
+          UnknownNameError: the plant lacks a place, or there is no such effect.
+        """
+        if self.robot != plant.name:
+            raise BadModelError(
+                f"these effects are of {self.robot!r}, the robot is {plant.name!r}"
+            )
+        parts = (*self.native, *self.per_tick)
+        return tuple(self._placed(plant, part) for part in parts)
+
+    def _placed(self, plant: Plant, part: EffectValues) -> Placed:
+        floats = plant.base == "floating"
+        if part.name == GroundSlope.name and floats and self.base == "fixed":
+            raise BadModelError(
+                "ground_slope is how a fixed base was mounted: a floating robot "
+                "cannot have it"
+            )
+        _check_place(plant, part)
+        placed = Placed(part.name, part.place, tuple(part.parameters.values()))
+        names = _parameters(plant, placed)
+        if sorted(names) != sorted(part.parameters):
+            raise BadModelError(
+                f"{placed.key} has the parameters {', '.join(part.parameters)}; "
+                f"it needs {', '.join(names)}"
+            )
+        values = tuple(part.parameters[name] for name in names)
+        return Placed(part.name, part.place, values)
+
+
+def load_correction(source: str | Path, plant: Plant) -> Model:
+    """The effects that a diagnosis found, for a sim of the same robot.
+
+    Args:
+      source: a folder that `groundwalk diagnose` has written, a `corrected.json`, or
+        a `diagnosis.json`, whose base is taken for fixed.
+      plant: the sim's own.
+
+    Raises:
+      BadModelError: it is no diagnosis, or not this robot's.
+      UnknownNameError: it speaks of what is not there.
+    """
+    path = _file(Path(source))
+    try:
+        plain = json.loads(path.read_text())
+        return _correction(plain, plant).model(plant)
+    except (ValueError, BadValueError) as error:
+        raise BadModelError(f"{path} is no diagnosis: {error}") from None
+    except BadModelError as error:
+        raise BadModelError(f"{path}: {error}") from None
+
+
+def _file(source: Path) -> Path:
+    if not source.is_dir():
+        if source.is_file():
+            return source
+        raise BadModelError(f"{source}: no such folder or file")
+    for name in (CORRECTED_JSON, DIAGNOSIS_JSON):
+        if (source / name).is_file():
+            return source / name
+    raise BadModelError(
+        f"{source} is no folder of a diagnosis: it has no {CORRECTED_JSON}"
+    )
+
+
+def _correction(plain: object, plant: Plant) -> Correction:
+    if not isinstance(plain, dict):
+        raise BadValueError("it must be an object")
+    if "kind" in plain:
+        verdict = Verdict.from_json(json.dumps(plain))
+        return Correction.of_verdict(verdict, plant.name, "fixed")
+    number = plain.pop("format", None)
+    if isinstance(number, bool) or number != FORMAT:
+        raise BadValueError(f"its format is {number!r}; only {FORMAT} is known")
+    correction: Correction = from_plain(Correction, plain, "correction")
+    return correction
+
+
+def _sorted(
+    parts: Sequence[EffectValues],
+) -> tuple[tuple[EffectValues, ...], tuple[EffectValues, ...]]:
+    """Those that MuJoCo has, and the others."""
+    native = [effect(part.name).native for part in parts]
+    pairs = list(zip(parts, native, strict=True))
+    return tuple(part for part, own in pairs if own), tuple(
+        part for part, own in pairs if not own
+    )
+
+
+def _parameters(plant: Plant, placed: Placed) -> list[str]:
+    one = effect(placed.effect)
+    return [parameter.name for parameter in one.parameters(plant, placed.place)]
+
+
+def _check_place(plant: Plant, part: EffectValues) -> None:
+    kind = effect(part.name).place_kind
+    known: Sequence[str] = (kind,)
+    if kind == "joint":
+        known = plant.joints
+    elif kind == "body":
+        known = [name for name in plant.bodies if name]
+    elif kind == "feet" and not has_ground_contact(plant):
+        raise BadModelError(f"{part.name} needs a robot that stands on a ground")
+    if part.place not in known:
+        raise UnknownNameError(f"{kind} of {plant.name}", part.place, known)

@@ -1,0 +1,117 @@
+"""A plant with the effects in it that MuJoCo has, as MJCF: `corrected.xml`."""
+
+import ctypes
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.effects.library import effect
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.plant.servo import Servo
+from diagnosis.replay.friction import BatchFriction
+from diagnosis.replay.replay import STEP_S
+from diagnosis.replay.servos import BatchServos
+from diagnosis.residuals.predictor import Model, variants_of
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    import mujoco
+
+CORRECTED_XML = "corrected.xml"
+_LINEAR = 1
+"""MuJoCo's number for a course between two controls that is straight."""
+
+_DIGITS = 17
+"""As many as it takes to read a number back as it was."""
+
+
+def corrected_mjcf(
+    plant: Plant,
+    model: Model,
+    servo: Servo | None = None,
+    step_s: float = STEP_S,
+) -> str:
+    """MJCF of a plant with the native effects of a model; the others are left out.
+
+    Controls are position targets of the plant's joints. A late command is an
+    actuator's `delay`; before the first one is due the target is 0.
+
+    Args:
+      plant: nominal.
+      model: the effects.
+      servo: of the recordings; the plant's own where None.
+      step_s: of the physics, for which contacts and friction are set.
+    """
+    native = tuple(placed for placed in model if effect(placed.effect).native)
+    variants = variants_of(plant, [native])
+    spec = plant.spec.copy()
+    spec.option.timestep = step_s
+    compiled = spec.compile()
+    _write_fields(compiled, variants, servo or plant.servo, step_s)
+    spec.copy_back(compiled)
+    _delay_commands(spec, float(variants.signals.command_delay_s[0]), step_s)
+    folder = Path(spec.modelfiledir or ".").resolve()
+    spec.meshdir = str(folder / spec.meshdir) if spec.meshes else spec.meshdir
+    with _all_digits():
+        return str(spec.to_xml())
+
+
+class _OneModel:
+    """A compiled model as a batch of one, whose fields can be written."""
+
+    def __init__(self, model: "mujoco.MjModel") -> None:
+        self._model = model
+
+    def expand(self, name: str) -> FloatArray:
+        """(1, ...) live values of an array."""
+        return np.asarray(getattr(self._model, name))[None]
+
+
+def _write_fields(
+    compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
+) -> None:
+    """Put the only row of some variants into a model."""
+    import mujoco
+
+    for name, values in variants.fields.items():
+        *holder, last = name.split(".")
+        target = compiled.opt if holder else compiled
+        value = getattr(target, last)
+        if isinstance(value, np.ndarray):
+            value[...] = values[0]
+        else:
+            setattr(target, last, type(value)(values[0]))
+    mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
+    one, joints = _OneModel(compiled), vars(variants.joints)
+    servos = BatchServos(one, variants.plant, [servo], joints, step_s)
+    damping = servos.damping_nm_s_rad
+    BatchFriction(one, variants.plant, joints, damping, step_s)
+
+
+def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:
+    """Let actuators act on old controls, a mix of two where it is not whole steps."""
+    if delay_s == 0:
+        return
+    for actuator in spec.actuators:
+        actuator.delay = delay_s
+        actuator.nsample = int(np.ceil(delay_s / step_s)) + 1
+        actuator.interp = _LINEAR
+
+
+@contextmanager
+def _all_digits() -> Iterator[None]:
+    """MuJoCo writes six digits unless its library is told otherwise."""
+    import mujoco
+
+    folder = Path(mujoco.__file__).parent
+    library = ctypes.CDLL(str(next(folder.glob("*mujoco.*"))))
+    before = library._mjPRIVATE__get_xml_precision()
+    library._mjPRIVATE__set_xml_precision(_DIGITS)
+    try:
+        yield
+    finally:
+        library._mjPRIVATE__set_xml_precision(before)

@@ -1,0 +1,159 @@
+"""The sim with the physics in it that a diagnosis has found."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.corrected.delays import LateCommands, LateEncoders
+from diagnosis.effects.ground_slope import GroundSlope, tilt_gravity
+from diagnosis.effects.library import effect
+from diagnosis.effects.uneven_ground import UnevenGround
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.load import described_plant
+from diagnosis.plant.plant import Base, Plant
+from diagnosis.replay.laws import BatchLaws
+from diagnosis.residuals.predictor import Model
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadModelError
+from robots import Description
+from terrain import Heightfield
+from worlds import Observation, Truth, WorldOptions
+from worlds.rollouts import Schedule
+from worlds.sim.model import ground_name, world_spec
+from worlds.sim.world import SimWorld
+
+if TYPE_CHECKING:
+    from mujoco.batch import Batch
+
+
+def sim_plant(
+    description: Description,
+    options: WorldOptions,
+    grounds: Sequence[Heightfield] = (),
+) -> Plant:
+    """The sim's own model as a plant, on all of the grounds at once.
+
+    Args:
+      description: the robot.
+      options: time step, friction, fixed base.
+      grounds: none of them where the base is fixed; a plane where there are none.
+    """
+    base: Base = "fixed" if options.fixed_base else "floating"
+    spec = world_spec(description, options, () if options.fixed_base else grounds)
+    return described_plant(description, spec, base)
+
+
+def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
+    """All n rows with a model's effects, as a rollout can have them.
+
+    A slope turns gravity, not the ground, so that the robot walks on its heightfield.
+
+    Raises:
+      BadModelError: a sim cannot have one of the effects.
+    """
+    variants = Variants(plant, n)
+    for placed in model:
+        if placed.effect == UnevenGround.name:
+            raise BadModelError(
+                "uneven_ground says how high bumps are, not where: give the sim a "
+                "terrain with bumps instead"
+            )
+        values = np.array(placed.values)
+        for row in range(n):
+            if placed.effect == GroundSlope.name:
+                tilt_gravity(variants, row, values)
+            else:
+                effect(placed.effect).apply(variants, row, placed.place, values)
+    return variants
+
+
+class CorrectedSim(SimWorld):
+    """`SimWorld` with effects, the same for all robots; without any, the same bits.
+
+    Effects that have a time, such as pushes, count it from the start of the rollout.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        grounds: Sequence[Heightfield],
+        seeds: Sequence[np.random.SeedSequence],
+        options: WorldOptions,
+        model: Model,
+    ) -> None:
+        """Put the effects in.
+
+        Args:
+          description: the robot.
+          grounds: one per robot; give one object n times to share it.
+          seeds: one per robot, for its sensor noise.
+          options: as of `SimWorld`; the model's latency comes on top of theirs.
+          model: the effects.
+
+        Raises:
+          BadModelError: a sim cannot have one of the effects.
+        """
+        self._model = model
+        self._laws: BatchLaws | None = None
+        super().__init__(description, grounds, seeds, options)
+
+    def _made_batch(self) -> "Batch":
+        """One model has all grounds; each robot's feet only touch its own."""
+        if not self._model:
+            return super()._made_batch()
+        from mujoco.batch import Batch
+
+        step_s = self.options.timestep_s
+        grounds = list({id(ground): ground for ground in self._grounds}.values())
+        plant = sim_plant(self.description, self.options, grounds)
+        batch = Batch(plant.model, self.n, self.options.threads)
+        if not self.options.fixed_base:
+            touches = batch.expand("geom_conaffinity")
+            for number, ground in enumerate(grounds):
+                geom = plant.model.geom(ground_name(number)).id
+                touches[:, geom] = [own is ground for own in self._grounds]
+        variants = sim_variants(plant, self._model, self.n)
+        self._laws = BatchLaws(batch, variants, [plant.servo], step_s)
+        signals = variants.signals
+        self._commands = LateCommands(float(signals.command_delay_s[0]), step_s)
+        self._encoders = LateEncoders(float(signals.sensor_delay_s[0]), step_s)
+        self._gyro_bias_rad_s = signals.gyro_bias_rad_s
+        return batch
+
+    def _start(self, pose_rad: FloatArray) -> None:
+        super()._start(pose_rad)
+        if self._laws is not None:
+            self._steps = 0
+            self._laws.begin(pose_rad)
+            self._commands.begin(pose_rad)
+            _, velocity = self._laws.joint_state()
+            self._encoders.begin(self._laws.encoder_rad(), velocity)
+
+    def _advance(self, schedule: Schedule) -> None:
+        if self._laws is None:
+            super()._advance(schedule)
+            return
+        for targets, steps in schedule:
+            for _ in range(steps):
+                now_s = np.array([self._steps * self.options.timestep_s])
+                self._laws.servo(self._commands.step(targets), now_s)
+                self._laws.push_bodies(now_s)
+                self._run(1)
+                self._steps += 1
+                _, velocity = self._laws.joint_state()
+                self._encoders.note(self._laws.encoder_rad(), velocity)
+
+    def _read(self) -> tuple[Truth, Observation]:
+        """As the encoders and the gyroscope show it."""
+        truth, observation = super()._read()
+        if self._laws is None:
+            return truth, observation
+        position, velocity = self._encoders.seen()
+        return truth, replace(
+            observation,
+            position_rad=position + self._laws.joints["offset_rad"],
+            velocity_rad_s=velocity,
+            gyroscope_rad_s=observation.gyroscope_rad_s + self._gyro_bias_rad_s,
+        )

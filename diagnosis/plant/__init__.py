@@ -1,0 +1,1 @@
+"""The nominal model of a robot, and where it comes from."""

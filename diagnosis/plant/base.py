@@ -1,0 +1,133 @@
+"""How a plant is held: its base in the air or on the ground, joints locked."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from diagnosis.plant.plant import ROOT, Base
+from groundwalk.errors import BadModelError
+
+if TYPE_CHECKING:
+    import mujoco
+
+_LEVEL_M = 0.02
+"""Bodies whose lowest points differ by less than this stand side by side."""
+
+
+def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
+    """Weld the base to the world, without contacts, or set it free above a ground.
+
+    A model without any free joint gets one at its only body under the world; a
+    ground that the model has is kept.
+
+    Raises:
+      BadModelError: a floating base is asked for and it is unclear which body it is.
+    """
+    import mujoco
+
+    free = [
+        joint
+        for joint in spec.joints
+        if joint.type == mujoco.mjtJoint.mjJNT_FREE
+        and joint.parent.parent == spec.worldbody
+    ]
+    if base == "fixed":
+        for joint in free:
+            spec.delete(joint)
+        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        return
+    if free:
+        free[0].name = ROOT
+    else:
+        _root_body(spec).add_freejoint(name=ROOT)
+    _add_ground(spec)
+
+
+def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
+    """Take all other joints out: what they carry is welded at their zero.
+
+    Welded bodies become part of the body that carries them. Equalities, tendons and
+    sensors that speak of a joint that is gone go, too.
+    """
+    import mujoco
+
+    locked = [joint for joint in spec.joints if joint.name not in free]
+    names = {joint.name for joint in locked}
+    for equality in list(spec.equalities):
+        if names & {equality.name1, equality.name2}:
+            spec.delete(equality)
+    for tendon in list(spec.tendons):
+        if any(name in names for name in _joints_of(tendon)):
+            spec.delete(tendon)
+    for sensor in list(spec.sensors):
+        if sensor.objtype == mujoco.mjtObj.mjOBJ_JOINT and sensor.objname in names:
+            spec.delete(sensor)
+    for joint in locked:
+        spec.delete(joint)
+    spec.compiler.fusestatic = True
+
+
+def standing_bodies(model: "mujoco.MjModel") -> tuple[str, ...]:
+    """Bodies that reach lowest with all joints at zero, left before right.
+
+    Only bodies at the end of a chain, with shapes that can touch something.
+    """
+    import mujoco
+
+    data = mujoco.MjData(model)
+    data.qpos[:] = model.qpos0
+    mujoco.mj_kinematics(model, data)
+    parents = set(model.body_parentid[1:].tolist())
+    lowest: dict[int, float] = {}
+    for geom in range(model.ngeom):
+        body = int(model.geom_bodyid[geom])
+        touches = model.geom_contype[geom] or model.geom_conaffinity[geom]
+        if touches and body > 0 and body not in parents:
+            bottom = _bottom(model, data, geom)
+            lowest[body] = min(bottom, lowest.get(body, np.inf))
+    level = min(lowest.values(), default=0.0) + _LEVEL_M
+    feet = [body for body, bottom in lowest.items() if bottom <= level]
+    feet.sort(key=lambda body: -data.xpos[body, 1])
+    return tuple(model.body(body).name for body in feet)
+
+
+def _bottom(model: "mujoco.MjModel", data: Any, geom: int) -> float:
+    """Lowest point of the box around a shape [m]."""
+    centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    down = data.geom_xmat[geom].reshape(3, 3)[2]
+    return float(data.geom_xpos[geom, 2] + down @ centre - np.abs(down) @ half)
+
+
+def _root_body(spec: "mujoco.MjSpec") -> Any:
+    bodies = spec.worldbody.bodies
+    if len(bodies) != 1:
+        names = ", ".join(body.name for body in bodies)
+        raise BadModelError(
+            "a floating base needs one body under the world; here are: "
+            f"{names or 'none'}"
+        )
+    if bodies[0].joints:
+        raise BadModelError(
+            f"{bodies[0].name} is to float, but it has the joint "
+            f"{bodies[0].joints[0].name!r} to the world"
+        )
+    return bodies[0]
+
+
+def _add_ground(spec: "mujoco.MjSpec") -> None:
+    import mujoco
+
+    grounds = (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD)
+    if any(geom.type in grounds for geom in spec.worldbody.geoms):
+        return
+    spec.worldbody.add_geom(
+        name="ground",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[0, 0, 1],
+        contype=0,
+        conaffinity=1,
+    )
+
+
+def _joints_of(tendon: Any) -> list[str]:
+    return [wrap.target.name for wrap in tendon.path if wrap.target is not None]

@@ -1,0 +1,176 @@
+"""From a robot's name or model file to a plant."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from diagnosis.plant.base import lock_joints, set_base, standing_bodies
+from diagnosis.plant.model_files import mjcf_spec, urdf_spec
+from diagnosis.plant.plant import ROOT, Base, Plant
+from diagnosis.plant.servo import Servo
+from diagnosis.plant.servo_sources import (
+    Gains,
+    add_servos,
+    described_servo,
+    model_servo,
+    remove_actuators,
+    with_gains,
+)
+from groundwalk.errors import BadModelError, BadRecordingError, UnknownNameError
+from robots import Description
+from robots import get as robot
+from robots import names as robot_names
+from robots.package_paths import example_robots
+from worlds.recordings.columns import nearest
+from worlds.sim.quiet_mujoco import quiet_mujoco
+
+if TYPE_CHECKING:
+    import mujoco
+
+_SUFFIXES = (".xml", ".urdf")
+_HELD_AT_M = 1.0
+
+
+def load_plant(
+    source: str | Path,
+    base: Base,
+    joints: Sequence[str] | None = None,
+    servo: Gains | None = None,
+) -> Plant:
+    """The plant of a robot.
+
+    Joints that recordings lack are taken out, so that what they carry is welded at
+    their zero. Contacts only exist with a floating base. The integrator is
+    implicitfast; a diverged model shows NaN.
+
+    Args:
+      source: a robot of `robots`, a path to MJCF (.xml) or URDF (.urdf), or a robot
+        of example-robot-data, such as "so101".
+      base: how the base is held.
+      joints: those that recordings have; None for all hinges and slides.
+      servo: gains instead of the model's own; gains in a recording go before both.
+
+    Raises:
+      UnknownNameError: no such robot; the message has the nearest name.
+      BadModelError: the file is no model.
+      BadRecordingError: the model lacks one of the joints.
+    """
+    quiet_mujoco()  # of trial values that blow up, or joints that mimic others
+    name, spec, description = _read(source, base)
+    known = _compiled(spec.copy(), name)  # compiling may merge bodies
+    ours = _chosen(known, joints, name)
+    if description is not None:
+        own = described_servo(description, ours)
+    else:
+        own = model_servo(known, ours)
+    own = with_gains(own, ours, servo)
+    _equip(spec, base, ours, own)
+    model = _compiled(spec, name)
+    return Plant(name, spec, ours, own, base, _feet(model, base, description))
+
+
+def described_plant(
+    description: Description, spec: "mujoco.MjSpec", base: Base
+) -> Plant:
+    """The plant of a described robot in a specification, which is changed.
+
+    Args:
+      description: the robot.
+      spec: the robot's, with or without a ground.
+      base: how the base is held.
+    """
+    servo = described_servo(description, description.joints)
+    _equip(spec, base, description.joints, servo)
+    feet = _described_feet(description)
+    return Plant(description.name, spec, description.joints, servo, base, feet)
+
+
+def _equip(
+    spec: "mujoco.MjSpec", base: Base, joints: Sequence[str], servo: Servo
+) -> None:
+    """Hold the base, lock what is not recorded, put the servos in."""
+    import mujoco
+
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    remove_actuators(spec)
+    set_base(spec, base)
+    lock_joints(spec, {*joints, ROOT} if base == "floating" else set(joints))
+    add_servos(spec, joints, servo)
+    for body in spec.bodies:
+        body.simple = False  # or its centre of mass could not be moved later
+
+
+def _read(
+    source: str | Path, base: Base
+) -> tuple[str, "mujoco.MjSpec", Description | None]:
+    text = str(source)
+    if Path(text).suffix in _SUFFIXES:
+        path = Path(text)
+        if not path.is_file():
+            raise BadModelError(f"{path}: no such file")
+        if path.suffix == ".xml":
+            return path.stem, mjcf_spec(path), None
+        return path.stem, urdf_spec(path, base == "floating"), None
+    if text in robot_names():
+        description = robot(text)
+        return text, _described_spec(description), description
+    examples = example_robots()
+    if text not in examples:
+        raise UnknownNameError("robot", text, {*robot_names(), *examples})
+    return text, urdf_spec(examples[text], base == "floating"), None
+
+
+def _described_spec(description: Description) -> "mujoco.MjSpec":
+    from robots.mjcf import mujoco_spec
+
+    spec = mujoco_spec(description)
+    spec.worldbody.bodies[0].pos = [0, 0, _HELD_AT_M]
+    for geom in spec.geoms:
+        # The sole's friction counts, not the larger of sole's and ground's.
+        geom.priority = int(geom.contype == 1)
+    return spec
+
+
+def _compiled(spec: "mujoco.MjSpec", name: str) -> "mujoco.MjModel":
+    try:
+        return spec.compile()
+    except ValueError as error:
+        reason = str(error).partition("\n")[0]
+        raise BadModelError(
+            f"the model of {name} does not compile: {reason}"
+        ) from error
+
+
+def _chosen(
+    model: "mujoco.MjModel", joints: Sequence[str] | None, name: str
+) -> tuple[str, ...]:
+    """The joints that count, in the model's order."""
+    import mujoco
+
+    kinds = (mujoco.mjtJoint.mjJNT_HINGE.value, mujoco.mjtJoint.mjJNT_SLIDE.value)
+    names = [model.joint(i).name for i in range(model.njnt)]
+    there = [
+        joint
+        for joint, kind in zip(names, model.jnt_type, strict=True)
+        if joint and kind in kinds
+    ]
+    for joint in joints or ():
+        if joint not in there:
+            hint = nearest(joint, there) or f"; it has {', '.join(there)}"
+            raise BadRecordingError(
+                f"recordings speak of a joint {joint!r} that {name} lacks{hint}"
+            )
+    return tuple(joint for joint in there if joints is None or joint in joints)
+
+
+def _feet(
+    model: "mujoco.MjModel", base: Base, description: Description | None
+) -> tuple[str, ...]:
+    if description is not None:
+        return _described_feet(description)
+    return standing_bodies(model) if base == "floating" else ()
+
+
+def _described_feet(description: Description) -> tuple[str, ...]:
+    return tuple(description.links[foot.joint].link.name for foot in description.feet)

@@ -1,0 +1,148 @@
+"""The servos of a plant: where they come from and how the model carries them."""
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.plant.servo import Servo
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import UnknownNameError
+from robots import Description
+from worlds.recordings.metadata import ServoGains
+
+if TYPE_CHECKING:
+    import mujoco
+
+Gains = Mapping[str, ServoGains] | ServoGains
+
+
+def described_servo(description: Description, joints: Sequence[str]) -> Servo:
+    """The servos of a described robot; its motors' damping is back-EMF."""
+    motors = [
+        description.links[description.joints.index(name)].motor for name in joints
+    ]
+    return Servo(
+        np.array([motor.kp_nm_rad for motor in motors]),
+        np.zeros(len(motors)),
+        np.array([motor.stall_torque_nm for motor in motors]),
+        np.array([motor.kd_nm_s_rad for motor in motors]),
+    )
+
+
+def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
+    """The servos that a model has itself; joints with motors or nothing have none.
+
+    Position actuators (fixed gain, affine bias) give stiffness and damping, through
+    their gear. Limits are the tightest of actuators and joint (`actuatorfrcrange`,
+    which is a URDF's effort).
+    """
+    servo = Servo.ideal(len(joints))
+    kp, kd = servo.kp_nm_rad, servo.kd_nm_s_rad.copy()
+    limit = servo.max_torque_nm
+    for column, name in enumerate(joints):
+        joint = model.joint(name).id
+        if model.jnt_actfrclimited[joint]:
+            limit[column] = np.abs(model.jnt_actfrcrange[joint]).max()
+        for actuator in _actuators_of(model, joint):
+            gear = abs(float(model.actuator_gear[actuator, 0]))
+            _, stiffness, damping = -model.actuator_biasprm[actuator, :3]
+            if stiffness > 0:
+                kp[column] += stiffness * gear**2
+                kd[column] += damping * gear**2
+            if model.actuator_forcelimited[actuator]:
+                most = np.abs(model.actuator_forcerange[actuator]).max() * gear
+                limit[column] = min(limit[column], most)
+    return Servo(kp, kd, limit, np.zeros(len(joints)))
+
+
+def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Servo:
+    """A servo with other gains for some or all of its joints.
+
+    Where the servo's damping is back-EMF, so is that of the gains: recordings state
+    one damping, the motor says on which side of the torque limit it acts.
+
+    Args:
+      servo: of `joints`.
+      joints: their names.
+      gains: by joint, or the same for all; the largest float as `max_torque` stands
+        for no limit.
+
+    Raises:
+      UnknownNameError: gains of a joint that is not there.
+    """
+    if gains is None:
+        return servo
+    if isinstance(gains, ServoGains):
+        gains = dict.fromkeys(joints, gains)
+    values = {name: array.copy() for name, array in vars(servo).items()}
+    for name, given in gains.items():
+        if name not in joints:
+            raise UnknownNameError("joint with servo gains", name, joints)
+        column = list(joints).index(name)
+        is_emf = servo.back_emf_nm_s_rad[column] > 0
+        values["kp_nm_rad"][column] = given.kp
+        values["back_emf_nm_s_rad" if is_emf else "kd_nm_s_rad"][column] = given.kd
+        unlimited = given.max_torque >= sys.float_info.max
+        values["max_torque_nm"][column] = np.inf if unlimited else given.max_torque
+    return replace(servo, **values)
+
+
+def remove_actuators(spec: "mujoco.MjSpec") -> None:
+    """Take all actuators out of a specification, and what speaks of them."""
+    import mujoco
+
+    kinds = (mujoco.mjtObj.mjOBJ_ACTUATOR,)
+    for sensor in [sensor for sensor in spec.sensors if sensor.objtype in kinds]:
+        spec.delete(sensor)
+    for key in list(spec.keys):  # their controls would be of the wrong number
+        spec.delete(key)
+    for actuator in list(spec.actuators):
+        spec.delete(actuator)
+
+
+def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> None:
+    """One affine actuator for each joint, named as the joint; back-EMF is damping.
+
+    Its force is clip(kp control - kp q - kd v, +-max).
+    """
+    import mujoco
+
+    for column, name in enumerate(joints):
+        joint = spec.joint(name)
+        joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE.value
+        emf = float(servo.back_emf_nm_s_rad[column])
+        joint.damping = [joint.damping[0] + emf, *joint.damping[1:]]
+        kp, kd = float(servo.kp_nm_rad[column]), float(servo.kd_nm_s_rad[column])
+        actuator = spec.add_actuator(
+            name=name,
+            target=name,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+        )
+        actuator.gainprm = _padded([kp], len(actuator.gainprm))
+        actuator.biasprm = _padded([0.0, -kp, -kd], len(actuator.biasprm))
+        limit = float(servo.max_torque_nm[column])
+        if np.isfinite(limit):
+            actuator.forcerange = [-limit, limit]
+            actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE.value
+
+
+def _actuators_of(model: "mujoco.MjModel", joint: int) -> list[int]:
+    import mujoco
+
+    at_joint = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+    kinds = [kind.value for kind in at_joint]
+    return [
+        actuator
+        for actuator in range(model.nu)
+        if model.actuator_trntype[actuator] in kinds
+        and model.actuator_trnid[actuator, 0] == joint
+    ]
+
+
+def _padded(values: list[float], length: int) -> FloatArray:
+    return np.array([*values, *[0.0] * (length - len(values))])

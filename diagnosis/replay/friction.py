@@ -1,0 +1,77 @@
+"""Dry friction of the joints in a batch of simulations."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from diagnosis.plant.plant import Plant
+from diagnosis.replay.columns import columns
+from groundwalk.arrays import FloatArray
+
+SOLIMP_FRICTION = (0.999, 0.9999, 0.001, 0.5, 2.0)
+"""Dry friction must hold: with MuJoCo's own default a tenth of it is viscous."""
+
+
+class BatchFriction:
+    """MuJoCo's friction loss, by speed and load where a variant asks for that."""
+
+    def __init__(
+        self,
+        batch: Any,
+        plant: Plant,
+        joints: Mapping[str, FloatArray],
+        damping_nm_s_rad: FloatArray,
+        step_s: float,
+    ) -> None:
+        """Set the friction torques that do not change.
+
+        Args:
+          batch: a `mujoco.batch.Batch`.
+          plant: that it simulates.
+          joints: `Joints`, rows as the batch has them.
+          damping_nm_s_rad: (rows, j) all that the integrator has implicitly.
+          step_s: of the physics.
+        """
+        self._joints, self._dofs = joints, columns(plant.dofs)
+        self.varies = bool(joints["stribeck_nm"].any() or joints["load_share"].any())
+        """Whether `follow` has anything to do."""
+        self._torque_nm = np.asarray(batch.expand("dof_frictionloss"))
+        self._torque_nm[:, self._dofs] += joints["coulomb_nm"]
+        self._least_nm = self._torque_nm[:, self._dofs].copy()
+        np.asarray(batch.expand("dof_solimp"))[:] = SOLIMP_FRICTION
+        inertia_kg_m2 = np.asarray(batch.expand("dof_M0"))
+        damping = np.zeros_like(inertia_kg_m2)
+        damping[:, self._dofs] = damping_nm_s_rad
+        solref = stops_in_a_step(damping, inertia_kg_m2, step_s)
+        np.asarray(batch.expand("dof_solref"))[:] = solref
+
+    def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
+        """Set the torques for (rows, j) speeds and torques that drive the joints."""
+        joints = self._joints
+        speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
+        more = joints["stribeck_nm"] * np.exp(-(speed**2))
+        more = more + joints["load_share"] * np.abs(driven_nm)
+        self._torque_nm[:, self._dofs] = self._least_nm + more
+
+
+def stops_in_a_step(
+    damping_nm_s_rad: FloatArray, inertia_kg_m2: FloatArray, step_s: float
+) -> FloatArray:
+    """(..., 2) `solref` of friction that can stop a joint within one step.
+
+    MuJoCo's friction asks for the acceleration -rate * velocity as if there were no
+    damping; the integrator that follows has damping implicitly, and gives only
+    I / (I + step * damping) of it. With the usual rate, 1 / step, a light joint with a
+    strong servo creeps on for seconds. (MuJoCo documentation, "Computation": implicit
+    integrators, and "Modeling", solref: two negative numbers are a stiffness, which
+    friction has none of, and a damping.)
+
+    Args:
+      damping_nm_s_rad: all that is viscous at the joints.
+      inertia_kg_m2: of the joints with what they carry.
+      step_s: of the physics.
+    """
+    rate_1_s = 1 / step_s + damping_nm_s_rad / inertia_kg_m2
+    damping = -SOLIMP_FRICTION[1] * rate_1_s
+    return np.stack([np.full_like(damping, -1.0), damping], axis=-1)

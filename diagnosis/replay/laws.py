@@ -1,0 +1,206 @@
+"""The laws that effects bring into a batch of simulations, and MuJoCo lacks."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.servo import Servo
+from diagnosis.replay.columns import columns
+from diagnosis.replay.elastic import ElasticJoints
+from diagnosis.replay.friction import BatchFriction
+from diagnosis.replay.gaps import BatchGaps
+from diagnosis.replay.outside_forces import OutsideForces
+from diagnosis.replay.servos import BatchServos, Ends, first_share
+from groundwalk.arrays import FloatArray
+
+FAST = 1e9
+"""Setpoints as fast as that are at their targets at once [rad/s]."""
+
+
+class BatchLaws:
+    """What servos, gears and hands do at every step of n variants times R runs."""
+
+    def __init__(
+        self, batch: Any, variants: Variants, servos: Sequence[Servo], step_s: float
+    ) -> None:
+        """Set the constants of all simulations; their states come later.
+
+        Args:
+          batch: a `mujoco.batch.Batch` of the variants' plant, variant by variant.
+          variants: n.
+          servos: of each of the R runs.
+          step_s: of the physics.
+        """
+        plant, runs = variants.plant, len(servos)
+        self._batch, self._step_s = batch, step_s
+        self._dofs, self._columns = columns(plant.dofs), columns(plant.qpos)
+        self._actuators = columns(plant.actuators)
+        self._qpos, self._qvel, self._ctrl = map(self._bind, ("qpos", "qvel", "ctrl"))
+        self.joints = joints = {
+            name: np.repeat(values, runs, axis=0)
+            for name, values in vars(variants.joints).items()
+        }
+        for name, values in variants.fields.items():
+            self._expand(name)[:] = np.repeat(values, runs, axis=0)
+        self._rotor_kg_m2 = self._rotors()
+        self._batch.set_const()
+        self._servos = BatchServos(batch, plant, servos, joints, step_s)
+        damping = self._servos.damping_nm_s_rad
+        self._friction = BatchFriction(batch, plant, joints, damping, step_s)
+        # most variants have none of these laws: they cost nothing then
+        self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
+        loose = bool(joints["gap_rad"].any())
+        self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
+        self._setpoint: FloatArray | None = None
+        # what is bound later than the start would know of the start a step late
+        self._force = self._bind("actuator_force")
+        self._applied = self._bind("qfrc_applied")
+        self._outside = OutsideForces(batch, variants, runs, step_s)
+        self._elastic: ElasticJoints | None = None
+
+    def begin(self, asked_rad: FloatArray | None = None) -> None:
+        """Begin, or begin anew, in the state that the simulations are in.
+
+        Args:
+          asked_rad: (n R, j) position targets so far; the first ones where None.
+        """
+        self._setpoint = None
+        if asked_rad is not None:
+            self._setpoint = asked_rad - self.joints["offset_rad"]
+        if self._gaps is not None:
+            self._gaps.begin()
+        self._outside.begin()
+        is_first = self._elastic is None
+        law, inertia = self._servos.law, self._rotor_kg_m2
+        self._elastic = ElasticJoints.of(self.joints, law, inertia)
+        if self._elastic is not None and is_first:
+            self._servos.soften(self._elastic, self._step_s)
+
+    def servo(
+        self, asked_rad: FloatArray, time_s: FloatArray, ends: Ends | None = None
+    ) -> None:
+        """Set the controls of one step.
+
+        Args:
+          asked_rad: (n R, j) position targets, as the encoders have it: the mean over
+            the step.
+          time_s: (R,) now; fading servos need it.
+          ends: targets as the step begins and as it ends, if they jump within it.
+        """
+        asked_rad = asked_rad - self.joints["offset_rad"]
+        if ends is not None:
+            offset = self.joints["offset_rad"]
+            ends = ends[0] - offset, ends[1] - offset
+        jumped_rad = self._jumped(asked_rad, ends) if ends else asked_rad
+        if self._slews:
+            slewed_rad = self._slewed(asked_rad, ends or (asked_rad, asked_rad))
+            slow = np.isfinite(self.joints["setpoint_speed_rad_s"])
+            jumped_rad = np.where(slow, slewed_rad, jumped_rad)
+        asked_rad = jumped_rad
+        if self._servos.fades:
+            self._servos.fade(time_s)
+        position, velocity = self.joint_state()
+        if self._friction.varies:
+            self._rub(velocity, 0.0)
+        if self._gaps is not None:
+            asked_rad, apart = self._gaps.through(asked_rad, position)
+            free_nm = np.where(apart, self._gaps.drag_nm(velocity), 0.0)
+            self._applied[:, self._dofs] = free_nm
+        if self._elastic is not None:
+            asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
+        self._servos.limit(asked_rad, position, velocity)
+        self._ctrl[:, self._actuators] = asked_rad
+
+    def jumps(self, ends: Ends | None) -> list[Ends | None]:
+        """For each of B steps the targets at its ends, where some of them jump.
+
+        Args:
+          ends: (B, n R, j) targets as the steps begin and end; None for none.
+        """
+        if ends is None:
+            return []
+        least = self._servos.least_jump_rad
+        return [
+            (before, after) if (np.abs(after - before) > least).any() else None
+            for before, after in zip(*ends, strict=True)
+        ]
+
+    def push_joints(self, torque_nm: FloatArray) -> None:
+        """Apply (n R, j) torques where no servo drives."""
+        position, velocity = self.joint_state()
+        if self._elastic is not None:
+            self._ctrl[:, self._actuators] = self._elastic.drive(
+                position, position, velocity, self._step_s, torque_nm
+            )
+            torque_nm = np.where(self._elastic.soft, 0.0, torque_nm)
+        if self._friction.varies:
+            self._rub(velocity, torque_nm)
+        self._applied[:, self._dofs] = torque_nm
+
+    def add_to_joints(self, torque_nm: FloatArray) -> None:
+        """Apply (n R, j) torques beside the servos' own, after `servo`."""
+        loose = self._gaps is not None
+        already = self._applied[:, self._dofs] if loose else 0.0
+        self._applied[:, self._dofs] = already + torque_nm
+
+    def push_bodies(self, time_s: FloatArray) -> None:
+        """Apply forces from outside at (R,) times."""
+        self._outside.apply(time_s)
+
+    def joint_state(self) -> tuple[FloatArray, FloatArray]:
+        """(n R, j) positions and velocities, as they are until the next step."""
+        return self._qpos[:, self._columns], self._qvel[:, self._dofs]
+
+    def encoder_rad(self) -> FloatArray:
+        """(n R, j) positions on the encoders' side, without offsets."""
+        position = self._qpos[:, self._columns]
+        return position if self._elastic is None else self._elastic.seen(position)
+
+    def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
+        """Dry friction by speed, and by the torque that the gear carries.
+
+        That is what the motor gives, less what its back-EMF takes; of an elastic joint
+        it is its spring's.
+        """
+        driven_nm = self._force[:, self._actuators] + added_nm
+        stiff = np.isinf(self.joints["spring_nm_rad"])
+        induced_nm = np.where(stiff, self._servos.law["emf"] * velocity, 0.0)
+        self._friction.follow(velocity, driven_nm - induced_nm)
+
+    def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
+        velocity = self._qvel[:, self._dofs]
+        return self._servos.equal(asked_rad, ends, self.encoder_rad(), velocity)
+
+    def _bind(self, name: str) -> FloatArray:
+        return np.asarray(self._batch.bind(name))
+
+    def _expand(self, name: str) -> FloatArray:
+        return np.asarray(self._batch.expand(name))
+
+    def _slewed(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
+        """Mean setpoints of a step, on their way to its first and its last target."""
+        if self._setpoint is None:
+            self._setpoint = ends[0].copy()
+        most = np.minimum(self.joints["setpoint_speed_rad_s"], FAST) * self._step_s
+        first = first_share(asked_rad, ends)
+        mean = np.zeros_like(asked_rad)
+        for share, target in zip((first, 1 - first), ends, strict=True):
+            way = share * most
+            change = np.minimum(np.maximum(target - self._setpoint, -way), way)
+            mean += share * (self._setpoint + change / 2)
+            self._setpoint = self._setpoint + change
+        return mean
+
+    def _rotors(self) -> FloatArray:
+        """Armatures; those of elastic joints turn beside their links, not with them.
+
+        To be taken out before `set_const`, which the mass matrix of bodies with one
+        simple joint is from.
+        """
+        armature = self._expand("dof_armature")
+        inertia = armature[:, self._dofs].copy()
+        stiff = np.isinf(self.joints["spring_nm_rad"])
+        armature[:, self._dofs] = np.where(stiff, inertia, 0.0)
+        return inertia

@@ -1,0 +1,108 @@
+"""What a batch of simulations did, and what would have been measured of it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.effects.variants import Variants
+from diagnosis.replay.batch import ReplayBatch
+from diagnosis.replay.columns import columns
+from diagnosis.replay.hermite import hermite
+from diagnosis.replay.replayed import Replayed
+from diagnosis.traces.windows import Run
+from groundwalk.arrays import FloatArray, IntArray
+
+
+class Tape:
+    """Joint states of every step; for a floating base also the base's."""
+
+    def __init__(self, batch: ReplayBatch, steps: int) -> None:
+        """Make room, and note the start."""
+        self._batch, j = batch, len(batch.plant.joints)
+        self._position = np.empty((steps + 1, batch.n, j))
+        self._velocity = np.empty((steps + 1, batch.n, j))
+        self._base: FloatArray | None = None
+        if batch.plant.base == "floating":
+            self._base = np.empty((steps + 1, batch.n, 13))
+        self._torque = np.zeros((steps + 1, batch.n, j))
+        self._force = batch.bind("actuator_force")
+        self._actuators = columns(batch.plant.actuators)
+        self.note(0)
+        self._torque[0] = 0.0  # no step has been taken
+
+    def note(self, step: int) -> None:
+        """Write down the state after so many steps."""
+        batch = self._batch
+        _, self._velocity[step] = batch.laws.joint_state()
+        self._position[step] = batch.laws.encoder_rad()
+        self._torque[step] = self._force[:, self._actuators]
+        if self._base is not None:
+            self._base[step, :, :7] = batch.qpos[:, :7]
+            self._base[step, :, 7:] = batch.qvel[:, :6]
+
+    def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
+        """Interpolate to the rows of the traces, and pass through the sensors."""
+        return [self._read(k, run, variants) for k, run in enumerate(runs)]
+
+    def _read(self, k: int, run: Run, variants: Variants) -> Replayed:
+        rows = np.arange(variants.n) * self._batch.count + k
+        since_s = run.trace.time_s - run.trace.time_s[0]
+        now_s = np.tile(since_s, (variants.n, 1))
+        late_s = now_s - variants.signals.sensor_delay_s[:, None]
+        position, velocity = self._joints_at(rows, late_s)
+        position = position + variants.joints.offset_rad[:, None]
+        gyroscope = np.repeat(
+            variants.signals.gyro_bias_rad_s[:, None], run.trace.ticks, axis=1
+        )
+        base = None
+        if self._base is not None:
+            base = self._linear(self._base, rows, now_s)
+            base[:, :, 3:7] /= np.linalg.norm(base[:, :, 3:7], axis=2, keepdims=True)
+            gyroscope = gyroscope + base[:, :, 10:]
+        torque = self._torque_at(rows, since_s)
+        return Replayed(position, velocity, torque, base, gyroscope)
+
+    def _torque_at(self, rows: IntArray, since_s: FloatArray) -> FloatArray:
+        """(n, T, j) mean from the row before to the row after.
+
+        A command that jumps makes a stiff servo's torque jump, too. A controller that
+        computes once in a tick holds the mean.
+        """
+        total = np.cumsum(self._torque[:, rows], axis=0) * self._batch.step_s
+        low, t = self._between(since_s)
+        at = (1 - t[..., None]) * total[low] + t[..., None] * total[low + 1]
+        before, after = np.r_[0, : len(at) - 1], np.r_[1 : len(at), len(at) - 1]
+        lasted_s = (since_s[after] - since_s[before])[:, None, None]
+        lasted_s = np.where(lasted_s > 0, lasted_s, np.inf)  # a run of one row
+        return np.asarray(((at[after] - at[before]) / lasted_s).transpose(1, 0, 2))
+
+    def _joints_at(
+        self, rows: IntArray, time_s: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Positions and velocities in between.
+
+        Of (n,) rows at (n, T) times since the start; before it speeds were as then.
+        """
+        low, t = self._between(time_s)
+        row = rows[:, None]
+        before, after = (
+            (self._position[step, row], self._velocity[step, row])
+            for step in (low, low + 1)
+        )
+        position, velocity = hermite(before, after, self._batch.step_s, t)
+        before_s = np.minimum(time_s, 0.0)[..., None]
+        return position + before_s * self._velocity[0, row], velocity
+
+    def _linear(
+        self, values: FloatArray, rows: IntArray, time_s: FloatArray
+    ) -> FloatArray:
+        low, t = self._between(time_s)
+        row = rows[:, None]
+        return np.asarray((1 - t) * values[low, row] + t * values[low + 1, row])
+
+    def _between(self, time_s: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Steps before times, and how far on the way to the next step."""
+        last = len(self._position) - 1
+        at = np.clip(time_s / self._batch.step_s, 0, last - 1e-9)
+        low = at.astype(int)
+        return low, (at - low)[..., None]

@@ -1,0 +1,1 @@
+"""How far replays are from what was measured, and what in that is noise."""

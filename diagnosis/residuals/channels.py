@@ -1,0 +1,116 @@
+"""The measured quantities that predictions are held against."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.plant.plant import Plant
+from diagnosis.replay.replayed import Replayed
+from diagnosis.traces.noise import noise_of
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.windows import continuous
+from groundwalk.arrays import FloatArray
+
+LEAST_NOISE_RAD = 3e-4
+"""What encoders and clocks spoil at least; below it is the sims' own business."""
+
+LEAST_RATE_RAD_S, LEAST_NOISE_M = 1e-3, 2e-4
+
+LEAST_TORQUE = 0.02
+"""Of the torques that are measured: so well are a motor's constants known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Channels:
+    """The measured quantities that predictions are held against, c of them.
+
+    Attributes:
+      names: such as "position.LKneePitch".
+      noise: (c,) standard deviation, in the channel's unit.
+    """
+
+    names: tuple[str, ...]
+    noise: FloatArray
+
+    def of_joint(self, joint: str) -> list[int]:
+        """Indices of a joint's own channels."""
+        return [i for i, name in enumerate(self.names) if name.endswith(f".{joint}")]
+
+
+def channel_unit(plant: Plant, name: str) -> str:
+    """The unit of a channel, SI and radians."""
+    if name.startswith("base.position"):
+        return "m"
+    kind, _, joint = name.partition(".")
+    unit = {"torque": "N m", "gyroscope": "rad/s"}.get(kind, "rad")
+    return plant.unit(unit, joint)
+
+
+def channels_of(plant: Plant, traces: Sequence[Trace]) -> Channels:
+    """All that the traces measured and replays predict."""
+    names = [f"position.{joint}" for joint in plant.joints]
+    least = [LEAST_NOISE_RAD] * len(names)
+    if all(trace.torque_nm is not None and not trace.unheld for trace in traces):
+        names += [f"torque.{joint}" for joint in plant.joints]
+        least += [LEAST_TORQUE * size for size in _torques(traces)]
+    if all(trace.gyroscope_rad_s is not None for trace in traces):
+        names += [f"gyroscope.{axis}" for axis in "xyz"]
+        least += [LEAST_RATE_RAD_S] * 3
+    if plant.base == "floating":
+        names += [f"base.position.{axis}" for axis in "xyz"]
+        names += [f"base.{angle}" for angle in ("roll", "pitch", "yaw")]
+        least += [LEAST_NOISE_M] * 3 + [LEAST_NOISE_RAD] * 3
+    bare = Channels(tuple(names), np.ones(len(names)))
+    found = np.array([_noise(trace, bare) for trace in traces])
+    noise = np.maximum(np.median(found, axis=0), least)
+    return Channels(tuple(names), np.where(noise > 0, noise, 1.0))
+
+
+def _torques(traces: Sequence[Trace]) -> FloatArray:
+    """(j,) rms of the measured torques."""
+    every = np.concatenate([t.torque_nm for t in traces if t.torque_nm is not None])
+    return np.asarray(np.sqrt(np.nanmean(every**2, axis=0)))
+
+
+def _noise(trace: Trace, channels: Channels) -> FloatArray:
+    measured = measured_of(trace, channels)
+    return np.array([noise_of(trace.time_s, column).total for column in measured.T])
+
+
+def measured_of(trace: Trace, channels: Channels) -> FloatArray:
+    """(T, c) what a trace measured."""
+    parts = [trace.position_rad]
+    if any(name.startswith("torque.") for name in channels.names):
+        assert trace.torque_nm is not None
+        parts.append(trace.torque_nm)
+    if "gyroscope.x" in channels.names:
+        assert trace.gyroscope_rad_s is not None
+        parts.append(trace.gyroscope_rad_s)
+    if "base.roll" in channels.names:
+        assert trace.base_position_m is not None
+        assert trace.base_orientation is not None
+        parts += [trace.base_position_m, angles_rad(continuous(trace.base_orientation))]
+    return np.hstack(parts)
+
+
+def stacked(result: Replayed, channels: Channels) -> FloatArray:
+    """(n, rows, c) what a replay predicts."""
+    parts = [result.position_rad]
+    if any(name.startswith("torque.") for name in channels.names):
+        parts.append(result.servo_nm)
+    if "gyroscope.x" in channels.names:
+        parts.append(result.gyroscope_rad_s)
+    if "base.roll" in channels.names:
+        assert result.base is not None
+        parts += [result.base[:, :, :3], angles_rad(result.base[:, :, 3:7])]
+    return np.concatenate(parts, axis=2)
+
+
+def angles_rad(quaternion: FloatArray) -> FloatArray:
+    """(..., 3) roll, pitch and yaw of (..., 4) rotations: z, then y, then x."""
+    w, x, y, z = np.moveaxis(quaternion, -1, 0)
+    roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return np.stack([roll, pitch, yaw], axis=-1)

@@ -1,0 +1,161 @@
+"""Parts of a plant that move each for itself.
+
+The arms and legs of a robot whose torso is held do not feel each other. What is wrong
+at an elbow is found by replays of that arm, at a fraction of the whole robot's cost.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from diagnosis.effects.effect import Placed
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import Channels
+from diagnosis.traces.windows import Run
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+@dataclass(frozen=True, eq=False)
+class Limb:
+    """A part of a plant, itself a plant.
+
+    Attributes:
+      plant: with this part's joints only.
+      columns: of the whole plant's joints.
+      first: whether it stands for what belongs to no limb, such as the gyroscope.
+      elsewhere: joints and bodies of the other limbs.
+    """
+
+    plant: Plant
+    columns: tuple[int, ...]
+    first: bool
+    elsewhere: frozenset[str]
+
+    def felt(self, model: tuple[Placed, ...]) -> tuple[Placed, ...]:
+        """The effects that change anything here: not those at other limbs."""
+        return tuple(one for one in model if one.place not in self.elsewhere)
+
+    def run(self, run: Run) -> Run:
+        """What this part does in a run of the whole plant."""
+        columns = list(self.columns)
+        return replace(
+            run,
+            trace=run.trace.of(columns),
+            position_rad=run.position_rad[columns],
+            velocity_rad_s=run.velocity_rad_s[columns],
+            whole=run.whole and run.whole.of(columns),
+        )
+
+    def channels(self, whole: Channels) -> tuple[Channels, list[int]]:
+        """This part's channels, and their indices in the whole plant's."""
+        mine = set(self.plant.joints)
+        chosen = [
+            i
+            for i, name in enumerate(whole.names)
+            if (_joint_of(name) in mine if _joint_of(name) else self.first)
+        ]
+        names = tuple(whole.names[i] for i in chosen)
+        return Channels(names, whole.noise[chosen]), chosen
+
+
+def _joint_of(channel: str) -> str | None:
+    """The joint that a channel is of, if it is one's."""
+    kind, _, joint = channel.partition(".")
+    return joint if kind in ("position", "torque") else None
+
+
+def limbs_of(plant: Plant) -> tuple[Limb, ...]:
+    """The parts of a plant, or all of it as the only one."""
+    parts = _Trees(plant.model).parts if plant.base == "fixed" else []
+    if not parts:
+        return (Limb(plant, tuple(range(len(plant.joints))), True, frozenset()),)
+    plants = [_with_trees(plant, part) for part in parts]
+    names = [frozenset((*one.joints, *one.bodies)) for one in plants]
+    return tuple(
+        Limb(
+            one,
+            tuple(plant.joints.index(joint) for joint in one.joints),
+            i == 0,
+            frozenset().union(*names[:i], *names[i + 1 :]),
+        )
+        for i, one in enumerate(plants)
+    )
+
+
+class _Trees:
+    """MuJoCo's kinematic trees, and which of them are tied to each other."""
+
+    def __init__(self, model: "mujoco.MjModel") -> None:
+        self._model = model
+
+    @cached_property
+    def parts(self) -> list[set[int]]:
+        """Sets of trees that feel each other; none if everything may."""
+        import mujoco
+
+        model = self._model
+        touchable = model.geom_contype.any() and model.geom_conaffinity.any()
+        off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONTACT
+        if (touchable and not off) or model.ntendon or model.nflex:
+            return []
+        parts = [{tree} for tree in range(model.ntree)]
+        for tied in self._tied():
+            touched = [part for part in parts if part & tied]
+            rest = [part for part in parts if not part & tied]
+            parts = [*rest, set().union(*touched)] if touched else rest
+        return sorted(parts, key=min)
+
+    def _tied(self) -> list[set[int]]:
+        """Trees that an equality constraint ties together."""
+        import mujoco
+
+        model, ties = self._model, []
+        for i in range(model.neq):
+            ends = [e for e in (model.eq_obj1id[i], model.eq_obj2id[i]) if e >= 0]
+            if model.eq_type[i] == mujoco.mjtEq.mjEQ_JOINT:
+                trees = [int(model.dof_treeid[model.jnt_dofadr[e]]) for e in ends]
+            else:
+                trees = list(range(model.ntree))
+            ties.append({tree for tree in trees if tree >= 0})
+        return ties
+
+
+def _with_trees(plant: Plant, kept: set[int]) -> Plant:
+    """The plant without other trees, and without what only costs time."""
+    model, spec = plant.model, plant.spec.copy()
+    _without_shapes(spec, model)
+    tree = model.body_treeid
+    roots = [
+        model.body(i).name
+        for i in range(1, model.nbody)
+        if tree[i] >= 0 and tree[i] not in kept and tree[model.body_parentid[i]] < 0
+    ]
+    for name in roots:
+        spec.delete(spec.body(name))
+    columns = [
+        i for i, dof in enumerate(plant.dofs) if int(model.dof_treeid[dof]) in kept
+    ]
+    return replace(
+        plant,
+        spec=spec,
+        joints=tuple(plant.joints[i] for i in columns),
+        servo=plant.servo.of(columns),
+        feet=tuple(f for f in plant.feet if int(tree[model.body(f).id]) in kept),
+    )
+
+
+def _without_shapes(spec: "mujoco.MjSpec", model: "mujoco.MjModel") -> None:
+    """Take shapes and sensors out; masses stay. Where nothing touches nobody asks."""
+    import mujoco
+
+    for body in spec.bodies[1:]:
+        compiled = model.body(body.name)
+        body.explicitinertial = True
+        body.fullinertia = [float("nan")] * 6
+        body.mass, body.ipos = float(compiled.mass[0]), compiled.ipos
+        body.inertia, body.iquat = compiled.inertia, compiled.iquat
+    for shape in list(spec.geoms):
+        spec.delete(shape)
+    spec.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_SENSOR

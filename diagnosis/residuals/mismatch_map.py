@@ -1,0 +1,105 @@
+"""Where and when the nominal sim is off: channel by channel, regime by regime."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from diagnosis.residuals.bursts import bursts_of
+from diagnosis.residuals.channels import channel_unit
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.traces.moving_mean import moving_mean
+from diagnosis.verdict.verdict import MismatchCell
+from groundwalk.arrays import BoolArray, FloatArray
+
+FAST, SLOW = 0.7, 0.2
+"""Of the speed that a joint seldom exceeds."""
+
+REVERSAL_S = 0.1
+"""What is so near to a change of direction belongs to it."""
+
+FEWEST = 20
+
+
+def mismatch(predictor: Predictor, residual: FloatArray) -> tuple[MismatchCell, ...]:
+    """One cell for each channel, the worst first.
+
+    Args:
+      predictor: of the traces.
+      residual: (N,) of the plant as it is, in units of noise.
+    """
+    energy = np.zeros(len(predictor.channels.names))
+    np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
+    energy = np.maximum(energy, 0.0)
+    total = max(float(energy.sum()), 1e-12)
+    cells = [
+        _cell(predictor, residual, i, float(energy[i]) / total)
+        for i in range(len(energy))
+    ]
+    return tuple(sorted(cells, key=lambda cell: -cell.share))
+
+
+def _cell(
+    predictor: Predictor, residual: FloatArray, index: int, share: float
+) -> MismatchCell:
+    channels = predictor.channels
+    name, noise = channels.names[index], float(channels.noise[index])
+    rows = predictor.channel == index
+    own, scored = residual[rows], predictor.scored[rows]
+    rms = float(np.sqrt(np.mean(own[scored] ** 2))) if scored.any() else 0.0
+    return MismatchCell(
+        channel=name,
+        unit=channel_unit(predictor.plant, name),
+        share=share,
+        error_rms=rms * noise,
+        noise_rms=noise,
+        regimes=_regimes(predictor, index, own, scored),
+        bursts=bursts_of(predictor, residual, index),
+    )
+
+
+def _regimes(
+    predictor: Predictor, index: int, own: FloatArray, scored: BoolArray
+) -> Mapping[str, float]:
+    """Rms error in parts of the data, in units of noise."""
+    if index >= len(predictor.plant.joints):
+        return {}
+    flags: dict[str, list[BoolArray]] = {}
+    for trace in predictor.traces:
+        own_flags = _flags(trace.time_s, trace.position_rad[:, index])
+        for name, flag in own_flags.items():
+            flags.setdefault(name, []).append(flag)
+    found = {}
+    for name, parts in flags.items():
+        if len(parts) < len(predictor.traces):
+            continue
+        rows = np.concatenate(parts) & scored
+        if rows.sum() >= FEWEST:
+            found[name] = float(np.sqrt(np.mean(own[rows] ** 2)))
+    return found
+
+
+def _flags(time_s: FloatArray, position_rad: FloatArray) -> dict[str, BoolArray]:
+    """Which rows belong to which regime."""
+    seen = np.isfinite(position_rad)
+    if not seen.any():
+        return {}
+    filled = np.interp(time_s, time_s[seen], position_rad[seen])
+    tick_s = float(np.median(np.diff(time_s)))
+    smooth = moving_mean(filled, max(round(0.05 / tick_s), 1))
+    velocity = np.gradient(smooth, time_s)
+    speed = np.abs(velocity)
+    top = float(np.quantile(speed, 0.95))
+    turn = np.concatenate([[False], np.diff(np.sign(velocity)) != 0])
+    near = np.convolve(turn, np.ones(max(int(REVERSAL_S / tick_s), 1)), mode="same") > 0
+    third = (time_s[-1] - time_s[0]) / 3
+    return {
+        "forward": velocity > SLOW * top,
+        "backward": velocity < -SLOW * top,
+        "fast": speed > FAST * top,
+        "slow": speed < SLOW * top,
+        "reversals": near & (top > 0),
+        "first third": time_s < time_s[0] + third,
+        "last third": time_s > time_s[-1] - third,
+        "high positions": filled > np.quantile(filled, 0.8),
+        "low positions": filled < np.quantile(filled, 0.2),
+    }

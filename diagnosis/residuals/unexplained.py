@@ -1,0 +1,87 @@
+"""The shape of an error that no effect explains: over what it varies most."""
+
+import numpy as np
+
+from diagnosis.residuals.channels import channel_unit
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.traces.moving_mean import moving_mean
+from diagnosis.verdict.verdict import Unexplained
+from groundwalk.arrays import FloatArray
+
+BINS = 16
+FEWEST = 10
+
+
+def unexplained(
+    predictor: Predictor, residual: FloatArray, share: float
+) -> Unexplained | None:
+    """The mean error of the worst joint, over what orders it best.
+
+    Args:
+      predictor: of the data.
+      residual: (N,) of the best model, in units of noise.
+      share: of the squared error above the noise that is left.
+
+    Returns:
+      None where nothing is scored.
+    """
+    energy = np.zeros(len(predictor.channels.names))
+    np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
+    joint = int(np.argmax(energy[: len(predictor.plant.joints)]))
+    rows = (predictor.channel == joint) & predictor.scored
+    if not rows.any():
+        return None
+    wrong = residual[rows] * float(predictor.channels.noise[joint])
+    kept = rows[predictor.channel == joint]
+    curves = [
+        (name, unit, *_curve(values[kept], wrong))
+        for name, unit, values in _orders(predictor, joint)
+    ]
+    name, unit, at, mean, spread = max(curves, key=_explained)
+    channel = predictor.channels.names[joint]
+    plant, part = predictor.plant, float(np.clip(share, 0.0, 1.0))
+    own = channel_unit(plant, channel)
+    unit = plant.unit(unit, plant.joints[joint])
+    return Unexplained(part, channel, own, name, unit, at, mean, spread)
+
+
+Curve = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
+
+
+def _curve(values: FloatArray, wrong: FloatArray) -> Curve:
+    """Middles, means and standard errors in bins of equal counts."""
+    edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
+    where = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
+    at, mean, spread = [], [], []
+    for k in range(max(len(edges) - 1, 1)):
+        own = wrong[where == k]
+        if len(own) >= FEWEST:
+            at.append(float(values[where == k].mean()))
+            mean.append(float(own.mean()))
+            spread.append(float(own.std() / np.sqrt(len(own))))
+    return tuple(at), tuple(mean), tuple(spread)
+
+
+def _explained(curve: tuple[str, str, *Curve]) -> float:
+    """Chi-square of a curve's means."""
+    mean, spread = np.array(curve[3]), np.array(curve[4])
+    return float(np.sum((mean / np.maximum(spread, 1e-12)) ** 2)) if len(mean) else 0.0
+
+
+def _orders(predictor: Predictor, joint: int) -> list[tuple[str, str, FloatArray]]:
+    """What an error may depend on."""
+    name = predictor.plant.joints[joint]
+    position, velocity, time_s, command = [], [], [], []
+    for trace in predictor.traces:
+        q = np.nan_to_num(trace.position_rad[:, joint])
+        position.append(q)
+        velocity.append(np.gradient(moving_mean(q, 5), trace.time_s))
+        time_s.append(trace.time_s - trace.time_s[0])
+        asked = q if trace.command_rad is None else trace.command_rad[:, joint]
+        command.append(np.nan_to_num(asked))
+    return [
+        (f"position.{name}", "rad", np.concatenate(position)),
+        (f"velocity.{name}", "rad/s", np.concatenate(velocity)),
+        (f"command.{name}", "rad", np.concatenate(command)),
+        ("time", "s", np.concatenate(time_s)),
+    ]

@@ -1,0 +1,1 @@
+"""Which effects, alone or together, explain the residuals."""

@@ -1,0 +1,236 @@
+"""Models that are worth a fit, each with values to begin with."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.library import EFFECTS, grown_from
+from diagnosis.residuals.predictor import STIFF, Model, Predictor
+from diagnosis.search.result import Judged, Rules, keys_of
+from diagnosis.search.screening import Guess, Screen, stretched
+from diagnosis.search.signatures import Signature
+from groundwalk.arrays import FloatArray
+
+FEW_JOINTS = 6
+"""Of robots with no more all effects are fitted, each where it looks best."""
+
+STRETCHES = (0.4, 1.0, 2.5)
+"""Of a guess, tried before it is fitted."""
+
+LIMITS = frozenset({"torque_limit", "speed_limit"})
+LIMITED = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
+"""Likewise of limits: who is weaker than his load drops it, which no slope tells."""
+
+WEAKER = (0.65, 0.8, 0.9, 0.96)
+"""Parts of a servo's own limit that are tried, too."""
+
+STIFFER = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
+"""Likewise of springs: between two resonances no slope leads to either."""
+
+
+class Starts:
+    """What to fit next, by guesses of first order and by what is known to be alike."""
+
+    def __init__(
+        self, fit: Predictor, found: Sequence[Signature], rules: Rules
+    ) -> None:
+        """Get ready.
+
+        Args:
+          fit: of the fitting data.
+          found: the signatures of all effects at all places.
+          rules: how many of everything.
+        """
+        self._fit, self._found, self._rules = fit, found, rules
+        self._screen = Screen(fit, found)
+
+    def alone(self, residual: FloatArray) -> list[Model]:
+        """Models of one effect; (N,) is what the plant alone leaves."""
+        return self._scanned(self._short(self._screen.singles(residual)))
+
+    def larger(
+        self, best: Sequence[Judged], near: bool, residual: FloatArray | None
+    ) -> list[Model]:
+        """Models with one effect more, none twice but from another start.
+
+        Args:
+          best: models of one size, the best first.
+          near: whether to try all that is at the best one's place, too.
+          residual: (N,) that the plant alone leaves, if pairs are to be guessed.
+        """
+        starts = self._growths(best)
+        if near:
+            starts += self._partners(best[0])
+        if residual is not None:
+            starts += self._pairs(residual, starts)
+        return self._scanned(starts)
+
+    def swapped(self, judged: Judged) -> list[Model]:
+        """A model with one effect exchanged for another."""
+        return self._scanned(self._swaps(judged))
+
+    def promised(self, judged: Judged) -> float:
+        """Log-likelihood that another effect would gain at most, at first order."""
+        guesses = self._screen.singles(judged.fit.residual, judged.fit.jacobian)
+        return max((guess.gain for guess in guesses), default=0.0)
+
+    def _scanned(self, starts: Sequence[Model]) -> list[Model]:
+        """Starts with the effect that was added last as large as does best.
+
+        Guesses are of first order; a gap or a delay may be far from what they say.
+        """
+        options = [
+            (*start[:-1], other) for start in starts for other in self._sizes(start[-1])
+        ]
+        if not options:
+            return []
+        ends = np.cumsum([len(self._sizes(start[-1])) for start in starts])
+        energies = (self._fit.residuals(options) ** 2).sum(axis=1)
+        firsts = [0, *ends[:-1].tolist()]
+        return [
+            options[first + int(np.argmin(some))]
+            for first, some in zip(firsts, np.split(energies, ends[:-1]), strict=True)
+        ]
+
+    def _sizes(self, placed: Placed) -> list[Placed]:
+        """An effect in several sizes. What limits may do so far off its guess."""
+        if placed.effect in LIMITS:
+            limits = [k * placed.values[0] for k in LIMITED]
+            if placed.effect == "torque_limit":
+                limits += self._weaker(placed.place)
+            return [replace(placed, values=(limit,)) for limit in limits]
+        if placed.effect in STIFF:
+            stiffness, *rest = placed.values
+            return [replace(placed, values=(k * stiffness, *rest)) for k in STIFFER]
+        return [stretched(self._fit.plant, placed, k) for k in STRETCHES]
+
+    def _weaker(self, joint: str) -> list[float]:
+        """Limits below the servo's own, which only jumps may reach."""
+        column = self._fit.plant.joints.index(joint)
+        servos = [trace.servo.max_torque_nm[column] for trace in self._fit.traces]
+        most = float(max(servos))
+        return [share * most for share in WEAKER if np.isfinite(most)]
+
+    def _short(self, ranked: Sequence[Guess]) -> list[Model]:
+        """The best guesses, and the best place of each effect that comes close."""
+        few = len(self._fit.plant.joints) <= FEW_JOINTS
+        most = len(EFFECTS) if few else self._rules.singles
+        short = [
+            guess.model for guess in ranked[: self._rules.singles - self._rules.others]
+        ]
+        named = {model[0].effect for model in short}
+        for guess in ranked[len(short) :]:
+            if len(short) == most:
+                break
+            if guess.model[0].effect not in named:
+                short.append(guess.model)
+                named.add(guess.model[0].effect)
+        return short
+
+    def _leading(self, best: Sequence[Judged]) -> list[Judged]:
+        """What grows further: the best on the selection data, and the best on all.
+
+        What is believed must do well on the former, but a part of the answer may do
+        well anywhere.
+        """
+        beam = self._rules.beam
+        on_all = sorted(best, key=lambda one: one.energy)[:beam]
+        selected = sorted(best, key=lambda one: one.selected)[:beam]
+        leading = [*best[:beam], *on_all, *selected]
+        return list({one.keys: one for one in leading}.values())
+
+    def _growths(self, best: Sequence[Judged]) -> list[Model]:
+        """Models of one effect more, none twice."""
+        seen: set[frozenset[str]] = set()
+        grown: list[Model] = []
+        for judged in self._leading(best):
+            added = 0
+            for guess in self._screen.singles(judged.fit.residual, judged.fit.jacobian):
+                model = (*judged.model, *guess.model)
+                keys = keys_of(model)
+                if len(keys) == len(model) and keys not in seen:
+                    seen.add(keys)
+                    grown.append(model)
+                    added += 1
+                if added == self._rules.growths:
+                    break
+        return grown
+
+    def _partners(self, judged: Judged) -> list[Model]:
+        """A model of one effect, with all others at the same joint or its body.
+
+        A stiffer servo that carries more: each alone goes the wrong way, and what
+        holds far off at both, no slope at the one tells.
+        """
+        near = self._near(judged.model[0].place)
+        first = {
+            signature.placed.key: signature.placed
+            for signature in reversed(self._found)
+            if signature.placed.place in near
+        }
+        return [
+            (*judged.model, placed)
+            for key, placed in first.items()
+            if key not in judged.keys
+        ]
+
+    def _near(self, place: str) -> set[str]:
+        """A joint and the body that it moves, or the other way round."""
+        model = self._fit.plant.model
+        bodies = {
+            joint: model.body(int(model.joint(joint).bodyid[0])).name
+            for joint in self._fit.plant.joints
+        }
+        return {place} | {
+            name for pair in bodies.items() if place in pair for name in pair
+        }
+
+    def _pairs(self, residual: FloatArray, known: Sequence[Model]) -> list[Model]:
+        """Pairs that are better than their members let think."""
+        seen = {keys_of(model) for model in known}
+        pairs = self._screen.pairs(residual, self._rules.pairs)
+        return [guess.model for guess in pairs if keys_of(guess.model) not in seen]
+
+    def _swaps(self, judged: Judged) -> list[Model]:
+        """The model with one effect exchanged for another: what else it may be."""
+        swaps: dict[frozenset[str], Model] = {}
+        rests = [
+            tuple(other for other in judged.model if other is not placed)
+            for placed in judged.model
+        ]
+        residuals = self._fit.residuals(rests)
+        for rest, residual in zip(rests, residuals, strict=True):
+            jacobian = judged.fit.jacobian_of(rest)
+            others = self._screen.singles(residual, jacobian)[: self._rules.swaps]
+            for model in ((*rest, *guess.model) for guess in others):
+                keys = keys_of(model)
+                if len(keys) == len(model) and keys != judged.keys:
+                    swaps.setdefault(keys, model)
+        for model in self._moved(judged):
+            swaps.setdefault(keys_of(model), model)
+        return list(swaps.values())
+
+    def _moved(self, judged: Judged) -> list[Model]:
+        """The model with an effect on a body moved to the next bodies of the chain."""
+        plant, traces = self._fit.plant, self._fit.traces
+        return [
+            tuple(
+                Placed(other.effect, place, other.values) if other is placed else other
+                for other in judged.model
+            )
+            for placed in judged.model
+            if EFFECTS[placed.effect].place_kind == "body"
+            for place in EFFECTS[placed.effect].places(plant, traces)
+            if place in plant.neighbours(placed.place)
+        ]
+
+
+def grown(model: Model) -> list[Model]:
+    """The model with one effect exchanged for another that contains it."""
+    return [
+        tuple(grown if other is placed else other for other in model)
+        for placed in model
+        for grown in grown_from(placed)
+    ]

@@ -1,0 +1,287 @@
+"""Values of effects by nonlinear least squares, several structures at a time."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from diagnosis.effects.effect import Parameter, Placed
+from diagnosis.effects.library import effect
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.batched_tasks import lockstep
+from groundwalk.arrays import BoolArray, FloatArray
+
+STEP = 0.02
+"""Of the differences, as a part of a parameter's scale."""
+
+HOLD = 1e-3
+"""Values that no data show stay where they are: steps would be short without it."""
+
+MOST_STEPS = 8
+
+TOLERANCE = 1e-4
+
+Ask = Callable[[list[Model]], FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model whose values were fitted.
+
+    Attributes:
+      model: with the values found.
+      residual: (N,) at the model, in units of noise.
+      jacobian: (N, p) of the residual to the values' scaled coordinates.
+      energy: half the sum of squared residuals: minus the log-likelihood.
+    """
+
+    model: Model
+    residual: FloatArray
+    jacobian: FloatArray
+    coordinates: "Coordinates"
+
+    @property
+    def energy(self) -> float:
+        """Half the sum of squared residuals: minus the log-likelihood."""
+        return 0.5 * float(self.residual @ self.residual)
+
+    def jacobian_of(self, effects: Model) -> FloatArray:
+        """(N, p) the columns of some of the model's effects."""
+        kept = [
+            any(placed is one for one in effects)
+            for placed in self.model
+            for _ in placed.values
+        ]
+        return self.jacobian[:, kept]
+
+
+class Coordinates:
+    """The values of a model's effects as one vector of numbers of order one."""
+
+    def __init__(self, plant: Plant, model: Model) -> None:
+        """Take structure and scales from a model and its plant."""
+        self.model = model
+        self.parameters: list[Parameter] = [
+            parameter
+            for placed in model
+            for parameter in effect(placed.effect).parameters(plant, placed.place)
+        ]
+
+    def of(self, model: Model) -> FloatArray:
+        """(p,) the vector of a model."""
+        values = [value for placed in model for value in placed.values]
+        return np.array(
+            [
+                self.scaled(i, min(max(v, p.low), p.high))
+                for i, (p, v) in enumerate(zip(self.parameters, values, strict=True))
+            ]
+        )
+
+    def model_at(self, x: FloatArray) -> Model:
+        """The model of a vector."""
+        values = [
+            self._value(parameter, coordinate)
+            for parameter, coordinate in zip(self.parameters, x, strict=True)
+        ]
+        placed, first = [], 0
+        for old in self.model:
+            last = first + len(old.values)
+            placed.append(Placed(old.effect, old.place, tuple(values[first:last])))
+            first = last
+        return tuple(placed)
+
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """(p,) least and largest coordinates."""
+        low = [self.scaled(i, p.low) for i, p in enumerate(self.parameters)]
+        high = [self.scaled(i, p.high) for i, p in enumerate(self.parameters)]
+        return np.array(low), np.array(high)
+
+    @staticmethod
+    def _value(parameter: Parameter, coordinate: float) -> float:
+        if parameter.logarithmic:
+            value = float(np.exp(coordinate))
+        else:
+            value = float(coordinate * _scale(parameter))
+        return min(max(value, parameter.low), parameter.high)
+
+    def scaled(self, index: int, value: float) -> float:
+        """The coordinate of a value."""
+        parameter = self.parameters[index]
+        if parameter.logarithmic:
+            return float(np.log(max(value, 1e-12)))
+        return value / _scale(parameter)
+
+
+def _scale(parameter: Parameter) -> float:
+    size = abs(parameter.typical - parameter.neutral)
+    if not np.isfinite(size) or size == 0:
+        size = abs(parameter.typical) or parameter.high - parameter.low
+    return size
+
+
+@dataclass(frozen=True, eq=False)
+class Nudges:
+    """Which values are nudged together, to find a Jacobian by differences.
+
+    Attributes:
+      groups: numbers of the values of each nudge.
+      rows: for each value the rows of the residual that are its own; all where None.
+    """
+
+    groups: Sequence[Sequence[int]]
+    rows: Sequence[BoolArray] | None = None
+
+    @classmethod
+    def apart(cls, predictor: Predictor, model: Model) -> "Nudges":
+        """Every value by itself."""
+        count = sum(len(placed.values) for placed in model)
+        return cls([[i] for i in range(count)])
+
+    def steps(self, x: FloatArray, high: FloatArray) -> FloatArray:
+        """(p,) how far each value is nudged, never out of its bounds."""
+        return np.where(x + STEP <= high, STEP, -STEP)
+
+    def nudged(self, x: FloatArray, steps: FloatArray) -> list[FloatArray]:
+        """The points of the differences, one a group."""
+        return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
+
+    def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
+        """(N, p) from what was seen (1 + groups, N) at a point and at its nudges."""
+        found = np.zeros((seen.shape[1], len(steps)))
+        for own, other in zip(self.groups, seen[1:], strict=True):
+            for i in own:
+                slope = (other - seen[0]) / steps[i]
+                shown = True if self.rows is None else self.rows[i]
+                found[:, i] = np.where(shown, slope, 0.0)
+        return found
+
+
+def fit_all(
+    predictor: Predictor,
+    starts: Sequence[Model],
+    steps: int = MOST_STEPS,
+    nudges_of: Callable[[Predictor, Model], Nudges] = Nudges.apart,
+    followed: bool = False,
+    jacobians: Sequence[FloatArray | None] | None = None,
+    exactly: bool = False,
+) -> list[Fit]:
+    """Fit the values of several models, each from its own start.
+
+    Args:
+      predictor: of the data.
+      starts: models with values to begin with.
+      steps: most steps of a fit.
+      nudges_of: which values of a model are nudged together.
+      followed: differences are taken at the start only; from there the Jacobian follows
+        what each step shows, which costs nothing. Good enough to compare models; the
+        Jacobian at the end is none to take intervals from.
+      jacobians: at the starts, if they are `followed` and known from an earlier fit.
+      exactly: residuals are `exact`, for six times the work.
+    """
+
+    def answer(questions: list[list[Model]]) -> list[FloatArray]:
+        every = [model for question in questions for model in question]
+        ends = np.cumsum([len(question) for question in questions])
+        return np.split(predictor.residuals(every, exactly), ends[:-1])
+
+    tasks = [
+        partial(
+            _fit,
+            Coordinates(predictor.plant, start),
+            nudges_of(predictor, start),
+            steps,
+            followed,
+            jacobian,
+        )
+        for start, jacobian in zip(
+            starts, jacobians or [None] * len(starts), strict=True
+        )
+    ]
+    return lockstep(tasks, answer) if tasks else []
+
+
+class _Course:
+    """Residuals and Jacobians at the points that a fit visits."""
+
+    def __init__(
+        self, coordinates: Coordinates, nudges: Nudges, followed: bool, ask: Ask
+    ) -> None:
+        self._coordinates, self._nudges, self._ask = coordinates, nudges, ask
+        self._followed = followed
+        self._high = coordinates.bounds()[1]
+        self._residuals: dict[bytes, FloatArray] = {}
+        self._jacobians: dict[bytes, FloatArray] = {}
+        self._last: FloatArray | None = None
+        """Where the newest Jacobian is of."""
+
+    def begin(self, x: FloatArray, jacobian: FloatArray) -> None:
+        """Take the Jacobian at a point as known."""
+        self._jacobians[x.tobytes()] = jacobian
+
+    def residual(self, x: FloatArray) -> FloatArray:
+        """(N,) at a point."""
+        if x.tobytes() not in self._residuals:
+            if self._followed and self._jacobians:
+                model = self._coordinates.model_at(x)
+                self._residuals[x.tobytes()] = self._ask([model])[0]
+            else:  # the Jacobian will be asked for next
+                self._differences(x)
+        return self._residuals[x.tobytes()]
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """(N, p) at a point."""
+        if x.tobytes() not in self._jacobians:
+            self._jacobians[x.tobytes()] = self._updated(x)
+        self._last = x.copy()
+        return self._jacobians[x.tobytes()]
+
+    def _differences(self, x: FloatArray) -> None:
+        far = self._nudges.steps(x, self._high)
+        points = (x, *self._nudges.nudged(x, far))
+        seen = self._ask([self._coordinates.model_at(point) for point in points])
+        self._residuals[x.tobytes()] = seen[0]
+        self._jacobians[x.tobytes()] = self._nudges.jacobian(seen, far)
+
+    def _updated(self, x: FloatArray) -> FloatArray:
+        """The least change of the last Jacobian that agrees with the step to here.
+
+        Broyden 1965, A class of methods for solving nonlinear simultaneous equations.
+        """
+        assert self._last is not None
+        step, before = x - self._last, self._jacobians[self._last.tobytes()]
+        changed = self._residuals[x.tobytes()] - self._residuals[self._last.tobytes()]
+        missed = changed - before @ step
+        return np.asarray(before + np.outer(missed, step / (step @ step)))
+
+
+def _fit(
+    coordinates: Coordinates,
+    nudges: Nudges,
+    steps: int,
+    followed: bool,
+    jacobian: FloatArray | None,
+    ask: Ask,
+) -> Fit:
+    from scipy.optimize import least_squares
+
+    low, high = coordinates.bounds()
+    course = _Course(coordinates, nudges, followed, ask)
+    inside = [1e-9 * np.maximum(1.0, np.abs(bound)) for bound in (low, high)]
+    x = np.clip(coordinates.of(coordinates.model), low + inside[0], high - inside[1])
+    if jacobian is not None:
+        course.begin(x, jacobian)
+    held = HOLD * np.eye(len(x))
+    found = least_squares(
+        lambda now: np.concatenate([course.residual(now), held @ (now - x)]),
+        x,
+        jac=lambda now: np.vstack([course.jacobian(now), held]),
+        bounds=(low, high),
+        max_nfev=steps,
+        ftol=TOLERANCE,
+        xtol=1e-4,
+    )
+    model = coordinates.model_at(found.x)
+    at_end = course.residual(found.x), course.jacobian(found.x)
+    return Fit(model, *at_end, coordinates)

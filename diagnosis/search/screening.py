@@ -1,0 +1,231 @@
+"""Which effects could explain a residual, by first-order guesses that are cheap.
+
+A signature is linear in the effect's size, so the size that explains most is a
+projection; that of two effects together is least squares.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.effects.effect import Placed
+from diagnosis.effects.trial_values import THRESHOLDS, VECTORS
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import Coordinates
+from diagnosis.search.signatures import Signature
+from groundwalk.arrays import FloatArray, IntArray
+
+SHORT, VECTORS_PAIRED = 200, 20
+"""Pairs of effects with one component that are looked at closely; effects with more
+that are paired with all others."""
+
+LARGEST_STRETCH = 4.0
+"""A signature may be stretched so far before it is no guess any more."""
+
+TINY, SAME = 1e-9, 1e-5
+"""Parts of a signature's power that count as nothing: where a number is not exact, and
+where all the rest of it is what a model can do by itself."""
+
+
+@dataclass(frozen=True)
+class Guess:
+    """How much of a residual some effects explain at first order.
+
+    Attributes:
+      model: the effects, with the values that explain most.
+      gain: reduction of half the squared residual.
+    """
+
+    model: Model
+    gain: float
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """Signatures beside one residual: K products with it, K x K with each other.
+
+    Attributes:
+      wanted: how much of each the residual asks for.
+      products: of the signatures.
+      ridge: part of their own power that is added, so that nothing is divided by.
+      bounded: whether effects that have one sign keep it.
+    """
+
+    wanted: FloatArray
+    products: FloatArray
+    ridge: float
+    bounded: bool = True
+
+
+class Screen:
+    """All signatures side by side: what they explain alone, and two at a time."""
+
+    def __init__(self, predictor: Predictor, found: Sequence[Signature]) -> None:
+        """Work out all products of signatures once.
+
+        Args:
+          predictor: that the signatures are of.
+          found: at least one. Components of a vector effect go together; other
+            signatures of one effect and place are alternatives.
+        """
+        self._predictor, self._found = predictor, list(found)
+        self._columns = np.zeros((len(found), len(predictor.scored)), np.float32)
+        for row, signature in enumerate(found):
+            self._columns[row, signature.rows] = signature.change
+        self._products = (self._columns @ self._columns.T).astype(float)
+        self._groups = self._grouped()
+
+    def singles(
+        self, residual: FloatArray, jacobian: FloatArray | None = None
+    ) -> list[Guess]:
+        """The best guess of each effect and place, those that explain most first.
+
+        Args:
+          residual: (N,) to be explained.
+          jacobian: (N, p) of the model that left it, whose values may change with what
+            is added; None if they may not. Two effects that nearly cancel each other
+            are seen only so.
+        """
+        view = self._view(residual, jacobian)
+        best: dict[str, Guess] = {}
+        for group in self._groups:
+            guess = self._guess(view, [group])
+            key = self._found[group[0]].placed.key
+            if guess and (key not in best or guess.gain > best[key].gain):
+                best[key] = guess
+        return sorted(best.values(), key=lambda guess: -guess.gain)
+
+    def pairs(self, residual: FloatArray, count: int) -> list[Guess]:
+        """The pairs that explain most together, those that explain most first.
+
+        Either may explain nothing alone: two that nearly cancel each other do not.
+
+        Args:
+          residual: (N,) to be explained.
+          count: how many pairs.
+        """
+        view = self._view(residual)
+        best: dict[frozenset[str], Guess] = {}
+        for first, second in self._promising(view):
+            keys = frozenset(self._found[g[0]].placed.key for g in (first, second))
+            guess = self._guess(view, [first, second]) if len(keys) == 2 else None
+            if guess and (keys not in best or guess.gain > best[keys].gain):
+                best[keys] = guess
+        return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
+
+    def _promising(self, view: "_View") -> list[tuple[list[int], list[int]]]:
+        """Pairs of groups worth a look."""
+        alone = [group for group in self._groups if len(group) == 1]
+        rows = np.array([row for group in alone for row in group], int)
+        gain = self._gains_together(view, rows)
+        most = np.argsort(-gain, axis=None)[:SHORT]
+        pairs = [
+            (alone[int(i)], alone[int(j)])
+            for i, j in zip(*np.unravel_index(most, gain.shape), strict=True)
+            if gain[i, j] > 0
+        ]
+        free = replace(view, bounded=False)
+        guesses = [
+            (guess.gain, group)
+            for group in self._groups
+            if len(group) > 1 and (guess := self._guess(free, [group]))
+        ]
+        vectors = [group for _, group in sorted(guesses, reverse=True)[:VECTORS_PAIRED]]
+        pairs += [
+            (vector, other)
+            for vector in vectors
+            for other in self._groups
+            if other is not vector
+        ]
+        return pairs
+
+    def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
+        """(K, K) gains of two signatures by least squares, above the diagonal.
+
+        0 where an effect would have the sign that it cannot have, and where two
+        signatures are the same.
+        """
+        products, wanted = view.products[np.ix_(rows, rows)], view.wanted[rows]
+        power = np.diag(products)
+        both = np.outer(power, power)
+        rest = both - products**2
+        apart = np.triu(rest > SAME * both, 1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            size = (wanted[:, None] * power - wanted * products) / rest
+        sided = np.array([self._found[row].two_sided for row in rows], bool)
+        possible = apart & ((size > 0) | sided[:, None]) & ((size.T > 0) | sided)
+        gain = 0.5 * (size * wanted[:, None] + size.T * wanted)
+        return np.where(possible, gain, 0.0)
+
+    def _grouped(self) -> list[list[int]]:
+        vectors: dict[tuple[str, tuple[float, ...]], list[int]] = {}
+        alone = []
+        for row, signature in enumerate(self._found):
+            placed = signature.placed
+            if placed.effect in VECTORS:
+                rest = placed.values[VECTORS[placed.effect] :]
+                vectors.setdefault((placed.key, rest), []).append(row)
+            elif self._products[row, row] > 0:
+                alone.append([row])
+        return [*alone, *vectors.values()]
+
+    def _view(
+        self, residual: FloatArray, jacobian: FloatArray | None = None
+    ) -> "_View":
+        """All signatures beside a residual, less what a model's values can do."""
+        wanted = -(self._columns @ residual.astype(np.float32)).astype(float)
+        if jacobian is None or not jacobian.any():
+            return _View(wanted, self._products, TINY)
+        basis, size, _ = np.linalg.svd(jacobian, full_matrices=False)
+        basis = basis[:, size > SAME * size[0]]
+        done = (self._columns @ basis.astype(np.float32)).astype(float)
+        wanted = wanted + done @ (basis.T @ residual)
+        return _View(wanted, self._products - done @ done.T, SAME)
+
+    def _guess(self, view: "_View", groups: Sequence[list[int]]) -> Guess | None:
+        """Least squares within what is allowed; None if that explains nothing."""
+        rows = [row for group in groups for row in group]
+        products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]
+        ridge = np.diag(view.ridge * np.diag(self._products)[rows] + 1e-12)
+        size = np.linalg.solve(products + ridge, target)
+        sided = [self._found[row].two_sided or not view.bounded for row in rows]
+        least = np.where(sided, -LARGEST_STRETCH, 0.0)
+        clipped = np.clip(size, least, LARGEST_STRETCH)
+        gain = float(clipped @ target - 0.5 * clipped @ products @ clipped)
+        if gain <= 0 or (clipped == 0).all():
+            return None
+        model, first = [], 0
+        for group in groups:
+            stretch = clipped[first : first + len(group)]
+            model.append(self._placed(group, stretch))
+            first += len(group)
+        return Guess(tuple(model), gain)
+
+    def _placed(self, group: list[int], stretch: FloatArray) -> Placed:
+        first = self._found[group[0]].placed
+        if first.effect not in VECTORS:
+            return stretched(self._predictor.plant, first, float(stretch[0]))
+        parts = VECTORS[first.effect]
+        every = np.array([self._found[row].placed.values[:parts] for row in group])
+        values = (*map(float, stretch @ every), *first.values[parts:])
+        return Placed(first.effect, first.place, values)
+
+
+def stretched(plant: Plant, placed: Placed, stretch: float) -> Placed:
+    """The effect that many times as large: its first value, or its components.
+
+    What acts above a threshold only is left as it is.
+    """
+    parameters = Coordinates(plant, (placed,)).parameters
+    if placed.effect in THRESHOLDS:
+        return placed
+    values = list(placed.values)
+    for i in range(VECTORS.get(placed.effect, 1)):
+        one = parameters[i]
+        value = one.neutral + stretch * (values[i] - one.neutral)
+        if not np.isfinite(one.neutral):
+            value = values[i] / max(stretch, 1e-3)
+        values[i] = min(max(value, one.low), one.high)
+    return Placed(placed.effect, placed.place, tuple(values))

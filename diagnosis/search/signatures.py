@@ -1,0 +1,137 @@
+"""What each effect at each place changes in the predictions, at first order.
+
+Servos are stiff, so what is done at one joint hardly moves the others: an effect is
+tried at all joints in one replay, and each joint's own channel is that joint's
+signature.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.effects.effect import Effect, Placed
+from diagnosis.effects.library import EFFECTS
+from diagnosis.effects.trial_values import Interval, trial_values
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import Coordinates
+from diagnosis.traces.usage import Usage
+from groundwalk.arrays import FloatArray, IntArray
+
+ALONE = frozenset({"joint_elasticity", "encoder_offset"})
+"""Effects that may show at the neighbours more than at their own joint."""
+
+AT_TIPS = frozenset({"external_force", "drag"})
+"""Effects that are first tried at the outermost bodies only: there they show most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """What an effect at a place changes, at first order.
+
+    Attributes:
+      placed: the effect, with the values that were tried.
+      change: (rows,) of the residual, in units of noise.
+      rows: of the residual: all, or the joint's own channel.
+      two_sided: whether the effect may be there with the other sign.
+    """
+
+    placed: Placed
+    change: FloatArray
+    rows: IntArray
+    two_sided: bool
+
+
+def signatures(
+    predictor: Predictor,
+    base: Model,
+    usage: Usage,
+    intervals: Sequence[Interval] = (),
+    names: Sequence[str] = (),
+) -> list[Signature]:
+    """Signatures of all effects at all their places, seen from a model.
+
+    Args:
+      predictor: of the traces.
+      base: the model so far.
+      usage: of the joints.
+      intervals: when something may have pushed.
+      names: of the effects; all where empty.
+    """
+    trials = _trials(predictor, usage, intervals, names or tuple(EFFECTS))
+    models = [base, *(base + added for added, _ in trials)]
+    residuals = predictor.residuals(models)
+    found = []
+    for row, (added, joint_wise) in enumerate(trials, start=1):
+        change = residuals[row] - residuals[0]
+        for placed in added:
+            rows = np.arange(len(change))
+            if joint_wise:
+                own = predictor.channels.of_joint(placed.place)
+                rows = np.flatnonzero(np.isin(predictor.channel, own))
+            found.append(
+                Signature(placed, change[rows], rows, _two_sided(predictor, placed))
+            )
+    return found
+
+
+def _trials(
+    predictor: Predictor,
+    usage: Usage,
+    intervals: Sequence[Interval],
+    names: Sequence[str],
+) -> list[tuple[Model, bool]]:
+    """Models to try: an effect at all joints at once, or at one other place."""
+    trials: list[tuple[Model, bool]] = []
+    for name in names:
+        kind = EFFECTS[name]
+        places = kind.places(predictor.plant, predictor.traces)
+        if name in AT_TIPS:
+            places = tuple(p for p in places if p in tips(predictor.plant)) or places
+        options = {
+            place: _values(predictor, kind, place, usage, intervals) for place in places
+        }
+        if not any(options.values()):
+            continue
+        if kind.place_kind == "joint" and name not in ALONE:
+            for level in range(max(map(len, options.values()))):
+                model = tuple(
+                    Placed(name, place, values[level])
+                    for place, values in options.items()
+                )
+                trials.append((model, True))
+        else:
+            trials += [
+                ((Placed(name, place, each),), False)
+                for place, values in options.items()
+                for each in values
+            ]
+    return trials
+
+
+def tips(plant: Plant) -> frozenset[str]:
+    """Bodies that carry no other."""
+    model = plant.model
+    carrying = {int(parent) for parent in model.body_parentid[1:]}
+    every = range(1, model.nbody)
+    return frozenset(model.body(i).name for i in every if i not in carrying)
+
+
+def _values(
+    predictor: Predictor,
+    kind: Effect,
+    place: str,
+    usage: Usage,
+    intervals: Sequence[Interval],
+) -> list[tuple[float, ...]]:
+    plant = predictor.plant
+    column = plant.joints.index(place) if kind.place_kind == "joint" else None
+    parameters = kind.parameters(plant, place)
+    return trial_values(kind.name, parameters, column, usage, intervals)
+
+
+def _two_sided(predictor: Predictor, placed: Placed) -> bool:
+    """Whether the effect may be there with the other sign."""
+    first = Coordinates(predictor.plant, (placed,)).parameters[0]
+    return first.low < first.neutral < first.high

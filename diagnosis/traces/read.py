@@ -1,0 +1,163 @@
+"""From recordings to traces."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from diagnosis.plant.load import load_plant
+from diagnosis.plant.plant import Plant
+from diagnosis.plant.servo_sources import Gains, with_gains
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadRecordingError
+from worlds import read_recording
+from worlds.recordings.columns import nearest
+from worlds.recordings.metadata import ServoGains
+from worlds.recordings.recording import Recording
+
+_VECTORS = {
+    "gyroscope_rad_s": "gyroscope",
+    "accelerometer_m_s2": "accelerometer",
+    "foot_force_n": "foot_force",
+    "base_position_m": "base.position",
+    "base_orientation": "base.orientation",
+    "base_linear_velocity_m_s": "base.linear_velocity",
+    "base_angular_velocity_rad_s": "base.angular_velocity",
+}
+_JOINTS = {
+    "velocity_rad_s": "velocity",
+    "command_rad": "command",
+    "command_torque_nm": "command_torque",
+    "torque_nm": "torque",
+}
+
+
+def read_traces(
+    paths: Sequence[Path], source: str | Path, servo: Gains | None = None
+) -> tuple[Plant, list[Trace]]:
+    """Read recordings of one robot and make its plant.
+
+    Args:
+      paths: the recordings; all have the same joints and the same kind of base.
+      source: the robot, as for `load_plant`.
+      servo: gains for recordings that state none.
+
+    Raises:
+      BadRecordingError: there is no recording, one cannot be read, they do not fit
+        together, or they do not fit the robot.
+      UnknownNameError, BadModelError: as `load_plant`.
+    """
+    if not paths:
+        raise BadRecordingError("no recordings are given")
+    recordings = [read_recording(path) for path in paths]
+    _check_alike(paths, recordings)
+    gains = [_gains(recording, servo) for recording in recordings]
+    base = recordings[0].metadata.base
+    plant = load_plant(
+        source,
+        "floating" if base == "floating" else "fixed",
+        recordings[0].joints,
+        gains[0],
+    )
+    traces = [
+        replace(
+            trace_of(recording, plant, name),
+            servo=with_gains(plant.servo, plant.joints, own),
+        )
+        for recording, name, own in zip(recordings, _names(paths), gains, strict=True)
+    ]
+    return plant, traces
+
+
+def _gains(recording: Recording, servo: Gains | None) -> Gains:
+    """What a recording states, and of other joints what is given."""
+    if isinstance(servo, ServoGains):
+        servo = dict.fromkeys(recording.joints, servo)
+    return {**(servo or {}), **(recording.metadata.servo or {})}
+
+
+def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
+    """A recording in a plant's order of joints; missing values stay NaN.
+
+    A quantity that only some joints have is NaN at the others. Foot forces are left
+    out where the plant has not two feet.
+
+    Args:
+      recording: with a base as the plant's.
+      plant: with the joints of the recording.
+      name: of the trace.
+
+    Raises:
+      BadRecordingError: the joints are not the plant's, or the base is not.
+    """
+    for joint in recording.joints:
+        if joint not in plant.joints:
+            hint = nearest(joint, plant.joints)
+            raise BadRecordingError(f"{name}: the plant has no joint {joint!r}{hint}")
+    missing = [joint for joint in plant.joints if joint not in recording.joints]
+    if missing:
+        raise BadRecordingError(f"{name}: no position of joint {missing[0]!r}")
+    if recording.metadata.base != plant.base:
+        raise BadRecordingError(
+            f"{name}: its base is {recording.metadata.base}, the plant's {plant.base}"
+        )
+    return Trace(
+        name=name,
+        time_s=recording.time_s,
+        position_rad=recording.positions(plant.joints),
+        servo=with_gains(plant.servo, plant.joints, recording.metadata.servo),
+        **{
+            field: _of_joints(recording, quantity, plant.joints)
+            for field, quantity in _JOINTS.items()
+        },
+        **{
+            field: recording.vector(vector) if recording.has(vector) else None
+            for field, vector in _VECTORS.items()
+            if vector != "foot_force" or len(plant.feet) == len(("left", "right"))
+        },
+    )
+
+
+def _of_joints(
+    recording: Recording, quantity: str, joints: Sequence[str]
+) -> FloatArray | None:
+    have = recording.joints_with(quantity)
+    if not have:
+        return None
+    missing = np.full(recording.ticks, np.nan)
+    columns = [
+        recording.columns.get(f"{quantity}.{joint}", missing) for joint in joints
+    ]
+    return np.stack(columns, axis=1)
+
+
+def _check_alike(paths: Sequence[Path], recordings: Sequence[Recording]) -> None:
+    first = recordings[0]
+    for path, other in zip(paths, recordings, strict=True):
+        differing = sorted(set(first.joints) ^ set(other.joints))
+        if differing:
+            raise BadRecordingError(
+                f"{path}: only one of it and {paths[0]} has joint {differing[0]!r}; "
+                "diagnose recordings with different joints one by one"
+            )
+        if other.metadata.base != first.metadata.base:
+            raise BadRecordingError(
+                f"{path}: its base is {other.metadata.base}, that of {paths[0]} is "
+                f"{first.metadata.base}; diagnose them one by one"
+            )
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """File names without endings; with their folder where that is not enough."""
+    stems = Counter(path.stem for path in paths)
+    names = [
+        path.stem if stems[path.stem] == 1 else f"{path.parent.name}/{path.stem}"
+        for path in paths
+    ]
+    twice = [name for name, times in Counter(names).items() if times > 1]
+    if twice:
+        raise BadRecordingError(f"the recording {twice[0]} is given twice")
+    return names

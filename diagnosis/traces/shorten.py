@@ -1,0 +1,46 @@
+"""Long recordings cut down to what a search can afford: their liveliest parts."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.traces.trace import Trace
+
+LEAST_S = 3.0
+"""Of each trace at least so much is kept, if it has so much."""
+
+LEAST_FLOATING_S = 1.5
+"""Likewise of a robot on its feet, which is replayed in windows: none is warmed up."""
+
+
+def shortened(
+    traces: Sequence[Trace], longest_s: float, least_s: float = LEAST_S
+) -> list[Trace]:
+    """The traces, or of each the contiguous part in which the joints move most.
+
+    Every trace keeps the same share of its time, as each has a motion of its own.
+
+    Args:
+      traces: to be cut.
+      longest_s: of all together.
+      least_s: of each trace.
+    """
+    total_s = sum(trace.duration_s for trace in traces)
+    if total_s <= longest_s:
+        return list(traces)
+    share = longest_s / total_s
+    return [_liveliest(trace, share, least_s) for trace in traces]
+
+
+def _liveliest(trace: Trace, share: float, least_s: float) -> Trace:
+    length_s = max(share * trace.duration_s, least_s)
+    rows = min(round(length_s / trace.tick_s), trace.ticks)
+    moved = np.abs(np.diff(trace.position_rad, axis=0))
+    reach = np.nanmax(trace.position_rad, axis=0) - np.nanmin(
+        trace.position_rad, axis=0
+    )
+    activity = np.nan_to_num(moved / np.maximum(reach, 1e-6)).sum(axis=1)
+    total = np.concatenate([[0.0], np.cumsum(activity), [0.0]])[: trace.ticks]
+    gain = total[rows - 1 :] - total[: trace.ticks - rows + 1]
+    start = int(np.argmax(gain))
+    return trace.part(start, start + rows)

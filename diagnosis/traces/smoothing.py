@@ -1,0 +1,139 @@
+"""Smooth positions, speeds and accelerations from noisy samples at uneven times."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.linalg import LinAlgError, solveh_banded
+
+from diagnosis.traces.noise import noise_of
+from groundwalk.arrays import FloatArray
+
+_DEGREE = 5
+_ORDER = 3
+"""The third derivative is what costs."""
+_LEAST_ROWS = 8
+_RIDGE = 1e-9
+"""Holds what no value is near to."""
+_STIFFNESS = np.logspace(-4, 10, 22)
+"""Weights of the cost, for knots one tick apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """A channel and its derivatives at the channel's own times, arrays (T,).
+
+    Attributes:
+      value: in the channel's unit.
+      rate: per second.
+      acceleration: per second squared.
+    """
+
+    value: FloatArray
+    rate: FloatArray
+    acceleration: FloatArray
+
+
+def smooth(
+    time_s: FloatArray, values: FloatArray, noise_std: float | None = None
+) -> Smoothed:
+    """Smooth one channel as far as its noise asks for.
+
+    A quintic P-spline with a knot each tick and a third-difference penalty (Eilers
+    and Marx 1996). Its penalty minimises Mallows' Cp: squared residual plus twice
+    the noise's variance for every degree of freedom, which for even samples is
+    known in closed form (see `_freedom`). Rows without a value get the spline's.
+
+    Args:
+      time_s: (T,) increasing, may be uneven.
+      values: (T,) NaN where missing.
+      noise_std: of one sample; None to estimate it.
+
+    Returns:
+      The smoothed channel; all NaN where fewer than 8 values are there.
+    """
+    valid = np.isfinite(values)
+    if valid.sum() < _LEAST_ROWS:
+        nothing = np.full(len(values), np.nan)
+        return Smoothed(nothing, nothing, nothing)
+    if noise_std is None:
+        noise_std = noise_of(time_s, values).total
+    knots = _knots(time_s)
+    centre = float(np.mean(values[valid]))
+    coefficients = _fit(time_s[valid], values[valid] - centre, noise_std, knots)
+    spline = BSpline(knots, coefficients, _DEGREE)
+    return Smoothed(
+        np.asarray(spline(time_s) + centre, float),
+        np.asarray(spline(time_s, 1), float),
+        np.asarray(spline(time_s, 2), float),
+    )
+
+
+def _knots(time_s: FloatArray) -> FloatArray:
+    """Even knots, one tick apart, as far beyond both ends as the degree needs."""
+    tick = float(np.median(np.diff(time_s)))
+    spans = max(int(np.ceil((time_s[-1] - time_s[0]) / tick)), 1)
+    tick = (time_s[-1] - time_s[0]) / spans
+    knots = time_s[0] + tick * np.arange(-_DEGREE, spans + _DEGREE + 1)
+    knots[-_DEGREE - 1] = time_s[-1]  # rounding must not leave the last row outside
+    return np.asarray(knots)
+
+
+def _fit(
+    time_s: FloatArray, values: FloatArray, noise_std: float, knots: FloatArray
+) -> FloatArray:
+    """Coefficients of the penalty with the least Cp."""
+    design = BSpline.design_matrix(time_s, knots, _DEGREE)
+    count = design.shape[1]
+    gram = design.T @ design
+    bands = _upper_bands([gram.diagonal(k) for k in range(_DEGREE + 1)], count)
+    bands[-1] += _RIDGE
+    cost = _penalty_bands(count)
+    target = np.asarray(design.T @ values, float)
+    energy = float(values @ values)
+    best, chosen = np.inf, target
+    for stiffness in _STIFFNESS:
+        try:
+            coefficients = solveh_banded(
+                bands + stiffness * cost, target, check_finite=False
+            )
+        except LinAlgError:  # a gap too long for so stiff a spline to cross
+            break
+        residual = energy - 2 * coefficients @ target
+        residual += coefficients @ (gram @ coefficients)
+        criterion = residual + 2 * noise_std**2 * _freedom(stiffness, len(values))
+        if criterion < best:
+            best, chosen = criterion, coefficients
+    return chosen
+
+
+def _freedom(stiffness: float, rows: int) -> float:
+    """Degrees of freedom of the fit to even samples, one a knot.
+
+    Far from the ends a frequency w per sample passes by 1 / (1 + stiffness w^6); the
+    trace is the mean of that over all frequencies, and three for the parabola.
+    """
+    frequency = (np.arange(512) + 0.5) * np.pi / 512
+    # the difference operator's own response, exact for all frequencies
+    passed = 1 / (1 + stiffness * (2 * np.sin(frequency / 2)) ** (2 * _ORDER))
+    return float(rows * passed.mean() + _ORDER)
+
+
+def _penalty_bands(count: int) -> FloatArray:
+    """Upper bands of D'D, D being third differences of `count` coefficients."""
+    difference = np.diff(np.eye(_ORDER + 1), _ORDER, axis=0)[0]
+    diagonals = []
+    for k in range(_DEGREE + 1):
+        diagonal = np.zeros(count - k)
+        for i in range(_ORDER + 1 - k):
+            diagonal[i : count - _ORDER + i] += difference[i] * difference[i + k]
+        diagonals.append(diagonal)
+    return _upper_bands(diagonals, count)
+
+
+def _upper_bands(diagonals: list[FloatArray], count: int) -> FloatArray:
+    """As `solveh_banded` wants them: the main diagonal in the last row."""
+    bands = np.zeros((len(diagonals), count))
+    for k, diagonal in enumerate(diagonals):
+        bands[-1 - k, k:] = diagonal
+    return bands

@@ -1,0 +1,144 @@
+"""Stretches of traces that replays go through, and the states that they start from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray
+
+HEAD_ROWS = 60
+"""Rows that the state at the start of a whole trace is smoothed from."""
+
+UNHELD_WINDOW_S = 0.5
+"""Nothing holds a joint without a servo near its course: errors grow with time."""
+
+FLOATING_WINDOW_S = 0.3
+"""A robot on its feet is an inverted pendulum: after this its errors have doubled."""
+
+EDGE_S = 0.05
+"""At the edge of a recording speeds are not well known: no window starts there."""
+
+LEAST_WINDOW_S = 0.1
+"""What is shorter is left over at an end, and not scored."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One trace, or a part of one, to be replayed from its first row on.
+
+    Attributes:
+      trace: the commands, and what was measured.
+      position_rad: (j,) measured positions at the start, without noise.
+      velocity_rad_s: (j,) likewise.
+      base: (13,) of a floating base at the start: position (3), orientation (4), linear
+        velocity (3, world frame), angular velocity (3, body frame).
+      whole: what the trace is a window of, if it is one: commands of before it may
+        arrive late.
+    """
+
+    trace: Trace
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+    base: FloatArray | None = None
+    whole: Trace | None = None
+
+    @classmethod
+    def of(cls, trace: Trace) -> "Run":
+        """All of a trace, from the smoothed state at its start."""
+        head = slice(0, min(trace.ticks, HEAD_ROWS))
+        smoothed = [
+            smooth(trace.time_s[head], column[head]) for column in trace.position_rad.T
+        ]
+        return cls(
+            trace,
+            np.array([one.value[0] for one in smoothed]),
+            np.array([one.rate[0] for one in smoothed]),
+        )
+
+
+def window_s(plant: Plant, trace: Trace) -> float | None:
+    """How long a replay of a trace may last; None for all of it."""
+    if plant.base == "floating":
+        return FLOATING_WINDOW_S
+    return UNHELD_WINDOW_S if trace.unheld else None
+
+
+def is_left_over(plant: Plant, trace: Trace) -> bool:
+    """Whether a run of a floating base is no window, but what is left at an end."""
+    return plant.base == "floating" and trace.duration_s < LEAST_WINDOW_S
+
+
+def runs_of(plant: Plant, trace: Trace) -> list[Run]:
+    """The runs that a trace is replayed in: together they have all of its rows."""
+    longest_s = window_s(plant, trace)
+    if longest_s is None:
+        return [Run.of(trace)]
+    position, velocity = _smoothed(trace.time_s, trace.position_rad)
+    base = _bases(trace) if plant.base == "floating" else None
+    since_s = trace.time_s - trace.time_s[0]
+    if plant.base == "floating":
+        since_s = np.maximum(since_s - EDGE_S + longest_s, 0.0)
+    number = (since_s / longest_s).astype(int)
+    starts = np.searchsorted(number, np.arange(number[-1] + 1))
+    starts = np.unique(starts)
+    ends = [*starts[1:], trace.ticks]
+    return [
+        Run(
+            trace.part(int(first), int(last)),
+            position[first],
+            velocity[first],
+            None if base is None else base[first],
+            trace,
+        )
+        for first, last in zip(starts, ends, strict=True)
+    ]
+
+
+def _smoothed(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values and rates of (T, k) columns."""
+    found = [smooth(time_s, column) for column in values.T]
+    return (
+        np.stack([one.value for one in found], axis=1),
+        np.stack([one.rate for one in found], axis=1),
+    )
+
+
+def _bases(trace: Trace) -> FloatArray:
+    """(T, 13) as `Run.base`, smoothed."""
+    assert trace.base_position_m is not None
+    assert trace.base_orientation is not None
+    position, velocity = _smoothed(trace.time_s, trace.base_position_m)
+    turned = continuous(trace.base_orientation)
+    quaternion, rate = _smoothed(trace.time_s, turned)
+    length = np.linalg.norm(quaternion, axis=1, keepdims=True)
+    quaternion, rate = quaternion / length, rate / length
+    turning = _body_rates(quaternion, rate)
+    velocity = _with_measured(trace, velocity, trace.base_linear_velocity_m_s)
+    turning = _with_measured(trace, turning, trace.base_angular_velocity_rad_s)
+    return np.hstack([position, quaternion, velocity, turning])
+
+
+def _with_measured(
+    trace: Trace, rates: FloatArray, measured: FloatArray | None
+) -> FloatArray:
+    """The mean of rates from two sources: their errors are not the same."""
+    if measured is None or not np.isfinite(measured).all():
+        return rates
+    return np.asarray((rates + _smoothed(trace.time_s, measured)[0]) / 2)
+
+
+def continuous(quaternion: FloatArray) -> FloatArray:
+    """(T, 4) the same rotations, without jumps to the opposite sign."""
+    products = np.sum(quaternion[1:] * quaternion[:-1], axis=1)
+    signs = np.cumprod(np.concatenate([[1.0], np.where(products < 0, -1.0, 1.0)]))
+    return np.asarray(quaternion * signs[:, None])
+
+
+def _body_rates(quaternion: FloatArray, rate: FloatArray) -> FloatArray:
+    """(T, 3) angular velocity in the body frame: the vector part of 2 q* q'."""
+    w, v = quaternion[:, :1], quaternion[:, 1:]
+    dw, dv = rate[:, :1], rate[:, 1:]
+    return np.asarray(2 * (w * dv - dw * v - np.cross(v, dv)))

@@ -1,0 +1,1 @@
+"""The answer of a diagnosis as data, and as JSON."""

@@ -1,0 +1,130 @@
+"""The diagnosis' answer, as `diagnosis.json` holds it; see docs/diagnosis_json.md."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from diagnosis.verdict.as_json import check_number, from_plain, to_plain
+from diagnosis.verdict.errors import ChannelFit, Errors, Fit
+from diagnosis.verdict.parts import (
+    Amount,
+    EffectAt,
+    Estimate,
+    Found,
+    MismatchCell,
+    NextExperiment,
+    Pulse,
+    Recordings,
+    Unexplained,
+    When,
+)
+from groundwalk.errors import BadValueError
+
+__all__ = [
+    "Amount",
+    "ChannelFit",
+    "EffectAt",
+    "Errors",
+    "Estimate",
+    "Fit",
+    "Found",
+    "MismatchCell",
+    "NextExperiment",
+    "Pulse",
+    "Recordings",
+    "Unexplained",
+    "Verdict",
+    "VerdictKind",
+    "When",
+]
+
+FORMAT = 1
+VerdictKind = Literal["effects", "none", "unknown", "not_identifiable"]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What physics the sim lacks, how sure that is, and what remains open.
+
+    Attributes:
+      kind: "effects": these are missing. "none": nothing that the data show. "unknown":
+        something that no effect of the library explains. "not_identifiable": something
+        may be missing that these data cannot name.
+      effects: what was found, the surest first; beside an "unknown" rest there may be
+        some that are sure.
+      alternatives: other answers that these data do not rule out, each of them whole.
+      smallest_detectable: the least that these data could have shown, by
+        "effect@place".
+      unexplained: the shape of an error that no effect explains.
+      limits: what these data cannot tell, in plain words.
+      mismatch: where and when the nominal sim is off, the worst channel first.
+      pulses: torques that servos did not ask for, in the order of time.
+      fit: before and after on recordings that were kept out; None where none could be.
+      next_experiment: what to record next, if anything is open.
+      recordings: which were used for what.
+      seconds: how long the diagnosis took.
+    """
+
+    kind: VerdictKind
+    effects: tuple[Found, ...] = ()
+    alternatives: tuple[tuple[EffectAt, ...], ...] = ()
+    smallest_detectable: Mapping[str, Amount] = field(default_factory=dict)
+    unexplained: Unexplained | None = None
+    limits: tuple[str, ...] = ()
+    mismatch: tuple[MismatchCell, ...] = ()
+    pulses: tuple[Pulse, ...] = ()
+    fit: Fit | None = None
+    next_experiment: NextExperiment | None = None
+    recordings: Recordings = field(default_factory=Recordings)
+    seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse answers that contradict themselves.
+
+        Raises:
+          BadValueError: the kind does not fit what was found.
+        """
+        check_number("seconds", self.seconds, 0.0)
+        for key in self.smallest_detectable:
+            if "@" not in key:
+                raise BadValueError(f"smallest_detectable has {key!r}: 'effect@place'")
+        if self.kind == "effects" and not self.effects:
+            raise BadValueError("a verdict of kind 'effects' must name one at least")
+        if self.kind == "none" and self.effects:
+            raise BadValueError("a verdict of kind 'none' must not name effects")
+        if self.kind == "unknown" and self.unexplained is None:
+            raise BadValueError("a verdict of kind 'unknown' must show 'unexplained'")
+        if self.kind == "not_identifiable" and not (self.alternatives or self.limits):
+            raise BadValueError(
+                "a verdict of kind 'not_identifiable' must say why: it needs "
+                "'alternatives' or 'limits'"
+            )
+
+    def to_json(self) -> str:
+        """The verdict as JSON text; the same verdict gives the same text."""
+        plain = {"format": FORMAT, **to_plain(self)}
+        return json.dumps(plain, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+    @classmethod
+    def from_json(cls, text: str) -> "Verdict":
+        """Read what `to_json` has written.
+
+        Raises:
+          BadValueError: it is no JSON, of another format, a key is missing or unknown,
+            or a value is wrong.
+        """
+        try:
+            plain = json.loads(text)
+        except ValueError as error:
+            raise BadValueError(f"the verdict is no JSON: {error}") from None
+        if not isinstance(plain, dict):
+            raise BadValueError(f"the verdict must be an object, not {plain!r}")
+        found = plain.pop("format", None)
+        if isinstance(found, bool) or found != FORMAT:
+            raise BadValueError(
+                f"the verdict's format is {found!r}; only {FORMAT} is known"
+            )
+        plain.setdefault("pulses", [])  # the first ones had no such key
+        verdict: Verdict = from_plain(cls, plain, "verdict")
+        return verdict

@@ -1,0 +1,1 @@
+"""Answers to concealed cases held against their truths."""

@@ -1,0 +1,94 @@
+"""A picture of a score: accuracy by level, and what probabilities are worth."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from experiments.concealed.size_by_information import LEVELS
+from experiments.reports.figure_file import write_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+"""That colour-blind people tell apart (Okabe and Ito); the diagnosis first."""
+
+
+def draw_score(score: Mapping[str, Any], path: Path) -> None:
+    """Draw into a PNG file; see `score_figure`."""
+    write_figure(score_figure(score), path)
+
+
+def score_figure(score: Mapping[str, Any]) -> "Figure":
+    """Left: right effects by level, all methods. Right: the diagnosis' reliability.
+
+    Args:
+      score: as score.json has it.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 4.0), dpi=200, layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
+    _draw_levels(left, {"diagnosis": score, **score["baselines"]})
+    _draw_reliability(right, score["reliability"])
+    for axes in (left, right):
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.set_axisbelow(True)
+    return figure
+
+
+def _draw_levels(axes: "Axes", methods: Mapping[str, Mapping[str, Any]]) -> None:
+    width = 0.8 / len(methods)
+    for number, (name, figures) in enumerate(methods.items()):
+        shares = [figures["top1"][level] for level in LEVELS]
+        there = [i for i, one in enumerate(shares) if one["value"] is not None]
+        middles = np.array(there) + (number - (len(methods) - 1) / 2) * width
+        counted = [shares[i] for i in there]
+        axes.bar(
+            middles,
+            [one["value"] for one in counted],
+            0.9 * width,
+            color=COLOURS[number % len(COLOURS)],
+            yerr=_bars(counted),
+            error_kw={"elinewidth": 0.8},
+            label=name,
+        )
+    numbers = [methods["diagnosis"]["top1"][level]["n"] for level in LEVELS]
+    labels = [f"{level}\nn {n}" for level, n in zip(LEVELS, numbers, strict=True)]
+    axes.set_xticks(range(len(LEVELS)), labels)
+    axes.set(xlim=(-0.5, len(LEVELS) - 0.5), ylim=(0, 1.02))
+    axes.set_ylabel("right effect first, single effects\n(share, 95 % interval)")
+    axes.grid(axis="y", color="0.9")
+    axes.legend(
+        frameon=False, ncols=len(methods), loc="lower center", bbox_to_anchor=(0.5, 1)
+    )
+
+
+def _draw_reliability(axes: "Axes", bins: Sequence[Mapping[str, Any]]) -> None:
+    axes.plot([0, 1], [0, 1], color="0.6", linestyle="--", linewidth=1)
+    if bins:
+        rights = [row["right"] for row in bins]
+        stated = [row["stated"] for row in bins]
+        axes.errorbar(
+            stated,
+            [one["value"] for one in rights],
+            yerr=_bars(rights),
+            color=COLOURS[0],
+            marker="o",
+            linestyle="-",
+            elinewidth=0.8,
+        )
+    axes.set(xlim=(0, 1.02), ylim=(0, 1.02))
+    axes.set_xlabel("stated probability of the first effect")
+    axes.set_ylabel("share of right names")
+    axes.grid(color="0.9")
+
+
+def _bars(figures: Sequence[Mapping[str, Any]]) -> list[list[float]]:
+    """Lengths of the bars below and above."""
+    below = [max(one["value"] - one["low"], 0.0) for one in figures]
+    above = [max(one["high"] - one["value"], 0.0) for one in figures]
+    return [below, above]

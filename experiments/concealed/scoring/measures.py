@@ -1,0 +1,167 @@
+"""What a method's marks come to: shares and medians with their intervals.
+
+Every figure is {"value", "n", "low", "high"}, with a 95 % interval: Wilson's for
+shares of things that are right or wrong, else the bootstrap over cases (Efron 1979).
+Where there is nothing to count all but n = 0 is None. docs/concealed.md has the
+definitions.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from experiments.concealed.scoring.marks import NAMED_KINDS, Mark, by_kind
+from experiments.concealed.size_by_information import LEVELS
+from experiments.reports.intervals import wilson
+
+Figure = dict[str, float | int | None]
+Statistic = Callable[[Sequence[Mark]], float]
+
+RESAMPLES = 1000
+BINS = 10
+
+
+def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
+    """All figures of one method.
+
+    Args:
+      marks: one for each case.
+      seed: of the bootstrap.
+    """
+    rng = np.random.default_rng(seed)
+    hidden, single = by_kind(marks, *NAMED_KINDS), by_kind(marks, "single")
+    certain = [each for each in marks if each.probability is not None]
+    closed = ("closed", "wrong_place", "wrong_effect")
+    return {
+        "right": share(each.right for each in marks),
+        "top1": _by_level(single, lambda each: each.top1),
+        "in_set": _by_level(single, lambda each: each.in_set),
+        "set_size": _mean([each for each in single if each.set_size], "set_size", rng),
+        "place": share(right for each in hidden for right in each.places),
+        "pairs_f1": _bootstrap(by_kind(marks, "pair", "triple"), f1, rng),
+        "parameter_error_median": _bootstrap(
+            [each for each in hidden if each.errors], median_error, rng
+        ),
+        "coverage80": share(inside for each in hidden for inside in each.covered),
+        "closed": {name: _mean(hidden, name, rng) for name in closed},
+        "null_false_alarms": share(
+            each.names_something or each.kind == "missing"
+            for each in by_kind(marks, "none")
+        ),
+        "outside_named": share(
+            each.kind in ("effects", "missing") for each in by_kind(marks, "outside")
+        ),
+        "unexcited_right": share(
+            each.kind in ("none", "not_identifiable")
+            for each in by_kind(marks, "unexcited")
+        ),
+        "ece": _bootstrap(certain, calibration_error, rng),
+        "reliability": reliability(certain),
+        "verdicts": verdicts(marks),
+    }
+
+
+def share(right: Iterable[bool]) -> Figure:
+    """Share of what is true, with Wilson's interval."""
+    values = list(right)
+    if not values:
+        return {"value": None, "n": 0, "low": None, "high": None}
+    low, high = wilson(sum(values), len(values))
+    return {
+        "value": sum(values) / len(values),
+        "n": len(values),
+        "low": low,
+        "high": high,
+    }
+
+
+def f1(marks: Sequence[Mark]) -> float:
+    """2 hits / (2 hits + extra + missed), of the effects of all cases together."""
+    hits = sum(each.hits for each in marks)
+    wrong = sum(each.extra + each.missed for each in marks)
+    return 2 * hits / max(2 * hits + wrong, 1)
+
+
+def median_error(marks: Sequence[Mark]) -> float:
+    """Of all effects that are true in name and place."""
+    return float(np.median([error for each in marks for error in each.errors]))
+
+
+def calibration_error(marks: Sequence[Mark]) -> float:
+    """Expected calibration error: mean gap of bins, weighted by their cases.
+
+    Ten bins of equal width over the stated probability (Guo, Pleiss, Sun and
+    Weinberger 2017, "On calibration of modern neural networks", equation 3).
+    """
+    total = sum(row["n"] for row in reliability(marks))
+    gaps = (
+        row["n"] * abs(row["stated"] - row["right"]["value"])
+        for row in reliability(marks)
+    )
+    return float(sum(gaps) / max(total, 1))
+
+
+def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
+    """Mean stated probability, and share of right names, in each bin with cases."""
+    bins: dict[int, list[Mark]] = {}
+    for each in marks:
+        if each.probability is not None:
+            number = min(int(each.probability * BINS), BINS - 1)
+            bins.setdefault(number, []).append(each)
+    return [
+        {
+            "stated": float(np.mean([each.probability for each in members])),
+            "n": len(members),
+            "right": share(each.top1 for each in members),
+        }
+        for _, members in sorted(bins.items())
+    ]
+
+
+def verdicts(marks: Sequence[Mark]) -> dict[str, dict[str, int]]:
+    """How often each kind of case got each kind of verdict."""
+    table: dict[str, dict[str, int]] = {}
+    for each in marks:
+        row = table.setdefault(each.case.kind, {})
+        row[each.kind] = row.get(each.kind, 0) + 1
+    return table
+
+
+def _by_level(
+    marks: Sequence[Mark], is_right: Callable[[Mark], bool]
+) -> dict[str, Figure]:
+    figures = {
+        level: share(is_right(each) for each in marks if each.level == level)
+        for level in LEVELS
+    }
+    return {**figures, "all": share(is_right(each) for each in marks)}
+
+
+def _mean(marks: Sequence[Mark], name: str, rng: np.random.Generator) -> Figure:
+    """Mean of a number that some of the marks have."""
+    there = [each for each in marks if getattr(each, name) is not None]
+
+    def statistic(some: Sequence[Mark]) -> float:
+        return float(np.mean([getattr(each, name) for each in some]))
+
+    return _bootstrap(there, statistic, rng)
+
+
+def _bootstrap(
+    marks: Sequence[Mark], statistic: Statistic, rng: np.random.Generator
+) -> Figure:
+    """A statistic of cases, and its 2.5 % and 97.5 % quantiles over resampled cases."""
+    n = len(marks)
+    if not n:
+        return {"value": None, "n": 0, "low": None, "high": None}
+    draws = [
+        statistic([marks[i] for i in rng.integers(n, size=n)]) for _ in range(RESAMPLES)
+    ]
+    low, high = np.quantile(draws, [0.025, 0.975])
+    return {
+        "value": statistic(marks),
+        "n": n,
+        "low": float(low),
+        "high": float(high),
+    }

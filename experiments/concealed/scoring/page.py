@@ -1,0 +1,191 @@
+"""The score of a concealed set as a page of Markdown and as a table."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from experiments.reports.origin import Origin
+from experiments.reports.report import Report, markdown_table
+
+TITLE = "Concealed physics: what the diagnosis found, and what it only thought it did"
+NOTES = """
+Levels are by information: how many nats per recording the true structure, its values
+fitted, gains on the nominal model (L1 at least 100, L2 at least 20, L3 at least
+5, L4 less). Brackets hold 95 % intervals: Wilson's for shares, else the bootstrap over
+cases. An answer that is not there counts as wrong. Definitions: docs/concealed.md.
+"""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A figure and what it should be.
+
+    Attributes:
+      title: in plain words.
+      path: keys that lead to it in the score.
+      low: the least that is good enough ...
+      high: ... and the most.
+    """
+
+    title: str
+    path: tuple[str, ...]
+    low: float | None = None
+    high: float | None = None
+
+    def of(self, figures: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The figure, out of a method's."""
+        found: Any = figures
+        for key in self.path:
+            found = found[key]
+        return dict(found)
+
+    def holds(self, figures: Mapping[str, Any]) -> bool | None:
+        """Whether the figure is good enough; None where nothing was counted."""
+        value = self.of(figures)["value"]
+        if value is None:
+            return None
+        above = self.low is None or value >= self.low
+        return above and (self.high is None or value <= self.high)
+
+    @property
+    def asked(self) -> str:
+        """The bounds in words."""
+        if self.low is not None and self.high is not None:
+            return f"{self.low:.0%} to {self.high:.0%}"
+        if self.low is not None:
+            return f"at least {self.low:.3g}"
+        return "" if self.high is None else f"at most {self.high:.3g}"
+
+
+GOALS = (
+    Goal("answers that are right as a whole", ("right",)),
+    Goal("right effect first, L1", ("top1", "L1"), low=0.90),
+    Goal("right effect first, L2", ("top1", "L2"), low=0.75),
+    Goal("right effect first, L3", ("top1", "L3")),
+    Goal("right effect first, L4", ("top1", "L4")),
+    Goal("right effect first, all singles", ("top1", "all")),
+    Goal("right effect considered, L1", ("in_set", "L1"), low=0.90),
+    Goal("right effect considered, L2", ("in_set", "L2"), low=0.90),
+    Goal("right effect considered, all singles", ("in_set", "all")),
+    Goal("effects considered, mean number", ("set_size",)),
+    Goal("right place where the effect is right", ("place",), low=0.95),
+    Goal("pairs and triples, F1", ("pairs_f1",), low=0.75),
+    Goal("parameter error, median", ("parameter_error_median",), high=0.10),
+    Goal("80 % intervals that hold the truth", ("coverage80",), low=0.7, high=0.9),
+    Goal("held-out error closed", ("closed", "closed"), low=0.80),
+    Goal("closed by the control at a wrong place", ("closed", "wrong_place")),
+    Goal("closed by the control with a wrong effect", ("closed", "wrong_effect")),
+    Goal("nothing missing, but named", ("null_false_alarms",), high=0.05),
+    Goal("outside the library, but named", ("outside_named",), high=0.15),
+    Goal("not excited, and said so", ("unexcited_right",)),
+    Goal("calibration error (ECE)", ("ece",), high=0.10),
+)
+"""What is asked of the diagnosis. Controls must close less than half of that."""
+
+
+def text_of(figure: Mapping[str, Any], with_interval: bool = True) -> str:
+    """Such as "0.91 [0.85, 0.95], n 120"."""
+    if figure["value"] is None:
+        return "-"
+    value = f"{figure['value']:.2f}"
+    if not with_interval:
+        return value
+    return f"{value} [{figure['low']:.2f}, {figure['high']:.2f}], n {figure['n']}"
+
+
+def score_rows(score: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows: each goal, the diagnosis beside it, then every baseline."""
+    baselines = score["baselines"]
+    columns = ["figure", "goal", "holds", "diagnosis", *baselines]
+    rows = []
+    for goal in GOALS:
+        holds = _holds(goal, score)
+        verdict = {True: "yes", False: "no", None: ""}[holds]
+        others = [text_of(goal.of(each), False) for each in baselines.values()]
+        row = [goal.title, _asked(goal, score), verdict, text_of(goal.of(score))]
+        rows.append([*row, *others])
+    return columns, rows
+
+
+def _is_control(goal: Goal) -> bool:
+    return goal.path[0] == "closed" and goal.path != ("closed", "closed")
+
+
+def _half(score: Mapping[str, Any]) -> float | None:
+    value = score["closed"]["closed"]["value"]
+    return None if value is None else 0.5 * value
+
+
+def _asked(goal: Goal, score: Mapping[str, Any]) -> str:
+    half = _half(score)
+    if _is_control(goal) and half is not None:
+        return f"less than {half:.3g}"
+    return goal.asked
+
+
+def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
+    """Whether a goal is met; None where there is none, or nothing was counted."""
+    if _is_control(goal):
+        half, value = _half(score), goal.of(score)["value"]
+        return None if half is None or value is None else bool(value < half)
+    return goal.holds(score) if goal.asked else None
+
+
+def score_report(score: Mapping[str, Any], figure: str) -> Report:
+    """All of a score, and where it comes from.
+
+    Args:
+      score: as score.json has it.
+      figure: name of the picture's file.
+    """
+    body = markdown_table(*score_rows(score))
+    body += ["", f"![Accuracy by level, and calibration]({figure})", "", NOTES.strip()]
+    body += ["", "Verdicts by kind of case:", "", *_verdict_table(score["verdicts"])]
+    settings = {
+        "cases": score["cases"],
+        "drawn from seed": score["seed"],
+        "sha256 of the sealed truth": score["truth_sha256"],
+        "diagnosed at commit": score.get("answered_by"),
+    }
+    origin = Origin.of(score["provenance"], settings)
+    return Report(TITLE, _answer(score), [*_unanswered(score), *body], origin)
+
+
+def _answer(score: Mapping[str, Any]) -> list[str]:
+    """How often the diagnosis was right, and how many goals that meets."""
+    held = [holds for goal in GOALS if (holds := _holds(goal, score)) is not None]
+    right, wrong = score["top1"]["all"]["value"], score["null_false_alarms"]["value"]
+    whole = score["right"]
+    told = [
+        f"{round(whole['value'] * whole['n'])} answers are right as a whole",
+        f"the right effect is named first in {right:.0%} of the cases with one effect"
+        if right is not None
+        else "",
+        f"something is named in {wrong:.0%} of those in which nothing is missing"
+        if wrong is not None
+        else "",
+    ]
+    counted = ", ".join(filter(None, told))
+    met = f"The diagnosis meets {sum(held)} of the {len(held)} goals that count here."
+    return [f"Of {score['cases']} cases: {counted}. {met}"]
+
+
+def _unanswered(score: Mapping[str, Any]) -> list[str]:
+    """What had no answer."""
+    methods = {"diagnosis": score["missing"]}
+    methods |= {name: each["missing"] for name, each in score["baselines"].items()}
+    lines = [
+        f"- without an answer from {name}, counted as wrong: {', '.join(missing)}"
+        for name, missing in methods.items()
+        if missing
+    ]
+    return [*lines, ""] if lines else []
+
+
+def _verdict_table(verdicts: Mapping[str, Mapping[str, int]]) -> Sequence[str]:
+    kinds = sorted({kind for row in verdicts.values() for kind in row})
+    rows = [
+        [case, *(str(row.get(kind, 0)) for kind in kinds)]
+        for case, row in verdicts.items()
+    ]
+    return markdown_table(["case", *kinds], rows)

@@ -1,0 +1,123 @@
+"""The mismatch map: which channels are off, in which parts of the data, and when."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.verdict.verdict import MismatchCell
+from experiments.diagnosis_report.figure_style import FAINT, REAL, SIM, note, plain
+from experiments.diagnosis_report.numbers import percent
+from experiments.diagnosis_report.svg import new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_MOST_ROWS, _FEW_ROWS, _SMALL_SHARE = 12, 4, 0.005
+_SHARE_WIDTH, _CELL_WIDTH, _BURST_WIDTH = 2.0, 0.9, 2.6
+_LEAST_TOP = 0.7
+"""The darkest colour means five times the noise, or more."""
+_DARK = 0.6
+"""Cells from this part of the scale on have light numbers."""
+
+
+def worst_cells(cells: Sequence[MismatchCell]) -> list[MismatchCell]:
+    """What the map shows: the worst channel first, and few that hold next to nothing.
+
+    Args:
+      cells: of a verdict.
+    """
+    ranked = sorted(cells, key=lambda cell: -cell.share)[:_MOST_ROWS]
+    return [
+        cell
+        for rank, cell in enumerate(ranked)
+        if rank < _FEW_ROWS or cell.share >= _SMALL_SHARE
+    ]
+
+
+def mismatch_figure(rows: Sequence[MismatchCell]) -> "Figure":
+    """A row for each channel: share of the mismatch, regimes, and bursts.
+
+    Args:
+      rows: channels from top to bottom; at least one.
+    """
+    regimes = list(dict.fromkeys(name for cell in rows for name in cell.regimes))
+    has_bursts = any(cell.bursts for cell in rows)
+    widths = [_SHARE_WIDTH]
+    widths += [_CELL_WIDTH * len(regimes)] * bool(regimes)
+    widths += [_BURST_WIDTH] * has_bursts
+    figure = new_figure(0.27 * len(rows) + 1.15)
+    panels = figure.subplots(
+        1, len(widths), squeeze=False, sharey=True, width_ratios=widths
+    )[0]
+    _draw_shares(panels[0], rows)
+    if regimes:
+        _draw_regimes(panels[1], rows, regimes)
+    if has_bursts:
+        _draw_bursts(panels[-1], rows)
+    return figure
+
+
+def _draw_shares(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
+    shares = [100 * cell.share for cell in rows]
+    axes.barh(range(len(rows)), shares, height=0.62, color=SIM, alpha=0.85)
+    for row, cell in enumerate(rows):
+        note(axes, percent(cell.share), (shares[row], row))
+    plain(axes, grid=None)
+    axes.set_yticks(range(len(rows)), [cell.channel for cell in rows])
+    axes.tick_params(axis="y", labelcolor=REAL)
+    axes.set_xticks([])
+    axes.spines["bottom"].set_visible(False)
+    axes.set_xlim(0, 1.35 * max(*shares, 1))
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    _head(axes, "share of the mismatch")
+
+
+def _draw_regimes(
+    axes: "Axes", rows: Sequence[MismatchCell], regimes: Sequence[str]
+) -> None:
+    """Cells darken with the logarithm of the error in units of the noise."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    colours = LinearSegmentedColormap.from_list(
+        "mismatch", ["#f7f4f1", "#f0b27a", SIM, "#6e2a00"]
+    )
+    values = np.array(
+        [[cell.regimes.get(name, np.nan) for name in regimes] for cell in rows]
+    )
+    depth = np.log10(np.maximum(values, 1.0))
+    top = max(float(np.nanmax(depth)), _LEAST_TOP)
+    edges = [np.arange(size + 1) - 0.5 for size in reversed(depth.shape)]
+    mesh = axes.pcolormesh(*edges, depth, cmap=colours, vmin=0, vmax=top)
+    mesh.set(edgecolor="white", linewidth=1.5)
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            light = depth[row, column] > _DARK * top
+            text = f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
+            colour = "white" if light else REAL
+            centred = {"ha": "center", "va": "center", "fontsize": 8, "color": colour}
+            axes.text(column, row, text, centred)
+    plain(axes, grid=None)
+    axes.spines["bottom"].set_visible(False)
+    axes.set_xticks(range(len(regimes)), regimes)
+    axes.tick_params(axis="x", labelrotation=35)
+    for label in axes.get_xticklabels():
+        label.set(ha="right", rotation_mode="anchor")
+    axes.tick_params(axis="y", left=False)
+    axes.set_xlim(-0.5, len(regimes) - 0.5)
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    _head(axes, "error in units of the noise, by part of the data")
+
+
+def _draw_bursts(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
+    for row, cell in enumerate(rows):
+        spans = [(start_s, end_s - start_s) for start_s, end_s in cell.bursts]
+        axes.broken_barh(spans, (row - 0.31, 0.62), color=SIM, alpha=0.85, lw=1)
+    plain(axes, grid="x")
+    axes.set_xlabel("time [s]")
+    _head(axes, "bursts")
+
+
+def _head(axes: "Axes", text: str) -> None:
+    axes.set_title(text, loc="left", fontsize=8.5, color=FAINT)

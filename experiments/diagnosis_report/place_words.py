@@ -1,0 +1,71 @@
+"""Places and channels as people call them."""
+
+import re
+from collections.abc import Sequence
+
+from diagnosis.verdict.verdict import EffectAt, Found
+from experiments.diagnosis_report.words import effect_words
+from worlds.recordings.columns import JOINT_QUANTITIES
+
+_SIDED = re.compile(r"([LR])([A-Z][a-z]+(?:[A-Z][a-z]+)*)")
+_SIDES = {"L": "left", "R": "right"}
+
+
+def place_words(place: str, kind: str = "joint") -> str:
+    """A joint or body: "the left knee (LKneePitch)", or "the joint shoulder_pan".
+
+    Args:
+      place: its name.
+      kind: "joint" or "body"; anything else stands for a place of its own name.
+    """
+    sided = _SIDED.fullmatch(place)
+    if kind not in ("joint", "body"):
+        return place
+    if sided is None:
+        return f"the {kind} {place}"
+    parts = [part.lower() for part in re.findall(r"[A-Z][a-z]+", sided[2])]
+    if parts[0] == "knee":  # it has only one joint
+        parts = parts[:1]
+    return f"the {_SIDES[sided[1]]} {' '.join(parts)} ({place})"
+
+
+def at_words(effect: EffectAt | Found) -> str:
+    """An effect with its place: "dry friction at the left knee (LKneePitch)"."""
+    words = effect_words(effect.name)
+    if not words.place_kind:
+        return words.label
+    return f"{words.label} at {place_words(effect.place, words.place_kind)}"
+
+
+def answer_words(effects: tuple[EffectAt, ...]) -> str:
+    """A whole answer: "dry friction at hip together with late commands"."""
+    return " together with ".join(map(at_words, effects))
+
+
+def choice(answers: Sequence[tuple[EffectAt, ...]]) -> str:
+    """Whole answers, one of which is right."""
+    return "; or ".join(map(answer_words, answers))
+
+
+def channel_words(channel: str) -> str:
+    """A channel: "the position of the left knee (LKneePitch)"."""
+    kind, _, component = channel.partition(".")
+    if kind in JOINT_QUANTITIES:
+        return f"the {kind} of {place_words(component)}"
+    return channel.replace(".", " ").replace("_", " ")
+
+
+def listing(parts: list[str], word: str) -> str:
+    """Texts in a row: "a, b and c".
+
+    Args:
+      parts: the texts; at least one.
+      word: what stands before the last one.
+    """
+    *first, last = parts
+    return f"{', '.join(first)} {word} {last}" if first else last
+
+
+def sentence(text: str) -> str:
+    """A text with a capital letter at its start and a full stop at its end."""
+    return f"{text[:1].upper()}{text[1:]}".rstrip(".") + "."

@@ -1,0 +1,129 @@
+"""What limits a robot in a gait: its joints' ranges, and its motors."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+import robots
+from groundwalk.arrays import FloatArray
+from robots import Biped, Description, biped
+from walk_engine import Gait
+from walk_engine.legs import legs_of
+from worlds import Recording
+from worlds.scenes.forward_kinematics import LinkPoses, link_poses
+
+FEET_PARTS = (-1.0, 0.0, 1.0)
+"""Of the quarter of a cycle's way by which feet are ahead of the hips, or behind."""
+
+
+class Reach(NamedTuple):
+    """How far a gait's poses of the legs are beyond the joints' ranges.
+
+    Attributes:
+      place_m: from where the ankle shall be to where it is, the largest.
+      tilt_rad: of the sole that shall be level, the largest.
+      joint: the leg's joint that is farthest beyond its range, "" if none is.
+    """
+
+    place_m: float
+    tilt_rad: float
+    joint: str
+
+
+class Saturation(NamedTuple):
+    """The motor that gives all it can for the largest part of a walk."""
+
+    share: float
+    joint: str
+
+
+class Sole(NamedTuple):
+    """A sole's length and width as parts of the NAO's, enlarged to the robot's size."""
+
+    length: float
+    width: float
+
+
+def sole(description: Description) -> Sole:
+    """How much there is to stand on, for a robot's size."""
+    of_nao, own = (
+        np.ptp(robot.feet[0].outline_m, axis=0) / robot.scale.length
+        for robot in (robots.get("nao"), description)
+    )
+    length, width = (own / of_nao).tolist()
+    return Sole(length, width)
+
+
+def reach(description: Description, gait: Gait) -> Reach:
+    """With both feet as far ahead and behind as the gait puts them, down and lifted.
+
+    Angles are found as the walk engine finds them, cut to the joints' ranges, and
+    followed from joint to joint to the feet.
+    """
+    body = biped(description)
+    ankle_m = _targets_m(body, gait)
+    angles = _angles(body, ankle_m)
+    low, high = body.joint_range_rad.T
+    beyond = np.maximum(low - angles, angles - high)
+    legs = [*body.left_leg, *body.right_leg]
+    worst = legs[int(beyond.max(axis=0)[legs].argmax())]
+    wanted = _poses(description, angles)
+    reached = _poses(description, np.clip(angles, low, high))
+    places, tilts = [], []
+    for foot in description.feet:
+        name = description.links[foot.joint].link.name
+        away = reached[name].position_m - wanted[name].position_m
+        places.append(np.linalg.norm(away, axis=1).max())
+        _, x, y, _ = reached[name].orientation.T
+        tilts.append(2 * np.arcsin(np.clip(np.hypot(x, y), 0, 1)).max())
+    joint = description.joints[worst] if beyond[:, worst].max() > 0 else ""
+    return Reach(float(max(places)), float(max(tilts)), joint)
+
+
+def saturation(description: Description, recording: Recording) -> Saturation:
+    """How often a motor's drive was at its end, from commands and what came of them.
+
+    Args:
+      description: the robot.
+      recording: of a walk.
+    """
+    shares = {}
+    for joint in description.links:
+        motor, column = joint.motor, recording.columns
+        error = column[f"command.{joint.name}"] - column[f"position.{joint.name}"]
+        back_emf = motor.stall_torque_nm / motor.no_load_speed_rad_s
+        braking = (motor.kd_nm_s_rad - back_emf) * column[f"velocity.{joint.name}"]
+        drive = motor.kp_nm_rad * error - braking
+        shares[joint.name] = float(np.mean(np.abs(drive) >= motor.stall_torque_nm))
+    joint_name = max(shares, key=lambda name: shares[name])
+    return Saturation(shares[joint_name], joint_name if shares[joint_name] else "")
+
+
+def _targets_m(body: Biped, gait: Gait) -> FloatArray:
+    """(3, 2, n) ankles in the torso's frame, the right one mirrored."""
+    scale, leg = body.scale, body.leg
+    quarter_m = gait["max_forward"] * gait["step_period"] / 2 * scale.length
+    ahead = quarter_m * np.array(FEET_PARTS)
+    below = gait["hip_height"] * scale.length - leg.ankle_height_m
+    lifts = np.array([0.0, gait["base_leg_lift"] * scale.length])
+    x, z = (part.ravel() for part in np.meshgrid(ahead, below - lifts))
+    x = x + leg.hip_m[0] + body.ankles_ahead_m - gait["com_offset"] * scale.length
+    one = np.stack([x, np.full_like(x, leg.hip_m[1]), leg.hip_m[2] - z])
+    return np.stack([one, one], axis=1)
+
+
+def _angles(body: Biped, ankle_m: FloatArray) -> FloatArray:
+    """(n, joints) angles with level soles, not yet cut to the ranges."""
+    n = ankle_m.shape[2]
+    none = np.zeros((2, n))
+    left, right = legs_of(body).angles(ankle_m, none, none, np.zeros((2, 2, n)))
+    angles = np.zeros((n, body.joints))
+    angles[:, list(body.left_leg)] = left.T
+    angles[:, list(body.right_leg)] = right.T
+    return angles
+
+
+def _poses(description: Description, angles_rad: FloatArray) -> dict[str, LinkPoses]:
+    n = len(angles_rad)
+    base = LinkPoses(np.zeros((n, 3)), np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)))
+    return link_poses(description, angles_rad, base)

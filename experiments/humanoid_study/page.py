@@ -1,0 +1,133 @@
+"""The page of `groundwalk humanoids`: which robots walk, which do not, and why."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from experiments.reports.intervals import wilson
+from experiments.reports.origin import Origin
+from experiments.reports.report import Report, markdown_table
+from experiments.runs.folder import RunFolder
+
+TITLE = "Which other humanoids walk 5 s after a short search?"
+PICTURE = "humanoids.png"
+COLUMNS = [
+    "robot", "mass [kg]", "size", "speed [cm/s]", "falls", "fall rate, 95 % interval",
+    "untuned", "real: falls", "real: untuned", "sole", "sole off by",
+    "busiest motor",
+]  # fmt: skip
+NOTES = (
+    "Size is the height of the hips in units of the NAO's. Speed is the mean over the "
+    "walks on flat ground in the sim, from start poses whose joints spread by "
+    "0.01 rad; falls and their rate are of those walks, with Wilson's interval. "
+    "Untuned are the falls of the gait that the search starts from, in the same walks. "
+    "The same in the real world, with the NAO's latency, sensor noise and lumps: the "
+    "searches know nothing of these.",
+    "Sole is its length and width as parts of the NAO's, enlarged to the robot's size. "
+    "Sole off by tells how far the joints' ranges keep the tuned gait's soles from "
+    "where they shall be, and from level. The busiest motor is the one that gives all "
+    "it can for the largest part of the first walk.",
+    "No robot has parameters of its own. Legs, soles, motors and sizes follow from "
+    "each file; `simple_humanoid` alone has no feet and joint ranges that no leg can "
+    "have. Its sole and its ranges are written down in `robots/simple_humanoid.toml`; "
+    "`simple_humanoid_as_is` has the same sole and the ranges of the file.",
+)
+_FAR_M, _TILTED_RAD, _OFTEN = 0.02, math.radians(10), 0.5
+"""What is said to be a cause of falls. Romeo walks with soles that are 7 degrees from
+level at times, and with a motor that gives all it can for 45 % of the time."""
+
+Result = Mapping[str, Mapping[str, Any]]
+
+
+def write_humanoids_page(folder: RunFolder, result: Result) -> None:
+    """Write the report of a run.
+
+    Args:
+      folder: the run, with a folder for each robot.
+      result: what each robot came to, by its name.
+    """
+    columns, rows = robot_rows(result)
+    body = [*markdown_table(columns, rows), ""]
+    for note in NOTES:
+        body += [note, ""]
+    body += [f"![The first walk of each tuned gait in the sim]({PICTURE})", ""]
+    Report(TITLE, list(answer(result)), body, Origin.of_run(folder)).write(folder.path)
+
+
+def folder_name(robot: str) -> str:
+    """The name of a robot's folder in the run's: a file's own name without its end."""
+    return Path(robot).stem if "." in robot else robot
+
+
+def robot_rows(result: Result) -> tuple[list[str], list[list[str]]]:
+    """Headings, and a row for each robot."""
+    return COLUMNS, [_row(name, of) for name, of in result.items()]
+
+
+def answer(result: Result) -> Iterator[str]:
+    """Which walk, in one sentence; which do not and why, in one for each."""
+    walks = [name for name, of in result.items() if not _tuned(of)["falls"]]
+    trials = next(_tuned(of)["trials"] for of in result.values())
+    if walks:
+        yield (
+            f"{len(walks)} of {len(result)} walk 5 s without a fall in each of "
+            f"{trials} walks in the sim: {', '.join(walks)}."
+        )
+    else:
+        yield f"None of {len(result)} walks without a fall in each of {trials} walks."
+    for name, of in result.items():
+        if name not in walks:
+            score = _tuned(of)
+            yield (
+                f"{name} falls in {score['falls']} of {score['trials']} walks. "
+                f"{why(of)}"
+            )
+
+
+def why(of: Mapping[str, Any]) -> str:
+    """What was measured that explains falls, or that nothing was."""
+    reach, motor = of["reach"], of["saturation"]
+    causes = []
+    if reach["place_m"] > _FAR_M or reach["tilt_rad"] > _TILTED_RAD:
+        causes.append(
+            f"its joints do not reach the gait's poses: the range of {reach['joint']} "
+            f"keeps a foot {1e3 * reach['place_m']:.0f} mm away from its place and its "
+            f"sole {math.degrees(reach['tilt_rad']):.0f} degrees from level"
+        )
+    if motor["share"] > _OFTEN:
+        causes.append(
+            f"the motor of {motor['joint']} gives all it can for "
+            f"{motor['share']:.0%} of the time"
+        )
+    if not causes:
+        return (
+            "Neither its joints' ranges nor its motors explain it. Its soles are "
+            f"{of['sole']['length']:.0%} as long and {of['sole']['width']:.0%} as wide "
+            "as the NAO's would be at its size."
+        )
+    return f"What was found: {'; '.join(causes)}."
+
+
+def _tuned(of: Mapping[str, Any]) -> Mapping[str, Any]:
+    score: Mapping[str, Any] = of["sim"]["tuned"]
+    return score
+
+
+def _row(name: str, of: Mapping[str, Any]) -> list[str]:
+    score = _tuned(of)
+    others = of["sim"]["start"], of["real"]["tuned"], of["real"]["start"]
+    low, high = wilson(score["falls"], score["trials"])
+    reach, motor = of["reach"], of["saturation"]
+    return [
+        name,
+        f"{of['mass_kg']:.1f}",
+        f"{of['scale']['length']:.2f}",
+        f"{score['speed_cm_s']:.1f} ± {score['speed_std']:.1f}",
+        f"{score['falls']}/{score['trials']}",
+        f"{low:.0%} to {high:.0%}",
+        *(f"{other['falls']}/{other['trials']}" for other in others),
+        f"{of['sole']['length']:.2f} x {of['sole']['width']:.2f}",
+        f"{1e3 * reach['place_m']:.0f} mm, {math.degrees(reach['tilt_rad']):.0f}°",
+        f"{motor['joint']} {motor['share']:.0%}" if motor["joint"] else "none",
+    ]

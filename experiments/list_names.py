@@ -1,0 +1,112 @@
+"""`groundwalk list`: the robots, terrains and gaits that there are."""
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Annotated
+
+import tyro
+
+import robots
+from experiments.command_line import run_verb
+from experiments.reports.text_table import print_table
+from groundwalk.errors import UnknownNameError
+from terrain.bounds import Parameter
+from terrain.catalog import FAMILIES
+from terrain.ground import Ground
+from walk_engine import PARAMETERS, gaits
+
+UNITS = {"_rad": "rad", "_per_m2": "1/m2", "_m": "m"}
+"""By the ends of parameter names."""
+
+Table = tuple[list[str], list[list[str]]]
+"""Headings and rows."""
+
+
+def robot_table() -> Table:
+    """What distinguishes the robots."""
+    rows = []
+    for name in robots.names():
+        robot = robots.get(name)
+        leg = robots.biped(robot).leg
+        leg_m = leg.thigh_m + leg.tibia_m + leg.ankle_height_m
+        rows.append(
+            [name, f"{robot.mass_kg:.3f}", f"{leg_m:.3f}", f"{len(robot.joints)}"]
+        )
+    return ["robot", "mass [kg]", "leg [m]", "joints"], rows
+
+
+def terrain_table() -> Table:
+    """Every family, its own parameters, and those that all have."""
+    common = dataclasses.fields(Ground)
+    known = {field.name for field in common}
+    rows = []
+    for name, family in FAMILIES.items():
+        rows.append([name, *[""] * 5, _summary(family)])
+        own = [field for field in dataclasses.fields(family) if field.name not in known]
+        rows += [["", *_bounds(field), ""] for field in own]
+    rows.append(["every terrain", *[""] * 5, _summary(Ground)])
+    rows += [["", *_bounds(field), ""] for field in common]
+    headings = ["terrain", "parameter", "unit", "default", "from", "to", "what it is"]
+    return headings, rows
+
+
+def gait_table() -> Table:
+    """Every parameter, and its value in each gait."""
+    named = {name: gaits.get(name) for name in gaits.names()}
+    rows = [
+        [
+            parameter.name,
+            parameter.unit,
+            *(f"{gait[parameter.name]:g}" for gait in named.values()),
+            f"{parameter.low:g}",
+            f"{parameter.high:g}",
+            parameter.meaning,
+        ]
+        for parameter in PARAMETERS
+    ]
+    return ["parameter", "unit", *named, "from", "to", "what it does"], rows
+
+
+TABLES = {"robots": robot_table, "terrains": terrain_table, "gaits": gait_table}
+
+
+@dataclass(frozen=True)
+class List:
+    """Say what robots, terrains or gaits there are, and their parameters.
+
+    A terrain is given as its name, or with parameters as in
+    lumps:amplitude_m=0.012,x_range_m=-1:8; a gait as its name or as a JSON file.
+
+    Attributes:
+      kind: robots, terrains or gaits.
+    """
+
+    kind: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="KIND")]
+
+    def __post_init__(self) -> None:
+        """Refuse what there is no list of."""
+        if self.kind not in TABLES:
+            raise UnknownNameError("list", self.kind, TABLES)
+
+
+def main(config: List) -> None:
+    """Print the list."""
+    print_table(*TABLES[config.kind]())
+
+
+def _bounds(field: "dataclasses.Field[Parameter]") -> list[str]:
+    """A terrain parameter's name, unit, default and bounds."""
+    unit = next((UNITS[end] for end in UNITS if field.name.endswith(end)), "1")
+    default = field.default if isinstance(field.default, tuple) else (field.default,)
+    texts = [":".join(f"{value:g}" for value in default)]
+    texts += [f"{bound:g}" for bound in field.metadata["bounds"]]
+    return [field.name, unit, *texts]
+
+
+def _summary(family: type) -> str:
+    """The first line of what it says of itself."""
+    return (family.__doc__ or "").partition("\n")[0]
+
+
+if __name__ == "__main__":
+    run_verb(List, main)

@@ -1,0 +1,1 @@
+"""Motions that make a robot show what it is like."""

@@ -1,0 +1,1 @@
+"""The study of `groundwalk real-robots`: cases, claims, page."""

@@ -1,0 +1,133 @@
+"""Recordings of real robots that are at hand, and what others say of these robots."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from diagnosis.traces.torque_drive import DriveBy
+from worlds import ServoGains
+
+
+@dataclass(frozen=True)
+class Published:
+    """A value that others found.
+
+    Attributes:
+      effect: name of the effect that stands for it.
+      parameter: of the effect.
+      value: in SI units, with the sign that the effect gives it.
+      text: what it is, for a page.
+      at: of a force: position at which a spring found in its stead is read; a value so
+        read has no interval, and must be right to a fifth.
+    """
+
+    effect: str
+    parameter: str
+    value: float
+    text: str
+    at: float | None = None
+
+
+@dataclass(frozen=True)
+class Sane:
+    """Bounds of what a parameter can be on hardware of this kind."""
+
+    low: float
+    high: float
+    why: str
+
+
+@dataclass(frozen=True)
+class RealRobot:
+    """One robot's recordings, and what to hold an answer against.
+
+    Attributes:
+      title: of the page.
+      folder: of the recordings, in the folder of all data.
+      model: name of the robot, or a file in that folder.
+      about: where data, model and servo gains are from.
+      gains: of all servos, where the model has none.
+      drive: as `groundwalk diagnose` has it, likewise the next.
+      least_share: of the error that an effect must explain.
+      published: what others found.
+      sane: by parameter, as "effect.parameter", what is possible.
+      pulses: number of pulses that were added at the actuator's input.
+      twice: whether kept-out motions shall be predicted twice as well.
+    """
+
+    title: str
+    folder: str
+    model: str
+    about: str
+    gains: ServoGains | None = None
+    drive: DriveBy = "servos"
+    least_share: float | None = None
+    published: tuple[Published, ...] = ()
+    sane: Mapping[str, Sane] | None = None
+    pulses: int = 0
+    twice: bool = False
+
+
+_SO101_KP, _SO101_LIMIT = 7.8, 2.94
+
+ROBOTS = {
+    "so101": RealRobot(
+        title="SO-101: what the URDF with ideal servos lacks",
+        folder="so101",
+        model="so101",
+        about="""Twelve motions of a real arm (SAGE data set, Apache-2.0), nobody has
+labelled what its model lacks. The model is `so101.urdf` of example-robot-data with the
+servos of the data sheet (Feetech STS3215 at 12 V): stall torque 2.94 N m, no load at
+45 rpm, so 0.62 N m s/rad of back-EMF; its firmware's P of 16 is a duty cycle of 2.66
+per radian (0.166 each, as Rhoban's BAM measured it), so 7.8 N m/rad.""",
+        gains=ServoGains(_SO101_KP, 0.62, _SO101_LIMIT),
+        twice=True,
+        sane={
+            "servo_gain.factor": Sane(0.5, 2.0, "4 to 15 N m/rad are plausible"),
+            "servo_damping.factor": Sane(0.2, 3.0, "supply of 6 to 14 V, and gears"),
+            "viscous_friction.coefficient": Sane(0.0, 0.6, "less than the back-EMF"),
+            "coulomb_friction.torque": Sane(0.01, 0.6, "a fifth of the stall torque"),
+            "stribeck_friction.coulomb_torque": Sane(0.0, 0.6, "as dry friction"),
+            "stribeck_friction.extra_torque": Sane(0.0, 0.6, "as dry friction"),
+            "load_friction.share": Sane(0.0, 0.7, "plastic and metal spur gears"),
+            "backlash.gap": Sane(0.0, 0.03, "data sheet: 0.5 degrees, worn more"),
+            "armature.inertia": Sane(0.0, 0.05, "BAM: 0.028 kg m^2"),
+            "encoder_offset.offset": Sane(-0.2, 0.2, "homed by hand"),
+            "command_latency.delay": Sane(0.0, 0.06, "three ticks of 20 ms"),
+            "sensor_delay.delay": Sane(0.0, 0.06, "three ticks of 20 ms"),
+            "torque_limit.torque": Sane(0.3, _SO101_LIMIT, "below the stall torque"),
+            "speed_limit.speed": Sane(0.5, 8.0, "about the no-load speed"),
+            "joint_spring.stiffness": Sane(0.0, 0.5, "a bundle of cables"),
+        },
+    ),
+    "emps": RealRobot(
+        title="EMPS: friction behind a closed position loop, and pulses",
+        folder="emps",
+        model="emps.xml",
+        about="""A real ball-screw axis at 1 kHz (nonlinearbenchmark.org): reference,
+position and motor force of two runs; in the second, force pulses were added at the
+actuator. The model is its mass of 95.11 kg and its documented controller. In closed
+loop the position hardly shows friction: the measured motor force drives the model, and
+its controller only says where the pulses are.""",
+        drive="torques",
+        least_share=0.001,
+        published=(
+            Published("coulomb_friction", "torque", 20.39, "Coulomb friction [N]"),
+            Published(
+                "viscous_friction", "coefficient", 203.5, "viscous friction [N s/m]"
+            ),
+            Published(
+                "external_force", "x", 3.16, "force offset, as an outer force [N]"
+            ),
+        ),
+        pulses=25,
+    ),
+    "go2": RealRobot(
+        title="Go2 in the air: a verdict with its doubts",
+        folder="go2",
+        model="go2",
+        about="""One recording of a real Unitree Go2 held in the air (BSD-3): positions
+and their targets at 200 Hz, spaced evenly after the fact. The model is `go2.urdf` of
+example-robot-data, its base fixed and level, with the stated joint servos.""",
+        gains=ServoGains(20.0, 1.5, 23.7),
+    ),
+}

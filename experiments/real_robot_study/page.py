@@ -1,0 +1,166 @@
+"""A diagnosis of a real robot as a page of Markdown."""
+
+from collections.abc import Sequence
+
+from diagnosis.verdict.verdict import Found, Verdict
+from experiments.diagnosis_report.numbers import estimate_text, percent
+from experiments.diagnosis_report.text import BADGES, answer, next_step
+from experiments.real_robot_study.cases import RealRobot
+from experiments.real_robot_study.claims import claims_of, sane_bounds
+from experiments.reports.report import markdown_table
+from experiments.runs.folder import RunFolder
+from experiments.transfer.claims import write_transfer_page
+
+MUCH = 2.0
+"""Times the noise: what is left above it is told."""
+
+NOTES = """
+Intervals are of 80 %. "Real less sim" is the rms error on recordings, or parts of them,
+that neither the fit nor the choice of effects has seen; "regression" is what a flexible
+regression without physics reaches there. "Effect elsewhere" and "wrong effect" replace
+the main effect only. How often such probabilities are right is told by
+[concealed cases](concealed.md); no real robot has told it.
+"""
+
+
+def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> None:
+    """Write `result.md` and `report.html` into the run's folder.
+
+    Args:
+      folder: of the diagnosis.
+      robot: that was diagnosed.
+      verdict: the answer.
+    """
+    body = [" ".join(robot.about.split()), "", f"## Verdict: {BADGES[verdict.kind]}"]
+    body += ["", *_effects(robot, verdict.effects), "", *_doubts(verdict)]
+    body += ["", "## Real less sim, kept out of the fit", "", *_fit(verdict)]
+    body += _pulses(verdict)
+    body += ["", "## What was used for what", "", *_recordings(verdict), NOTES.rstrip()]
+    claims = claims_of(robot, verdict)
+    write_transfer_page(folder, robot.title, claims, body, answer(verdict))
+
+
+def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
+    """A row for each parameter that data can show."""
+    rows = []
+    for effect in sorted(effects, key=lambda one: (one.place, one.name)):
+        for name, value in effect.parameters.items():
+            if name in ("start", "duration") and effect.when.kind == "always":
+                continue
+            bounds = sane_bounds(robot, effect.name, name)
+            sure = percent(effect.probability)
+            text = estimate_text(value)
+            rows.append([effect.place, effect.name, name, text, sure, bounds])
+    if not rows:
+        return ["Nothing was named."]
+    columns = ["place", "effect", "parameter", "value", "sure", "possible"]
+    return markdown_table(columns, rows)
+
+
+def _doubts(verdict: Verdict) -> list[str]:
+    """What else it may be, what these data cannot tell, what is left."""
+    lines = [
+        f"- {effect.name} at {effect.place} may as well be "
+        + ", ".join(
+            f"{other.name} at {other.place}" for other in effect.confusable_with
+        )
+        for effect in verdict.effects
+        if effect.confusable_with
+    ]
+    lines += [
+        "- as a whole it may be "
+        + " with ".join(f"{one.name} at {one.place}" for one in answer)
+        for answer in verdict.alternatives
+    ]
+    lines += _rest_of_fit(verdict)
+    lines += _may_be_nothing(verdict.effects)
+    rest = verdict.unexplained
+    if rest is not None:
+        lines.append(
+            f"- {percent(rest.share)} of the squared error above the noise is left "
+            f"unexplained, most of it in {rest.channel}, ordered by {rest.against}"
+        )
+    lines += [f"- {limit}" for limit in verdict.limits]
+    step = next_step(verdict)
+    lines += [f"- next: {step}"] if step else []
+    return ["Doubts:", "", *(lines or ["- none"])]
+
+
+def _rest_of_fit(verdict: Verdict) -> list[str]:
+    """What the corrected sim leaves, and whether there is more to be explained."""
+    fit = verdict.fit
+    if fit is None or fit.corrected <= MUCH * fit.floor:
+        return []
+    left = f"- {fit.corrected:.1f} times the noise is left"
+    if fit.ceiling is not None and fit.ceiling < fit.corrected:
+        left += (
+            f", and a regression without physics leaves {fit.ceiling:.1f}: something "
+            "else is there that these effects do not say"
+        )
+    parts = [name.partition("[")[0] for name in verdict.recordings.test]
+    known = {name.partition("[")[0] for name in verdict.recordings.fit}
+    if known >= set(parts):
+        return [left, "- what was kept out is parts of the recordings that were fitted"]
+    return [left]
+
+
+def _may_be_nothing(effects: Sequence[Found]) -> list[str]:
+    """Effects whose first value may be 0."""
+    names = [
+        f"{effect.name} at {effect.place}"
+        for effect in effects
+        if (first := next(iter(effect.parameters.values()))).low <= 0 <= first.high
+    ]
+    return [f"- may be nothing: {', '.join(names)}"] if names else []
+
+
+def _fit(verdict: Verdict) -> list[str]:
+    """Errors by channel, and of all together."""
+    fit = verdict.fit
+    if fit is None:
+        return ["Nothing was kept out."]
+    columns = ["channel", "unit", "as it was", "corrected", "noise", "regression"]
+    columns += ["effect elsewhere", "wrong effect"]
+    every = {
+        **{name: (one, one.unit) for name, one in fit.channels.items()},
+        "all": (fit, "noise"),
+    }
+    rows = [
+        [name, unit]
+        + [
+            "-" if value is None else f"{value:.3g}"
+            for value in (
+                *(one.nominal, one.corrected, one.floor, one.ceiling),
+                *(one.wrong_place, one.wrong_effect),
+            )
+        ]
+        for name, (one, unit) in every.items()
+    ]
+    return markdown_table(columns, rows)
+
+
+def _pulses(verdict: Verdict) -> list[str]:
+    """When something was added to a servo's torque."""
+    if not verdict.pulses:
+        return []
+    columns = ["recording", "joint", "from [s]", "to [s]", "size", "came in at"]
+    rows = [
+        [
+            *(one.recording, one.joint, f"{one.start_s:.3f}", f"{one.end_s:.3f}"),
+            *(f"{one.torque:.1f} {one.unit}", one.source),
+        ]
+        for one in verdict.pulses
+    ]
+    return ["", "## Pulses", "", *markdown_table(columns, rows)]
+
+
+def _recordings(verdict: Verdict) -> list[str]:
+    used = verdict.recordings
+    return [
+        f"- {use}: {', '.join(names)}"
+        for use, names in (
+            ("fitted", used.fit),
+            ("to select effects", used.select),
+            ("kept out", used.test),
+        )
+    ] + [f"- {verdict.seconds:.0f} s"]

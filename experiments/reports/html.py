@@ -1,0 +1,108 @@
+"""HTML pages that need nothing else: no script, no style, no picture from outside."""
+
+import base64
+import html
+import mimetypes
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
+    from markdown_it.rules_core import StateCore
+    from markdown_it.token import Token
+
+FOLDER = "folder"
+TEMPLATES = Path(__file__).parent / "templates"
+
+
+def render(template: str, **values: Any) -> str:
+    """A page from a template in `templates/`; texts are escaped.
+
+    Args:
+      template: its file; it extends `report_base.html.jinja`.
+      **values: what the template shows.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+    )
+    return environment.get_template(template).render(**values)
+
+
+def body_html(markdown: str, folder: Path) -> str:
+    """Markdown with tables as HTML, its pictures embedded.
+
+    HTML within the Markdown is shown as text. A picture that is not there, or is
+    somewhere else than beside the page, leaves its words.
+
+    Args:
+      markdown: the text.
+      folder: where the pictures are.
+    """
+    return str(_parser().render(markdown, {FOLDER: folder}))
+
+
+def sentence_html(markdown: str) -> str:
+    """A paragraph as HTML, without the paragraph's own tags; it has no pictures."""
+    return str(_parser().renderInline(markdown))
+
+
+def _parser() -> "MarkdownIt":
+    from markdown_it import MarkdownIt
+
+    parser = MarkdownIt("js-default")
+    parser.core.ruler.push("pictures", _pictures_stand_alone)
+    parser.add_render_rule("image", _figure)
+    parser.add_render_rule("table_open", _wide_open)
+    parser.add_render_rule("table_close", _wide_close)
+    return parser
+
+
+def _pictures_stand_alone(state: "StateCore") -> None:
+    """A paragraph that is a picture is no paragraph, but a figure."""
+    for k, token in enumerate([] if state.inlineMode else state.tokens):
+        if token.type == "inline" and _is_picture(token.children or []):
+            state.tokens[k - 1].hidden = state.tokens[k + 1].hidden = True
+
+
+def _is_picture(children: "Sequence[Token]") -> bool:
+    return [child.type for child in children] == ["image"]
+
+
+def _figure(
+    renderer: object,
+    tokens: "Sequence[Token]",
+    index: int,
+    options: object,
+    env: Mapping[str, Path],
+) -> str:
+    """A picture with its words below; only the words where it cannot be embedded."""
+    token = tokens[index]
+    words = html.escape(token.content)
+    name = str(token.attrGet("src"))
+    path = env.get(FOLDER, Path()) / name
+    if Path(name).name != name or not path.is_file():
+        return f"<em>{words}</em>\n"
+    return (
+        f'<figure><img src="{data_uri(path)}" alt="{words}">'
+        f"<figcaption>{words}</figcaption></figure>\n"
+    )
+
+
+def data_uri(path: Path) -> str:
+    """A file as an address that holds all of it."""
+    kind, _ = mimetypes.guess_type(path.name)
+    content = base64.b64encode(path.read_bytes()).decode("ascii")
+    return f"data:{kind or 'application/octet-stream'};base64,{content}"
+
+
+def _wide_open(*rule: object) -> str:
+    return '<div class="wide"><table>\n'
+
+
+def _wide_close(*rule: object) -> str:
+    return "</table></div>\n"

@@ -1,0 +1,204 @@
+"""What the doctor looks at, one small check a thing.
+
+Needs nothing but Python itself, so that it can still speak when all else is missing.
+"""
+
+import enum
+import importlib.metadata
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError
+from pathlib import Path
+
+TESTED_PYTHON = (3, 11)
+
+PINS = Path(__file__).resolve().parents[2] / "constraints.txt"
+"""The tested versions of packages; only a checkout has this file."""
+
+IMPORTS = {
+    "absl-py": "absl",
+    "example-robot-data": "",  # files only
+    "mujoco": "mujoco.batch",
+    "markdown-it-py": "markdown_it",
+    "pyyaml": "yaml",
+    "rerun-sdk": "rerun",
+    "sb3-contrib": "sb3_contrib",
+}
+"""What to import of a package where it is not of the package's name."""
+
+
+class State(enum.StrEnum):
+    """How a finding is."""
+
+    OK = "ok"
+    NOTE = "note"
+    """Works, but not as tested; or a comfort is missing."""
+    FAIL = "fail"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line of the report.
+
+    Attributes:
+      name: what was looked at.
+      state: how it is.
+      found: what is there.
+      advice: what to do; empty where there is nothing to do.
+    """
+
+    name: str
+    state: State
+    found: str
+    advice: str = ""
+
+
+def check_python(version: tuple[int, int]) -> Finding:
+    """The running Python, by its major and minor version."""
+    found = ".".join(map(str, version))
+    if version == TESTED_PYTHON:
+        return Finding("Python", State.OK, found)
+    state = State.NOTE if version > TESTED_PYTHON else State.FAIL
+    return Finding("Python", state, found, "3.11 is tested: make PYTHON=python3.11 env")
+
+
+def import_problem(module: str) -> str:
+    """The last line of what a failing import says; nothing if it works.
+
+    Imports in a process of its own: an engine may print from C, or crash.
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", f"import {module}"],
+        capture_output=True,
+        text=True,
+        errors="replace",
+    )
+    if done.returncode == 0:
+        return ""
+    said = done.stderr.strip().splitlines()
+    return said[-1] if said else f"exit status {done.returncode}"
+
+
+def check_package(
+    requirement: str,
+    tested: str | None,
+    find_version: Callable[[str], str] = importlib.metadata.version,
+    find_problem: Callable[[str], str] = import_problem,
+) -> Finding:
+    """Whether a package is there, new enough, and can be imported.
+
+    Args:
+      requirement: name and least version, as "mujoco>=4.0".
+      tested: the version that is tested, if it is known.
+      find_version: gives a package's version or raises PackageNotFoundError.
+      find_problem: imports a module; says what went wrong, nothing if it works.
+    """
+    name, least = requirement.split(">=")
+    wanted = f"{name}=={tested}" if tested else f"'{requirement}'"
+    install = f"pip install {wanted}"
+    try:
+        version = find_version(name)
+    except PackageNotFoundError:
+        return Finding(name, State.FAIL, "not installed", install)
+    found = f"{version} (needs >={least}, tested {tested or 'unknown'})"
+    if _numbers(version) < _numbers(least):
+        return Finding(name, State.FAIL, found, install)
+    module = IMPORTS.get(name, name)
+    if problem := module and find_problem(module):
+        reinstall = f"pip install --force-reinstall {wanted}"
+        return Finding(name, State.FAIL, f"{version}: {problem}", reinstall)
+    public, _, _ = version.partition("+")  # "2.13.0+cpu" is a build of 2.13.0
+    if tested and public != tested:
+        return Finding(name, State.NOTE, found, install)
+    return Finding(name, State.OK, found)
+
+
+def check_packages() -> list[Finding]:
+    """All packages that groundwalk requires."""
+    try:
+        declared = importlib.metadata.requires("groundwalk") or []
+    except PackageNotFoundError:
+        return [Finding("groundwalk", State.FAIL, "not installed", "make env")]
+    pins = _pins(PINS)
+    required = [line for line in declared if ";" not in line]  # none of the extras
+    tested = [pins.get(line.split(">=")[0]) for line in required]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(check_package, required, tested))
+
+
+def check_robot_files(files: Sequence[Path]) -> Finding:
+    """Whether the URDFs and meshes of example-robot-data are on the disk.
+
+    Args:
+      files: those that the package lists.
+    """
+    install = "pip install --force-reinstall --no-deps example-robot-data"
+    urdfs = [file for file in files if file.suffix == ".urdf"]
+    meshes = [file for file in files if file.suffix.lower() in {".dae", ".obj", ".stl"}]
+    lost = sum(not file.is_file() for file in urdfs + meshes)
+    found = f"{len(urdfs)} URDFs and {len(meshes)} meshes, {lost} of them lost"
+    state = State.OK if urdfs and meshes and not lost else State.FAIL
+    advice = install if state is State.FAIL else ""
+    return Finding("robot files", state, found, advice)
+
+
+def check_viewer(path: str) -> Finding:
+    """Whether the Rerun viewer is there.
+
+    Args:
+      path: the folders to search, as in the variable PATH.
+    """
+    viewer = shutil.which("rerun", path=path)
+    if viewer is None:
+        advice = "to open recordings here: pip install rerun-sdk"
+        return Finding("Rerun viewer", State.NOTE, "not found", advice)
+    return Finding("Rerun viewer", State.OK, viewer)
+
+
+def check_folder(folder: Path) -> Finding:
+    """Whether runs can be written into a folder."""
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            return Finding("this folder", State.OK, "can be written to")
+    except OSError as error:
+        advice = "go to a folder that can be written to"
+        return Finding("this folder", State.FAIL, str(error.strerror), advice)
+
+
+def examine() -> list[Finding]:
+    """Everything that there is to say about this machine."""
+    beside = str(Path(sys.executable).parent)
+    return [
+        check_python(sys.version_info[:2]),
+        *check_packages(),
+        check_robot_files(_files_of("example-robot-data")),
+        check_viewer(os.pathsep.join([beside, os.environ.get("PATH", "")])),
+        Finding("cores", State.OK, str(os.cpu_count())),
+        check_folder(Path.cwd()),
+    ]
+
+
+def _numbers(version: str) -> list[int]:
+    return [int(number) for number in re.findall(r"\d+", version)]
+
+
+def _pins(path: Path) -> dict[str, str]:
+    if not path.is_file():
+        return {}
+    lines = path.read_text().splitlines()
+    return dict(line.split("==") for line in lines if "==" in line)
+
+
+def _files_of(package: str) -> list[Path]:
+    try:
+        files = importlib.metadata.files(package) or []
+    except PackageNotFoundError:
+        return []
+    return [Path(str(file.locate())) for file in files]

@@ -1,0 +1,63 @@
+"""The command line that does a run again."""
+
+import shlex
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+
+from experiments.command_line import VERBS
+from experiments.runs.options import options_of
+
+NOT_REPEATED = frozenset({"out", "resume", "json"})
+"""Options that say where a run goes to, not what it is."""
+
+
+def repeat_command(verb: str, config: Any) -> str:
+    """The command line that does a run again.
+
+    It is the process's own; where Python called, as in a notebook, it is the one with
+    the options that are not at their defaults.
+
+    Args:
+      verb: what runs, as in `RunFolder.create`: a study has its verb in front.
+      config: its configuration, a dataclass.
+    """
+    program = _program(Path(sys.argv[0]))
+    if program:
+        return shlex.join([*program, *sys.argv[1:]])
+    words = [verb] if verb in VERBS else verb.split("-", 1)
+    return shlex.join(["groundwalk", *words, *_options(config)])
+
+
+def _program(path: Path) -> list[str]:
+    """How this process was started; nothing if it was by other code than ours."""
+    if path.name == "groundwalk":
+        return ["groundwalk"]
+    ours = Path(__file__).parents[1]
+    if path.suffix == ".py" and path.is_relative_to(ours):
+        words = path.relative_to(ours.parent).with_suffix("").parts
+        module = ".".join(words).removesuffix(".__main__")
+        commands = module == "experiments.command_line"
+        return ["groundwalk"] if commands else ["python", "-m", module]
+    return []
+
+
+def _options(config: Any) -> Iterator[str]:
+    """The words for all options that are not at their defaults."""
+    import tyro
+
+    hints = get_type_hints(type(config), include_extras=True)
+    for field in options_of(config):
+        value = getattr(config, field.name)
+        if field.name in NOT_REPEATED or value == field.default:
+            continue
+        if tyro.conf.Positional not in get_args(hints[field.name]):
+            yield _flag(field.name, value)
+        if not isinstance(value, bool):
+            yield from map(str, value if isinstance(value, tuple) else [value])
+
+
+def _flag(name: str, value: Any) -> str:
+    prefix = "--no-" if value is False else "--"
+    return prefix + name.replace("_", "-")

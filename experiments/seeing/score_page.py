@@ -1,0 +1,84 @@
+"""A run's scores as a page: every number written by the run itself."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from experiments.reports.intervals import wilson
+from experiments.reports.origin import Origin
+from experiments.reports.report import Report, markdown_table
+from experiments.reports.score_table import Scores
+from experiments.runs.folder import RESULT, RunFolder
+from experiments.seeing.run_pictures import SEARCH_PICTURE, WALK_PICTURE
+from walk_engine import PARAMETERS
+
+PICTURES = {
+    WALK_PICTURE: "The first trial of each gait in each world",
+    SEARCH_PICTURE: "The search: reward and falls over the generations",
+}
+COLUMNS = ("world", "gait", "speed [cm/s] ± s.d.", "falls", "fall rate, 95 % interval")
+MOST_NAMED = 3
+"""Gaits that the answer speaks of one by one."""
+
+
+def write_page(folder: RunFolder, title: str, scores: Scores) -> None:
+    """Write the report of a run that has its result and its pictures.
+
+    Args:
+      folder: the run.
+      title: what was asked, as a heading.
+      scores: by world and gait.
+    """
+    result = folder.read_json(RESULT)
+    body = score_lines(scores)
+    for picture, words in PICTURES.items():
+        if folder.has(picture):
+            body += ["", f"![{words}]({picture})"]
+    if "gait" in result:
+        body += ["", "## The tuned gait", "", *gait_lines(result["gait"])]
+    answer = list(score_answer(scores))
+    Report(title, answer, body, Origin.of_run(folder)).write(folder.path)
+
+
+def score_answer(scores: Scores) -> Iterator[str]:
+    """How fast the gaits were and how often they fell: a sentence for each world."""
+    for world, gaits in scores.items():
+        where = "real world" if world == "real" else world
+        if len(gaits) <= MOST_NAMED:
+            said = ", ".join(f"{name} walks {_went(gaits[name])}" for name in gaits)
+        else:
+            best = min(gaits, key=lambda name: _rank(gaits[name]))
+            said = (
+                f"the one of {len(gaits)} gaits that falls least is {best}: "
+                f"{_went(gaits[best])}"
+            )
+        yield f"In the {where}, {said}."
+
+
+def _went(score: Mapping[str, Any]) -> str:
+    falls, trials = score["falls"], score["trials"]
+    often = f"falls in {falls} of {trials} trials" if falls else "never falls"
+    return f"{score['speed_cm_s']:.1f} cm/s and {often}"
+
+
+def _rank(score: Mapping[str, Any]) -> tuple[float, float]:
+    return score["falls"] / score["trials"], -score["speed_cm_s"]
+
+
+def score_lines(scores: Scores) -> list[str]:
+    """A table of speeds with their spread, and of falls with Wilson's interval."""
+    rows = []
+    for world, gaits in scores.items():
+        for gait, score in gaits.items():
+            low, high = wilson(score["falls"], score["trials"])
+            speed = f"{score['speed_cm_s']:.1f} ± {score['speed_std']:.1f}"
+            falls = f"{score['falls']}/{score['trials']}"
+            rows.append([world, gait, speed, falls, f"{low:.0%} to {high:.0%}"])
+    return markdown_table(COLUMNS, rows)
+
+
+def gait_lines(gait: Mapping[str, float]) -> list[str]:
+    """A table of a gait's parameters beside the constants of 2014."""
+    rows = [
+        [p.name, p.unit, f"{p.default:g}", f"{gait[p.name]:.4g}"] for p in PARAMETERS
+    ]
+    return markdown_table(["parameter", "unit", "2014", "tuned"], rows)

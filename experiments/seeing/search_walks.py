@@ -1,0 +1,80 @@
+"""The best gaits of a search walk once more, for somebody to look at them."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import robots
+from experiments.optimize_gait import OptimizeGait, rate, search_grounds
+from experiments.runs.progress import progress
+from experiments.walking.recorder import Recorder
+from terrain import Heightfield, TerrainSpec
+from walk_engine import Gait
+from worlds import End, RecordingMetadata
+from worlds.rerun_files.search_history import SearchWalk
+from worlds.scenes.scene import Scene
+
+_NEEDED = ("robot", "terrain", "sim", "seed", "threads")
+
+
+def search_config(stored: Mapping[str, Any]) -> OptimizeGait:
+    """What a search walked on and with, from a run's `config.json`.
+
+    Raises:
+      GroundwalkError: something of it is not there any more, or cannot be.
+    """
+    given = {name: stored[name] for name in _NEEDED if name in stored}
+    if given.get("sim") is not None:
+        given["sim"] = Path(given["sim"])
+    return OptimizeGait(**given)
+
+
+def walk_again(config: OptimizeGait, best: Sequence[Gait]) -> list[SearchWalk]:
+    """Let the best gait of each generation walk as it did when it was rated.
+
+    Side by side in one sim, each on its generation's ground.
+
+    Args:
+      config: of the search.
+      best: the best gait of each generation, from the first one on.
+    """
+    description = robots.get(config.robot)
+    specs = search_grounds(config, len(best))
+    grounds = _shared([spec.make() for spec in specs])
+    recorder = Recorder(description, range(len(best)))
+    with progress("best gaits walk", len(best)) as bar:
+        trials, rewards = rate(
+            config, best, grounds, recorder=recorder, on_end=bar.advance
+        )
+    walks = []
+    for k, gait in enumerate(best):
+        about = _metadata(config, specs[k], gait, f"generation {k}", trials.ended[k])
+        recording = recorder.recording(k, about)
+        scene = Scene(f"generation-{k}", recording, description, grounds[k])
+        distance_m, time_s = float(trials.distance_m[k]), float(trials.time_s[k])
+        walks.append(SearchWalk(scene, distance_m, time_s, float(rewards[k])))
+    return walks
+
+
+def _metadata(
+    config: OptimizeGait, ground: TerrainSpec, gait: Gait, of: str, end: End
+) -> RecordingMetadata:
+    return RecordingMetadata(
+        robot=config.robot,
+        base="floating",
+        source=f"groundwalk, the best gait of {of} of a search",
+        terrain=ground.to_json(),
+        gait=dict(gait),
+        world="sim",
+        end=str(end),
+    )
+
+
+def _shared(grounds: Sequence[Heightfield]) -> list[Heightfield]:
+    """The same grounds, but one object where all are alike: a sim then loads one."""
+    first = grounds[0]
+    if all(np.array_equal(first.heights_m, one.heights_m) for one in grounds):
+        return [first] * len(grounds)
+    return list(grounds)

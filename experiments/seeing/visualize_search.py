@@ -1,0 +1,104 @@
+"""A run's search in Rerun, along the timeline `generation`: the best gaits walk."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from experiments.optimize_gait import VERB
+from experiments.runs.folder import CONFIG, HISTORY, RunFolder
+from experiments.seeing.search_walks import search_config, walk_again
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import GroundwalkError, RunFolderError
+from walk_engine import Gait
+from walk_engine.gait import PARAMETERS
+from worlds.rerun_files.search import write_search
+from worlds.rerun_files.search_history import SearchHistory
+
+SEARCH_RERUN = "search.rrd"
+
+Entries = Sequence[Mapping[str, Any]]
+
+
+def visualize_search(folder: RunFolder) -> Path | None:
+    """Write a run's search for Rerun, and let its best gaits walk for that.
+
+    Of earlier versions nobody knows the best gaits. Where they cannot walk any more,
+    the page of each generation says why.
+
+    Returns:
+      The file; None if there is no history, as before the first generation.
+
+    Raises:
+      RunFolderError: the history is damaged.
+    """
+    if not folder.has(HISTORY):
+        return None
+    path = folder.path / HISTORY
+    entries = folder.read_json(HISTORY).get("generations")
+    if not entries:
+        raise RunFolderError(f"{path} holds no generations")
+    try:
+        history = read_history(entries)
+    except (KeyError, TypeError, ValueError) as error:
+        raise RunFolderError(f"{path} is damaged: {error!r}") from None
+    identity = hashlib.sha256(json.dumps(entries).encode()).hexdigest()[:32]
+    rerun = folder.path / SEARCH_RERUN
+    write_search(rerun, _with_walks(folder, history, entries), identity)
+    return rerun
+
+
+def _with_walks(
+    folder: RunFolder, history: SearchHistory, entries: Entries
+) -> SearchHistory:
+    """With the walk of each generation's best gait, or why there is none."""
+    if not all(entry.get("best_gait") for entry in entries):
+        return history
+    try:
+        stored = folder.read_json(CONFIG)
+        if stored.get("verb") != VERB:
+            raise RunFolderError(f"{CONFIG} is of {stored.get('verb')!r}, not {VERB!r}")
+        best = [Gait.from_mapping(entry["best_gait"]) for entry in entries]
+        return history._replace(walks=walk_again(search_config(stored), best))
+    except GroundwalkError as error:
+        return history._replace(no_walks=str(error))
+
+
+def read_history(entries: Entries) -> SearchHistory:
+    """What `optimize-gait` notes, generation by generation, as columns.
+
+    Entries of earlier versions have no `best_gait`; parameters that nobody noted are
+    left out.
+
+    Raises:
+      KeyError: an entry lacks what every version has noted.
+    """
+    mean = _columns(entries, "mean_gait")
+    ranges = np.array([parameter.high - parameter.low for parameter in PARAMETERS])
+    spread = {}
+    if all(len(entry["spread"]) == len(PARAMETERS) for entry in entries):
+        values = np.array([entry["spread"] for entry in entries]) * ranges
+        columns = zip(PARAMETERS, values.T, strict=True)
+        spread = {parameter.name: column for parameter, column in columns}
+    return SearchHistory(
+        rewards=[np.array(entry["rewards"], float) for entry in entries],
+        falls=np.array([entry["falls"] for entry in entries], float),
+        mean_reward=np.array([entry["mean_reward"] for entry in entries], float),
+        mean=mean,
+        spread={name: spread[name] for name in mean if name in spread},
+        best=_columns(entries, "best_gait"),
+        units={"reward": "cm/s"} | {one.name: one.unit for one in PARAMETERS},
+    )
+
+
+def _columns(entries: Entries, key: str) -> dict[str, FloatArray]:
+    """(generations,) each parameter of a gait, NaN in entries that lack it."""
+    gaits = [entry.get(key, {}) for entry in entries]
+    return {
+        parameter.name: np.array([gait.get(parameter.name, np.nan) for gait in gaits])
+        for parameter in PARAMETERS
+        if any(parameter.name in gait for gait in gaits)
+    }

@@ -1,0 +1,1 @@
+"""Cliff walking: the tabular study of the SGAT paper."""

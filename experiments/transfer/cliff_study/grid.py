@@ -1,0 +1,69 @@
+"""Cliff walking: a grid with a goal, a cliff in between, and random moves."""
+
+import numpy as np
+
+from groundwalk.arrays import IntArray
+from groundwalk.errors import BadValueError
+from sgat.tabular.mdp import FiniteMdp
+
+MOVES = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
+"""Rows and columns that each action goes; in the paper's order."""
+
+GOAL, CLIFF, STEP = 100.0, -10.0, -0.1
+"""Rewards of the paper; every step has its price, the last one included."""
+
+LEAST_ROWS, LEAST_COLUMNS = 2, 3
+
+
+def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
+    """The grid world of the paper's figures on cliff walking.
+
+    Cell (row, column) is state row * columns + column, the first row on top. Episodes
+    begin bottom left and end on the goal bottom right, or in the cliff: all of the
+    bottom row between the two. A move into a wall has no effect.
+
+    Args:
+      rows: of the grid.
+      columns: of the grid.
+      noise: at each step, chance that the move is a random one of the four instead of
+        the chosen one. Without noise it is the simulator.
+
+    Raises:
+      BadValueError: there is no room for a cliff, or noise is no probability.
+    """
+    if rows < LEAST_ROWS or columns < LEAST_COLUMNS:
+        raise BadValueError(
+            f"the grid is {rows} x {columns}; it must be at least "
+            f"{LEAST_ROWS} x {LEAST_COLUMNS}"
+        )
+    if not 0 <= noise <= 1:
+        raise BadValueError(f"noise is {noise}; it must be from 0 to 1")
+    states = rows * columns
+    row, column = np.divmod(np.arange(states), columns)
+    chosen = np.zeros((states, len(MOVES), states))
+    for action, (down, right) in enumerate(MOVES.values()):
+        to_row = np.clip(row + down, 0, rows - 1)
+        to_column = np.clip(column + right, 0, columns - 1)
+        chosen[np.arange(states), action, to_row * columns + to_column] = 1
+    transition = (1 - noise) * chosen + noise * chosen.mean(axis=1, keepdims=True)
+    start, goal = states - columns, states - 1
+    reward = np.full(states, STEP)
+    reward[start + 1 : goal] += CLIFF
+    reward[goal] += GOAL
+    return FiniteMdp(transition, reward, np.arange(states) > start, start)
+
+
+def intended_path(sim: FiniteMdp, policy: IntArray) -> list[int]:
+    """The states that a policy goes through where no move is random.
+
+    Args:
+      sim: a deterministic world.
+      policy: (S,) actions.
+
+    Returns:
+      States from the start to an end, or to the first one that is met again.
+    """
+    path = [sim.start]
+    while not sim.ends[path[-1]] and path[-1] not in path[:-1]:
+        path.append(int(sim.transition[path[-1], policy[path[-1]]].argmax()))
+    return path

@@ -1,0 +1,94 @@
+"""One real world of cliff walking: what each method's policy returns there."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from experiments.transfer.cliff_study.grid import cliff_walking, intended_path
+from groundwalk.arrays import IntArray
+from groundwalk.errors import BadValueError
+from sgat.tabular.loop import TabularLoop, ground_until_calm
+from sgat.tabular.mdp import FiniteMdp
+from sgat.tabular.planning import expected_return, policy_iteration
+from sgat.tabular.rollouts import STEP_LIMIT, roll_out
+
+UNGROUNDED, GAT, SGAT, OPTIMUM = METHODS = ("no grounding", "GAT", "SGAT", "optimum")
+"""Planned in the sim, in the sim grounded by either, and in the real world itself."""
+
+SAMPLES = {GAT: False, SGAT: True}
+
+Row = dict[str, Any]
+"""A `noise` value, and what came of each of its `methods`."""
+
+
+@dataclass(frozen=True)
+class CliffStudy:
+    """How methods are compared.
+
+    Attributes:
+      rows: of the grid.
+      columns: of the grid.
+      episodes: in the real world, of each policy.
+      loop: of grounding and planning.
+    """
+
+    rows: int
+    columns: int
+    episodes: int
+    loop: TabularLoop
+
+    def __post_init__(self) -> None:
+        """Refuse grids without a cliff, and returns without a standard error."""
+        cliff_walking(self.rows, self.columns)
+        if self.episodes < 2:
+            raise BadValueError(f"episodes is {self.episodes}; it must be at least 2")
+
+
+def compare(study: CliffStudy, noise: float, seed: np.random.SeedSequence) -> Row:
+    """Find each method's policy, and let it walk in the real world.
+
+    Args:
+      study: how.
+      noise: of the real world.
+      seed: of its luck. All methods have the same: what differs is what they do.
+    """
+    of_data, of_trials = seed.spawn(2)
+    sim = cliff_walking(study.rows, study.columns)
+    real = cliff_walking(study.rows, study.columns, noise)
+    settled = {
+        name: ground_until_calm(
+            sim, real, samples, study.loop, np.random.default_rng(of_data)
+        )
+        for name, samples in SAMPLES.items()
+    }
+    policies = {UNGROUNDED: policy_iteration(sim)}
+    policies |= {name: found.policy for name, found in settled.items()}
+    policies[OPTIMUM] = policy_iteration(real)
+    methods = {}
+    for name, policy in policies.items():
+        luck = np.random.default_rng(of_trials)
+        path = np.divmod(intended_path(sim, policy), study.columns)
+        methods[name] = {
+            **_returns(real, policy, study.episodes, luck),
+            "path": np.transpose(path).tolist(),
+        }
+    for name, found in settled.items():
+        methods[name] |= {
+            "grounding_steps": found.steps,
+            "real_transitions": found.transitions,
+            "calm": found.calm,
+        }
+    return {"noise": noise, "methods": methods}
+
+
+def _returns(
+    real: FiniteMdp, policy: IntArray, episodes: int, luck: np.random.Generator
+) -> dict[str, Any]:
+    trials = roll_out(real, policy, episodes, luck)
+    return {
+        "mean": trials.mean,
+        "standard_error": trials.standard_error,
+        "exact": expected_return(real, policy, STEP_LIMIT),
+        "cut": trials.cut,
+    }

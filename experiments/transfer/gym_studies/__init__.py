@@ -1,0 +1,1 @@
+"""Half cheetah and inverted pendulum: the Gymnasium studies of the SGAT paper."""

@@ -1,0 +1,103 @@
+"""The sims of the Gymnasium studies, and the noisy, heavier worlds that are real."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import gymnasium as gym
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.heavier_bodies import quiet_compiler, scale_mass
+from sgat.gym.grounded_env import GroundedEnv, RewardOf
+from sgat.transformers.action_noise import ActionNoise
+from sgat.transformers.action_transformer import Transformer
+
+Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
+
+NOISY_SIM, NOISY_REAL = "noisy-sim", "noisy-real"
+"""Settings: what is real differs from the sim by noise only, or by masses, too."""
+
+
+@dataclass(frozen=True)
+class Domain:
+    """An environment of Gymnasium, and how its real world differs.
+
+    Attributes:
+      environment: its name; as it is, it is the sim.
+      mass_factor: of the real world's heavier bodies.
+      heavy_bodies: their names; none stands for all.
+      control_cost: what the reward charges for the action's square.
+      settings: that the paper shows.
+    """
+
+    environment: str
+    mass_factor: float
+    heavy_bodies: tuple[str, ...] = ()
+    control_cost: float = 0.0
+    settings: tuple[str, ...] = (NOISY_REAL,)
+
+    def sim(self, transformer: Transformer | None = None) -> Environment:
+        """The sim, or the sim behind an action transformer.
+
+        The reward is always that of the policy's own action, as the paper defines it.
+        """
+        return self._behind(transformer, self._plain())
+
+    def noisy_sim(self, noise: float) -> Environment:
+        """The sim behind noise; see `real`."""
+        return self._behind(self._noise(noise), self._plain())
+
+    def real(self, setting: str, noise: float) -> Environment:
+        """A world that stands for the real one.
+
+        Args:
+          setting: `NOISY_SIM` or `NOISY_REAL`.
+          noise: standard deviation of the Gaussian noise on actions, as a fraction of
+            half of the action's range. It is added, then the sum is clipped to the
+            range, and the policy's array stays as it is.
+        """
+        env = self._plain()
+        if setting == NOISY_REAL:
+            inside = env.unwrapped
+            model, data = getattr(inside, "model"), getattr(inside, "data")  # noqa: B009
+            scale_mass(model, data, self.mass_factor, self.heavy_bodies)
+        return self._behind(self._noise(noise), env)
+
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """(a,) least and (a,) largest action."""
+        space = self._plain().action_space
+        assert isinstance(space, gym.spaces.Box)
+        return space.low.astype(float), space.high.astype(float)
+
+    def _plain(self) -> Environment:
+        with quiet_compiler():
+            return gym.make(self.environment, disable_env_checker=True)
+
+    def _noise(self, noise: float) -> ActionNoise:
+        low, high = self.bounds()
+        return ActionNoise(noise * float((high - low).max()) / 2, low, high)
+
+    def _behind(self, transformer: Transformer | None, env: Environment) -> Environment:
+        if transformer is None:
+            return env
+        return GroundedEnv(env, transformer, self._reward_of())
+
+    def _reward_of(self) -> RewardOf | None:
+        """Charges the policy's action instead of the one that the environment got."""
+        if not self.control_cost:
+            return None
+
+        def charged(reward: float, asked: FloatArray, given: FloatArray) -> float:
+            more = np.square(given, dtype=float).sum() - np.square(asked).sum()
+            return reward + self.control_cost * float(more)
+
+        return charged
+
+
+INVERTED_PENDULUM = Domain("InvertedPendulum-v5", 10.0, ("pole",))
+"""The paper's real pendulum: its pole weighs ten times as much (50.186 kg)."""
+
+HALF_CHEETAH = Domain(
+    "HalfCheetah-v5", 20 / 14, (), 0.1, settings=(NOISY_SIM, NOISY_REAL)
+)
+"""The paper's real cheetah weighs 43 % more: 20 instead of 14 kg."""

@@ -1,0 +1,91 @@
+"""The page of a Gymnasium study."""
+
+from typing import Any
+
+from experiments.reports.report import markdown_table
+from experiments.runs.folder import RunFolder
+from experiments.transfer.claims import Claim, write_transfer_page
+from experiments.transfer.gym_studies.grounding import REAL_EXPLORATION, SIM_EXPLORATION
+from experiments.transfer.gym_studies.rows import WAYS, measures_table, returns_table
+from experiments.transfer.gym_studies.study import GymStudy
+
+NOTES = """
+The sim is {environment} as it is. Real is a sim whose actions are noisy; in the setting
+noisy-real, the mass and inertia of {heavy} are {factor:.4g} times as large, too. Noise
+is Gaussian; its standard deviation is given as a fraction of half of the action's
+range, here {unit:g}. It is added to the action, then the sum is clipped to the range.
+Returns are those of the policy's own actions, also where the reward charges for them.
+
+TRPO (sb3-contrib) first trains {timesteps} steps in the sim: "none". All others go on
+from that policy for as many steps again, each in a world of its own: "gat" and "sgat"
+in the sim grounded by one step of the mean or of a sampled next state, "ane" in the sim
+with noise on actions, "real" in the real world. The last is an upper line only where
+that many steps are enough; the claims on it say where they are not: a policy that falls
+at once learns little from each step.
+The paper's "sgat" samples every dimension of the next state by itself, "sgat-full" all
+of them with their covariance. The noise ratio tells what that is for: noise on actions
+in the grounded sim over that of the sim's actions that would do what real did on data
+that were held out. One noisy force moves several dimensions together; where the samples
+lack that, the inverse model averages the noise away: the grounded sim is too calm.
+Grounding takes {real_steps} transitions of real and {sim_steps} of the sim, by the
+stochastic policy with {real_exploration:.0%} and {sim_exploration:.0%} random actions.
+ANE trains at the levels {envelopes} and takes the
+one that returns most in {search_episodes} episodes on real; what those cost is in the
+table. Each policy is tried for {episodes} episodes on real, with its mean action
+(deterministic) and with random ones (stochastic). Versions 5 of these environments pay
+nothing for the step that fails, so a failed episode returns 1 less than in the paper.
+
+TRPO: {trpo}. These are the values of the grounding papers' own later code where the
+table of its domains has them; the batch and the trust region are the size's own.
+Likelihoods are per dimension, in units of the state. Bias and spread are those of what
+the transformer adds to actions in real data, in the action's unit.
+"""
+
+
+def write_gym_page(
+    folder: RunFolder,
+    title: str,
+    figure: str,
+    what: tuple[str, GymStudy],
+    result: dict[str, Any],
+) -> None:
+    """Write `result.md` into the run's folder, which has the figure already.
+
+    Args:
+      folder: the run.
+      title: what was asked.
+      figure: its file.
+      what: the size's name, and the study.
+      result: its rows and claims.
+    """
+    size, study = what
+    rows = result["rows"]
+    claims = [Claim(**claim) for claim in result["claims"]]
+    grid = f"{study.seeds} seeds, {len(study.noises)} noise values"
+    body = [f"The grid is {size}: {grid}, {study.timesteps} steps in each training."]
+    body += ["", f"![Returns on real]({figure})", ""]
+    for way in WAYS:
+        body += [f"Returns on real, {way} policies, mean ± standard error over seeds:"]
+        body += ["", *markdown_table(*returns_table(rows, way)), ""]
+    body += ["What it took (means over seeds):", ""]
+    body += [*markdown_table(*measures_table(rows)), "", _notes(study)]
+    write_transfer_page(folder, title, claims, body)
+
+
+def _notes(study: GymStudy) -> str:
+    low, high = study.domain.bounds()
+    return NOTES.format(
+        environment=study.domain.environment,
+        heavy=", ".join(study.domain.heavy_bodies) or "all bodies",
+        factor=study.domain.mass_factor,
+        unit=(high - low).max() / 2,
+        timesteps=study.timesteps,
+        real_steps=study.grounding.real_steps,
+        sim_steps=study.grounding.sim_steps,
+        real_exploration=REAL_EXPLORATION,
+        sim_exploration=SIM_EXPLORATION,
+        envelopes=", ".join(f"{level:g}" for level in study.envelopes),
+        search_episodes=study.search_episodes,
+        episodes=study.episodes,
+        trpo=", ".join(f"{name} {value:g}" for name, value in vars(study.trpo).items()),
+    ).strip()

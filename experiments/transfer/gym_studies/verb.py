@@ -1,0 +1,140 @@
+"""What the Gymnasium studies share: their options, their run, and its resuming."""
+
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from typing import Any, ClassVar
+
+from experiments.reports.score_table import print_json
+from experiments.reports.text_table import print_table
+from experiments.runs.extras import extra
+from experiments.runs.folder import RESULT, RunFolder, open_run
+from experiments.runs.options import RunOptions
+from experiments.runs.progress import progress
+from experiments.transfer.claims import claim_lines
+from experiments.transfer.gym_studies.environments import Domain
+from experiments.transfer.gym_studies.figure import draw_returns
+from experiments.transfer.gym_studies.grounding import GroundingConfig
+from experiments.transfer.gym_studies.page import write_gym_page
+from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
+from experiments.transfer.gym_studies.sizes import Size, SizeName
+from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, Job, do_job
+from groundwalk.errors import BadValueError
+
+
+@dataclass(frozen=True)
+class TransferGym(RunOptions):
+    """Options of a study.
+
+    Options that are not given follow from the size.
+
+    A study is a subclass that names its environment and its sizes.
+
+    Attributes:
+      size: of the grid.
+      seeds: trainings of each method.
+      noises: of the real worlds: standard deviations of the actions' noise, as
+        fractions of half of their range.
+      methods: to compare.
+      timesteps: of each training.
+      episodes: on real, of each policy that was found.
+      threads: trainings at a time, each in a process of its own.
+    """
+
+    domain: ClassVar[Domain]
+    sizes: ClassVar[Mapping[str, Size]]
+
+    size: SizeName = "reduced"
+    seeds: int | None = None
+    noises: tuple[float, ...] | None = None
+    methods: tuple[str, ...] = METHODS
+    timesteps: int | None = None
+    episodes: int | None = None
+    threads: int = 2
+
+    def __post_init__(self) -> None:
+        """Refuse what no run can do, before anything is written."""
+        self.study()
+        if self.threads < 1:
+            raise BadValueError(f"threads is {self.threads}; it must be at least 1")
+        super().__post_init__()
+
+    def study(self) -> GymStudy:
+        """How the methods are compared."""
+        size = self.sizes[self.size]
+        return GymStudy(
+            self.domain,
+            self.domain.settings,
+            size.noises if self.noises is None else self.noises,
+            self.methods,
+            size.seeds if self.seeds is None else self.seeds,
+            size.timesteps if self.timesteps is None else self.timesteps,
+            size.episodes if self.episodes is None else self.episodes,
+            size.trpo,
+            GroundingConfig(size.real_steps, size.sim_steps),
+            size.envelopes,
+            size.search_episodes,
+            self.seed,
+        )
+
+
+def run_study(verb: str, title: str, figure: str, config: TransferGym) -> None:
+    """Compare the methods in every real world, and write everything down.
+
+    Args:
+      verb: as on the command line.
+      title: of the page.
+      figure: its file.
+      config: what to do.
+    """
+    folder, config = open_run(verb, config)
+    study = config.study()
+    cells = _compute(study, folder, config.threads)
+    rows = rows_of(cells)
+    claims = check_claims(rows)
+    result: dict[str, Any] = {
+        "size": config.size,
+        "rows": rows,
+        "claims": [claim.to_json() for claim in claims],
+        "cells": cells,
+    }
+    folder.write_json(RESULT, result)
+    with extra(figure):
+        draw_returns(rows, folder.path / figure)
+    write_gym_page(folder, title, figure, (config.size, study), result)
+    if config.json:
+        print_json(result)
+    else:
+        print_table(*returns_table(rows, "deterministic"))
+        print(*claim_lines(claims), f"everything else is in {folder.path}", sep="\n")
+
+
+def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
+    """All cells; files that the run's folder has are not computed again."""
+    stages = study.stages()
+    every = [job for stage in stages for job in stage]
+    done = sum(folder.has(job.file) for job in every)
+    with (
+        progress("trainings and trials", len(every), done=done) as bar,
+        ProcessPoolExecutor(threads, mp_context=get_context("spawn")) as pool,
+    ):
+        for stage in stages:
+            missing = {
+                pool.submit(do_job, study, folder.path, job): job
+                for job in stage
+                if not folder.has(job.file)
+            }
+            try:
+                for future in as_completed(missing):
+                    _keep(folder, missing[future], future.result())
+                    bar.advance()
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+    return [folder.read_json(job.file) for job in stages[-1]]
+
+
+def _keep(folder: RunFolder, job: Job, cell: Cell | None) -> None:
+    if cell is not None:
+        folder.write_json(job.file, cell)

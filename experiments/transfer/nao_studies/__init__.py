@@ -1,0 +1,1 @@
+"""The studies of gaits for the NAO on uneven real ground."""

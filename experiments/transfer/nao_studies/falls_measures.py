@@ -1,0 +1,152 @@
+"""How good the walking robot's groundings are, before any gait is tried in them."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import robots
+from experiments.grounded_walks.data import leg_senses
+from experiments.grounded_walks.methods import ENSEMBLE, SGAT, WalkModels
+from experiments.grounded_walks.sim import ROBOT
+from experiments.reports.figure_file import write_figure
+from groundwalk.arrays import FloatArray
+from robots import biped
+from sgat.grounding_report import GroundingReport
+from sgat.transitions import Transitions
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MEASURES_FIGURE = "transfer_nao_falls_measures.png"
+MEASURED = (SGAT, ENSEMBLE)
+ROWS = 500
+"""States at which transformed actions are looked at."""
+
+TICK_MS = 10
+MEASURE_HEADINGS = (
+    "grounding",
+    "R² joints",
+    "R² gyroscope",
+    "R² tilt",
+    "10 ticks ahead, joints [mrad]",
+    "log-likelihood",
+    "within 90 %",
+    "lag-1 correlation",
+    "excess kurtosis",
+    "action shift [mrad]",
+    "action spread [mrad]",
+)
+
+Measures = Mapping[str, Mapping[str, Any]]
+
+
+def measures_of(
+    models: WalkModels, unseen: Transitions, seed: np.random.SeedSequence
+) -> dict[str, dict[str, Any]]:
+    """By grounding, its models' measures on real walks that they have not seen."""
+    senses = leg_senses(robots.get(ROBOT))
+    found = {}
+    for name in MEASURED:
+        forward = models.ensemble if name == ENSEMBLE else models.forward
+
+        def advance(state: FloatArray, action: FloatArray) -> FloatArray:
+            outcome = forward.predict(state, action)  # noqa: B023
+            return senses.advanced(state, action, outcome)
+
+        report = GroundingReport.of(forward, unseen, advance)
+        found[name] = json.loads(report.to_json()) | _actions(
+            models, name, unseen, seed
+        )
+    return found
+
+
+def _actions(
+    models: WalkModels, name: str, unseen: Transitions, seed: np.random.SeedSequence
+) -> dict[str, list[float]]:
+    """What the transformer adds to the commands of each joint, over many states."""
+    transformer = models.grounded(name).transformer
+    assert transformer is not None
+    rows = np.random.default_rng(seed).choice(unseen.n, min(ROWS, unseen.n), False)
+    transformer.reset(np.random.SeedSequence(seed.entropy).spawn(len(rows)))
+    action = unseen.action[rows]
+    added = transformer(unseen.state[rows], action) - action
+    return {
+        "action_shift_rad": added.mean(axis=0).tolist(),
+        "action_spread_rad": added.std(axis=0).tolist(),
+    }
+
+
+def measure_rows(measures: Measures) -> list[list[str]]:
+    """A row for each grounding; medians over joints or dimensions."""
+    joints = _leg_joints()
+    rows = []
+    for name, found in measures.items():
+        share = np.array(found["one_step_r_squared"], float)
+        ahead = np.array(found["multi_step_error"], float)[-1, :joints]
+        level = found["levels"].index(0.9)
+        rows.append(
+            [
+                name,
+                *(
+                    f"{np.nanmedian(part):.2f}"
+                    for part in (share[:joints], share[joints:-2], share[-2:])
+                ),
+                f"{1e3 * np.median(ahead):.0f}",
+                f"{found['log_likelihood']:.2f}",
+                f"{np.median(found['coverage'][level]):.0%}",
+                f"{np.nanmedian(np.array(found['autocorrelation'][0], float)):.2f}",
+                f"{np.nanmedian(np.array(found['excess_kurtosis'], float)):.1f}",
+                f"{1e3 * np.median(np.abs(found['action_shift_rad'])):.1f}",
+                f"{1e3 * np.median(found['action_spread_rad']):.1f}",
+            ]
+        )
+    return rows
+
+
+def draw_measures(measures: Measures, path: Path) -> None:
+    """Draw into a PNG file; see `measures_figure`."""
+    write_figure(measures_figure(measures), path)
+
+
+def measures_figure(measures: Measures) -> "Figure":
+    """What is predicted, how errors grow, how calibrated and how white the rest is."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.0, 3.4), dpi=160, layout="constrained")
+    shares, growth, calibration, memory = figure.subplots(1, 4)
+    names = _outcome_names()
+    for k, (name, found) in enumerate(measures.items()):
+        share = np.array(found["one_step_r_squared"], float)
+        shares.barh(np.arange(len(share)) + 0.4 * k, share, 0.4, label=name)
+        ahead = 1e3 * np.array(found["multi_step_error"], float)[:, : _leg_joints()]
+        ticks = TICK_MS * np.arange(1, len(ahead) + 1)
+        growth.plot(ticks, np.median(ahead, axis=1), marker=".")
+        within = np.median(np.array(found["coverage"], float), axis=1)
+        calibration.plot(found["levels"], within, marker="o")
+        lags = np.array(found["autocorrelation"], float)
+        memory.plot(TICK_MS * np.arange(1, len(lags) + 1), np.nanmedian(lags, axis=1))
+    shares.set_yticks(np.arange(len(names)) + 0.2, names, fontsize=5)
+    shares.set(xlabel="R² of one tick's change", xlim=(0, 1))
+    shares.legend(fontsize=7, frameon=False)
+    calibration.plot([0.5, 1], [0.5, 1], color="0.7", linewidth=1)
+    growth.set(xlabel="ahead [ms]", ylabel="median joint error [mrad]", ylim=(0, None))
+    calibration.set(xlabel="interval", ylabel="residuals within it")
+    memory.axhline(0, color="0.7", linewidth=1)
+    memory.set(xlabel="lag [ms]", ylabel="correlation of residuals")
+    for panel in (shares, growth, calibration, memory):
+        panel.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def _leg_joints() -> int:
+    return len(leg_senses(robots.get(ROBOT)).joints)
+
+
+def _outcome_names() -> Sequence[str]:
+    description = robots.get(ROBOT)
+    legs = biped(description)
+    joints = [description.joints[i] for i in (*legs.left_leg, *legs.right_leg)]
+    return [*joints, "gyro x", "gyro y", "gyro z", "tilt x", "tilt y"]

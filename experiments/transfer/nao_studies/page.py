@@ -1,0 +1,229 @@
+"""The NAO study's table, its claims and its page."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from experiments.grounded_walks.courses import RealCourse
+from experiments.grounded_walks.data import ON_COURSE
+from experiments.grounded_walks.groundings_words import UNEVEN_MEANS
+from experiments.grounded_walks.methods import GAT, NONE, SGAT, UNEVEN
+from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S, RATED
+from experiments.grounded_walks.step import LUMPS_MARGIN
+from experiments.reports.intervals import wilson
+from experiments.reports.report import markdown_table
+from experiments.runs.folder import RunFolder
+from experiments.transfer.claims import Claim, write_transfer_page
+from experiments.transfer.nao_studies.figure import FIGURE
+from experiments.walking.search_run import RATINGS
+from terrain import Flat, Lumps, configuration, parse
+
+CELLS = "cells"
+DIAGNOSED = "diagnosed"
+DIAGNOSED_SIM = f"{DIAGNOSED} sim"
+HEADINGS = ("method", "step", "speed [cm/s]", "falls", "95 % interval", "real walks")
+GOAL_SPEED_CM_S, GOAL_FALLS, SIGNIFICANT = 18.0, 0.1, 0.05
+
+Cell = Mapping[str, Any]
+
+
+def table_of(cells: Sequence[Cell]) -> list[list[str]]:
+    """The cells as text."""
+    rows = []
+    for cell in sorted(cells, key=lambda cell: cell["step"]):
+        low, high = wilson(cell["falls"], cell["trials"])
+        rows.append(
+            [
+                cell["method"],
+                str(cell["step"]),
+                f"{cell['speed_mean']:.1f} ± {cell['speed_std']:.1f}",
+                f"{cell['falls']}/{cell['trials']}",
+                f"{low:.0%} to {high:.0%}",
+                str(cell["real_walks"]),
+            ]
+        )
+    return rows
+
+
+def more_falls_p(often: Cell, seldom: Cell) -> float:
+    """Fisher's exact test: how likely the difference is if both fall as often.
+
+    One-sided: the first falls more often (Fisher 1922; the paper counts ten trials).
+    """
+    from scipy.stats import fisher_exact
+
+    table = [
+        [cell["falls"], cell["trials"] - cell["falls"]] for cell in (often, seldom)
+    ]
+    return float(fisher_exact(table, alternative="greater").pvalue)
+
+
+def faster_p(fast: Cell, slow: Cell) -> float:
+    """Welch's test: how likely the difference in speed is if both are as fast.
+
+    One-sided: the first is faster (Welch 1947).
+    """
+    from scipy.stats import ttest_ind_from_stats
+
+    numbers = [
+        cell[key]
+        for cell in (fast, slow)
+        for key in ("speed_mean", "speed_std", "trials")
+    ]
+    test = ttest_ind_from_stats(*numbers, equal_var=False, alternative="greater")
+    return float(test.pvalue)
+
+
+def claims_of(cells: Sequence[Cell]) -> list[Claim]:
+    """What the paper's table says, and whether it came out so.
+
+    There are none if a method that is spoken of was not tried.
+    """
+    at = {(cell["method"], cell["step"]): cell for cell in cells}
+    if all((name, 1) in at for name in (NONE, DIAGNOSED_SIM)):
+        return [_better_than_nominal(at[DIAGNOSED_SIM, 1], at[NONE, 1])]
+    if not all((name, 2) in at for name in (GAT, SGAT, UNEVEN)):
+        return []
+    gat, sgat, best = (at[name, 2] for name in (GAT, SGAT, UNEVEN))
+    p = more_falls_p(gat, sgat)
+    return [
+        Claim(
+            f"after two steps SGAT walks at least {GOAL_SPEED_CM_S:.0f} cm/s and falls "
+            f"in at most {GOAL_FALLS:.0%} of its trials",
+            _is_good(sgat),
+            f"{_walked(sgat)}",
+        ),
+        Claim(
+            "so does SGAT on an uneven sim",
+            _is_good(best),
+            f"{_walked(best)}",
+        ),
+        Claim(
+            "GAT falls significantly more often",
+            p < SIGNIFICANT,
+            f"{_walked(gat)}; Fisher's exact test, one-sided: p = {p:.2g}",
+        ),
+        Claim(
+            "on an uneven sim SGAT tunes a better gait than on the flat",
+            _earned(best) > _earned(sgat),
+            f"{_walked(best)} against {_walked(sgat)}",
+        ),
+    ]
+
+
+def _better_than_nominal(diagnosed: Cell, nominal: Cell) -> Claim:
+    return Claim(
+        "the gait tuned on the diagnosed sim walks better than the one tuned on the "
+        "nominal sim",
+        _earned(diagnosed) > _earned(nominal),
+        f"{_walked(diagnosed)} against {_walked(nominal)}; one-sided, Fisher's exact "
+        f"test of the falls: p = {more_falls_p(nominal, diagnosed):.2g}, Welch's test "
+        f"of the speeds: p = {faster_p(diagnosed, nominal):.2g}",
+    )
+
+
+def write_nao_page(
+    folder: RunFolder, cells: Sequence[Cell], planned: int, course: RealCourse
+) -> None:
+    """Write `result.md`.
+
+    Args:
+      folder: the run.
+      cells: what is known so far.
+      planned: how many cells there shall be.
+      course: on which gaits were tried.
+    """
+    trials = cells[0]["trials"]
+    missing = planned - len(cells)
+    body = [
+        *([f"Not finished: {missing} of {planned} rows are to come."] * (missing > 0)),
+        f"Every gait walked the same grounds, courses of 3 m {_ground(course)},",
+        f"{trials} trials. Speed is forward, until the fall where the robot",
+        "fell; its spread is the standard deviation over trials. Intervals are",
+        "Wilson's.",
+        *_hidden(course, cells),
+        "",
+        f"![Speed and falls of every gait]({FIGURE})",
+        "",
+        *markdown_table(HEADINGS, table_of(cells)),
+        "",
+        f"{SGAT}'s noise is white, as in the paper.",
+        *_uneven(cells),
+        "All groundings learn from the same real walks, half of them with noise on the",
+        "commands.",
+        f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
+        f"{RATED.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the ground has lumps.",
+        "What a search finds is the best of its generations' mean gaits, each rated",
+        f"{RATINGS} times more.",
+        "*real walks*: what the method has seen of the real world before its trials.",
+    ]
+    title = "Do gaits from grounded sims hold in the real world?"
+    write_transfer_page(folder, title, claims_of(cells), body, answer_of(cells))
+
+
+def _ground(course: RealCourse) -> str:
+    name, parameters = parse(course.terrain)
+    match configuration(name, **parameters):
+        case Flat():
+            return "on flat ground"
+        case Lumps(amplitude_m=height_m, wavelength_m=length_m):
+            return (
+                f"on lumps of {1000 * height_m:.0f} mm that are "
+                f"{100 * length_m:.0f} cm long"
+            )
+        case _:
+            return f"of `{course.terrain}`"
+
+
+def _uneven(cells: Sequence[Cell]) -> tuple[str, ...]:
+    """What the uneven sim is, where there is one."""
+    if not any(UNEVEN in cell["method"] for cell in cells):
+        return ()
+    margin = f"{LUMPS_MARGIN:g} times as high as that, for a margin."
+    return (*UNEVEN_MEANS, f"A search's lumps are {margin}")
+
+
+def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
+    """What the real world has that the model lacks, and what a diagnosis does to it."""
+    if not course.hidden:
+        return []
+    found = any(DIAGNOSED in cell["method"] for cell in cells)
+    return [
+        "",
+        "Besides its latency, real has physics that the model lacks: "
+        + "; ".join(effect.to_text() for effect in course.hidden)
+        + ".",
+        *(["A *diagnosed* sim has what a diagnosis of recordings found."] * found),
+    ]
+
+
+def answer_of(cells: Sequence[Cell]) -> list[str]:
+    """The best gait beside the one of the sim as it is, and the goal."""
+    best = max(cells, key=_earned)
+    step = f", step {best['step']}" if best["step"] else ""
+    good = "It reaches" if _is_good(best) else "It does not reach"
+    said = f"The best gait is that of {best['method']}{step}: {_walked(best)}."
+    for cell in cells:
+        if cell["method"] == NONE and cell is not best:
+            said += f" The gait tuned in the sim as it is: {_walked(cell)}."
+    return [
+        said,
+        f"{good} the goal of {GOAL_SPEED_CM_S:.0f} cm/s with falls in at most "
+        f"{GOAL_FALLS:.0%} of the trials.",
+    ]
+
+
+def _is_good(cell: Cell) -> bool:
+    share = cell["falls"] / cell["trials"]
+    return bool(cell["speed_mean"] >= GOAL_SPEED_CM_S and share <= GOAL_FALLS)
+
+
+def _walked(cell: Cell) -> str:
+    return (
+        f"{cell['speed_mean']:.1f} ± {cell['speed_std']:.1f} cm/s, "
+        f"{cell['falls']} falls of {cell['trials']}"
+    )
+
+
+def _earned(cell: Cell) -> float:
+    """Speed less 15 cm/s a fall: the paper's reward."""
+    return float(cell["speed_mean"] - 15 * cell["falls"] / cell["trials"])

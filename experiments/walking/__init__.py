@@ -1,0 +1,1 @@
+"""Gaits that walk: trials, rewards, searches."""

@@ -1,0 +1,78 @@
+"""A Gymnasium environment whose actions first pass through an action transformer."""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.spaces import Box
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from sgat.transformers.action_transformer import Transformer
+
+Wrapper: TypeAlias = gym.Wrapper[FloatArray, FloatArray, FloatArray, FloatArray]
+Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
+RewardOf = Callable[[float, FloatArray, FloatArray], float]
+"""The environment's reward, the policy's action and the transformed one to a reward."""
+
+
+class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
+    """Passes the policy's action through a transformer, then to the environment.
+
+    The transformer's state is the observation. `info["transformed_action"]` tells what
+    the environment was given.
+    """
+
+    def __init__(
+        self,
+        env: Environment,
+        transformer: Transformer,
+        reward_of: RewardOf | None = None,
+    ) -> None:
+        """Wrap an environment.
+
+        Args:
+          env: with Box actions and observations of one axis.
+          transformer: of one robot's actions; it belongs to this environment alone,
+            and one made of its `spec` gets a copy.
+          reward_of: None leaves the reward as it is: the environment's for the
+            transformed action, so that a cost of control is paid for that one. The
+            paper's reward is one of the policy's action; this can put it right.
+        """
+        gym.utils.RecordConstructorArgs.__init__(
+            self, transformer=transformer, reward_of=reward_of
+        )
+        super().__init__(env)
+        for space in (env.observation_space, env.action_space):
+            if not isinstance(space, Box) or len(space.shape) != 1:
+                raise BadValueError(f"a space is {space}; it must be a Box of one axis")
+        self._transformer = transformer
+        self._reward_of = reward_of
+        self._seeds = np.random.SeedSequence()
+        self._state = np.empty((1, 0))
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[FloatArray, dict[str, Any]]:
+        """Start an episode; a seed is the environment's and the transformer's, too."""
+        if seed is not None:
+            self._seeds = np.random.SeedSequence(seed)
+        self._transformer.reset(self._seeds.spawn(1))
+        observation, info = self.env.reset(seed=seed, options=options)
+        self._state = np.array(observation, dtype=float)[None]
+        return observation, info
+
+    def step(
+        self, action: FloatArray
+    ) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
+        """One step of the environment with the transformed action."""
+        asked = np.array(action, dtype=float)
+        given = self._transformer(self._state, asked[None])[0]
+        given = given.astype(self.env.action_space.dtype)
+        observation, reward, terminated, truncated, info = self.env.step(given)
+        self._state = np.array(observation, dtype=float)[None]
+        if self._reward_of is not None:
+            reward = self._reward_of(float(reward), asked, given)
+        info = {**info, "transformed_action": given}
+        return observation, float(reward), terminated, truncated, info

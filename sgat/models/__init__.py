@@ -1,0 +1,1 @@
+"""Networks that learn the dynamics of real and the inverse dynamics of sim."""

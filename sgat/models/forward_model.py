@@ -1,0 +1,234 @@
+"""The real world's dynamics as a distribution over next states."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.errors import BadModelError, BadValueError
+from sgat.models.forward_config import ForwardConfig
+from sgat.models.heads import Head
+from sgat.models.model_file import read_model, write_model
+from sgat.models.network import Float32Array
+from sgat.models.scaled_network import ScaledNetwork
+from sgat.models.scaling import Scaling
+from sgat.models.training import Stage, raw_outputs, squared_error
+from sgat.noise import NoiseStream
+from sgat.transitions import Transitions
+
+_KIND = "forward"
+_GOLDEN = (5**0.5 - 1) / 2
+
+
+class ForwardModel:
+    """p(s' | s, a), learned from transitions.
+
+    What is learned is the change of the state, scaled in each dimension. Fit it to the
+    real world for GAT and SGAT.
+    """
+
+    def __init__(self, config: ForwardConfig | None = None) -> None:
+        """Only remember what to fit."""
+        self.config = ForwardConfig() if config is None else config
+        self._fitted: ScaledNetwork | None = None
+
+    def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
+        """Learn from at least two episodes; the same seed gives the same bits."""
+        head = self.config.make_head(transitions.outcomes)
+        self._fitted = ScaledNetwork.fit(
+            np.hstack([transitions.state, transitions.action]),
+            transitions.change,
+            transitions.episode,
+            head.width,
+            _stages(head),
+            self.config,
+            seed,
+            self.config.members,
+        )
+        return self
+
+    @property
+    def outcomes(self) -> int:
+        """Columns of a next state."""
+        return len(self._network.targets.mean)
+
+    @property
+    def scalings(self) -> tuple[Scaling, Scaling]:
+        """Units of a state beside an action, and of a next state's change."""
+        return self._network.inputs, self._network.targets
+
+    @property
+    def outcome_scale(self) -> FloatArray:
+        """(p,) standard deviation of what it was fitted to, 1 for a constant column."""
+        return self._network.targets.scale
+
+    def action_scale(self, actions: int) -> FloatArray:
+        """(actions,) standard deviation of those it was fitted to, or 1 if constant."""
+        return self._network.inputs.scale[-actions:]
+
+    def predict(self, state: FloatArray, action: FloatArray) -> FloatArray:
+        """(n, p) mean next state: what GAT uses.
+
+        Args:
+          state: (n, s).
+          action: (n, a).
+        """
+        means = [self._head.mean(raw, np) for raw in self._each(state, action)]
+        return self._next_state(state, np.mean(means, axis=0))
+
+    def moments(
+        self, state: FloatArray, action: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Mean (n, p) and covariance (n, p, p) of the next state, over all members."""
+        head, every = self._head, list(self._each(state, action))
+        means = np.array([head.mean(raw, np) for raw in every], dtype=float)
+        off = means - means.mean(axis=0)
+        between = np.einsum("mni,mnj->nij", off, off) / len(every)
+        within = [head.covariance(head.parts(raw, np)) for raw in every]
+        spread = self._network.targets.spread
+        covariance = (between + np.mean(within, axis=0)) * np.outer(spread, spread)
+        return self._next_state(state, means.mean(axis=0)), covariance
+
+    def sample(
+        self, state: FloatArray, action: FloatArray, stream: NoiseStream
+    ) -> FloatArray:
+        """(n, p) a next state for each robot: what SGAT uses.
+
+        Args:
+          state: (n, s).
+          action: (n, a).
+          stream: noise of the n robots, of as many dimensions as a next state has.
+        """
+        z, choice = stream.draw()
+        member = (stream.member() * self.config.members).astype(np.intp)
+        head, raw = self._head, self._raw(state, action, member)
+        return self._next_state(state, head.sample(head.parts(raw, np), z, choice))
+
+    def action_effect(self, state: FloatArray, action: FloatArray) -> FloatArray:
+        """(n, p, a) derivative of the mean next state by the action."""
+        actions = action.shape[1]
+        network = self._network
+        x = network.inputs.to_scaled(np.hstack([state, action]))
+        slopes = [
+            self._head.mean_slope(raw, network.network.slope(member, x, actions))
+            for member, raw in enumerate(self._each(state, action))
+        ]
+        units = network.targets.spread[:, None] / self.action_scale(actions)
+        return np.asarray(np.mean(slopes, axis=0) * units)
+
+    def scaled_change(self) -> Callable[[Tensor], Tensor]:
+        """The mean change as a function that torch can differentiate.
+
+        It takes (n, s + a) states beside actions and gives (n, p), both scaled.
+        """
+        network = self._network.network
+        layers = zip(network.weights, network.biases, strict=True)
+        parameters = [torch.tensor(array) for layer in layers for array in layer]
+
+        def change(x: Tensor) -> Tensor:
+            means: Tensor = self._head.mean(raw_outputs(parameters, x), torch)
+            return means.mean(dim=0)
+
+        return change
+
+    def score(self, transitions: Transitions) -> float:
+        """Mean log-likelihood per transition and dimension, in units of the state.
+
+        More is better. A density has a unit: positive values are no mistake.
+        """
+        head = self._head
+        y = torch.tensor(self._network.targets.to_scaled(transitions.change))
+        densities = [
+            head.log_density(head.parts(torch.tensor(raw).double(), torch), y)
+            for raw in self._each(transitions.state, transitions.action)
+        ]
+        mixture = torch.logsumexp(torch.stack(densities), dim=0) - np.log(
+            len(densities)
+        )
+        units = np.log(self._network.targets.scale).sum()
+        return (float(mixture.mean()) - float(units)) / self.outcomes
+
+    def residuals(self, transitions: Transitions) -> FloatArray:
+        """(N, p) standardised: the noise that `sample` would have needed.
+
+        White and normal if the model were right. Of an ensemble's members each episode
+        has one, as when sampling. Which component of a mixture a next state is
+        taken to come from follows a fixed, evenly spread sequence.
+        """
+        _, index = np.unique(transitions.episode, return_inverse=True)
+        member = index % self.config.members
+        raw = self._raw(transitions.state, transitions.action, member)
+        parts = self._head.parts(raw.astype(float), np)
+        y = self._network.targets.to_scaled(transitions.change)
+        choice = np.modf(np.arange(transitions.n) * _GOLDEN)[0]
+        return self._head.residuals(parts, y, choice)
+
+    def save(self, path: Path) -> None:
+        """Write everything to one file."""
+        write_model(path, _KIND, self.config, self._network)
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read back what `save` has written, to the same bits.
+
+        Raises:
+          BadModelError: the file holds no forward model.
+        """
+        config, network = read_model(path, _KIND, ForwardConfig)
+        model = cls(config)
+        model._fitted = network
+        outputs = config.make_head(model.outcomes).width
+        if (network.network.outputs, network.network.members) != (
+            outputs,
+            config.members,
+        ):
+            raise BadModelError(f"{path} is no model file, or a damaged one")
+        return model
+
+    @property
+    def _network(self) -> ScaledNetwork:
+        if self._fitted is None:
+            raise BadValueError("this forward model has not been fitted")
+        return self._fitted
+
+    @property
+    def _head(self) -> Head:
+        return self.config.make_head(self.outcomes)
+
+    def _raw(
+        self, state: FloatArray, action: FloatArray, member: IntArray
+    ) -> Float32Array:
+        return self._network.raw(np.hstack([state, action]), member)
+
+    def _each(self, state: FloatArray, action: FloatArray) -> Iterator[Float32Array]:
+        for member in range(self.config.members):
+            yield self._raw(state, action, np.full(len(state), member))
+
+    def _next_state(
+        self, state: FloatArray, scaled_change: Float32Array | FloatArray
+    ) -> FloatArray:
+        change = self._network.targets.from_scaled(scaled_change)
+        return state[:, : self.outcomes] + change
+
+
+def _stages(head: Head) -> list[Stage]:
+    """First the mean alone, then the likelihood, then that more finely.
+
+    A likelihood that has yet to find its mean takes the miss for spread, which then
+    keeps the mean from learning.
+    """
+
+    def loss(raw: Tensor, y: Tensor) -> Tensor:
+        return head.loss(head.parts(raw, torch), y)
+
+    def score(raw: Tensor, y: Tensor) -> Tensor:
+        return -head.log_density(head.parts(raw, torch), y)
+
+    def miss(raw: Tensor, y: Tensor) -> Tensor:
+        return squared_error(head.mean(raw, torch), y)
+
+    return [Stage(miss, miss), Stage(loss, score), Stage(loss, score, 0.1)]

@@ -1,0 +1,85 @@
+"""Which action of the sim leads from one state to another."""
+
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadModelError, BadValueError
+from sgat.measures import r_squared
+from sgat.models.model_file import read_model, write_model
+from sgat.models.network_config import NetworkConfig
+from sgat.models.scaled_network import ScaledNetwork
+from sgat.models.training import Stage, squared_error
+from sgat.transitions import Transitions
+
+_KIND = "inverse"
+
+
+class InverseModel:
+    """a = f(s, s') of a deterministic sim, by least squares.
+
+    It sees the state and the state's change. Where several actions lead to the same
+    next state, or the sim is noisy, it answers their mean, which is smaller than any
+    of them: give it data with varied actions.
+    """
+
+    def __init__(self, config: NetworkConfig | None = None) -> None:
+        """Only remember what to fit."""
+        self.config = NetworkConfig() if config is None else config
+        self._fitted: ScaledNetwork | None = None
+
+    def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
+        """Learn from at least two episodes; the same seed gives the same bits."""
+        self._fitted = ScaledNetwork.fit(
+            np.hstack([transitions.state, transitions.change]),
+            transitions.action,
+            transitions.episode,
+            transitions.action.shape[1],
+            [Stage(squared_error, squared_error, rate) for rate in (1.0, 0.1)],
+            self.config,
+            seed,
+        )
+        return self
+
+    def predict(self, state: FloatArray, next_state: FloatArray) -> FloatArray:
+        """(n, a) actions.
+
+        Args:
+          state: (n, s).
+          next_state: (n, p), as wide as in the transitions.
+        """
+        change = next_state - state[:, : next_state.shape[1]]
+        member = np.zeros(len(state), np.intp)
+        scaled = self._network.raw(np.hstack([state, change]), member)
+        return self._network.targets.from_scaled(scaled)
+
+    def score(self, transitions: Transitions) -> FloatArray:
+        """(a,) share of each action's variance that is told, at most 1."""
+        predicted = self.predict(transitions.state, transitions.next_state)
+        return r_squared(predicted, transitions.action)
+
+    def save(self, path: Path) -> None:
+        """Write everything to one file."""
+        write_model(path, _KIND, self.config, self._network)
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read back what `save` has written, to the same bits.
+
+        Raises:
+          BadModelError: the file holds no inverse model.
+        """
+        config, network = read_model(path, _KIND, NetworkConfig)
+        if network.network.outputs != len(network.targets.mean):
+            raise BadModelError(f"{path} is no model file, or a damaged one")
+        model = cls(config)
+        model._fitted = network
+        return model
+
+    @property
+    def _network(self) -> ScaledNetwork:
+        if self._fitted is None:
+            raise BadValueError("this inverse model has not been fitted")
+        return self._fitted

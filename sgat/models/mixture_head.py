@@ -1,0 +1,104 @@
+"""A mixture of normal distributions: for dynamics with more than one outcome."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch.distributions as td
+from torch import Tensor
+
+from groundwalk.arrays import FloatArray, IntArray
+from sgat.models.heads import Head, Parts, bounded
+from sgat.models.network import Float32Array
+
+_LARGEST_LOGIT = 8.0
+"""Weights differ by at most e^16: no component is ever lost for good."""
+
+
+@dataclass(frozen=True)
+class MixtureHead(Head):
+    """Mixture of independent normal distributions (Bishop 1994; the paper's footnote).
+
+    Attributes:
+      components: how many.
+    """
+
+    components: int = 3
+
+    @property
+    def width(self) -> int:
+        """Logits, and mean and log-variance of each component."""
+        return self.components * (1 + 2 * self.dimensions)
+
+    def parts(self, raw: Any, xp: Any) -> Parts:
+        """Weights (..., k), means and standard deviations (..., k, d)."""
+        k, d = self.components, self.dimensions
+        logits = _LARGEST_LOGIT * xp.tanh(raw[..., :k] / _LARGEST_LOGIT)
+        weights = xp.exp(logits)
+        weights = weights / weights.sum(-1)[..., None]
+        rest = raw[..., k:].reshape((*raw.shape[:-1], 2, k, d))
+        return weights, rest[..., 0, :, :], xp.exp(bounded(rest[..., 1, :, :], xp) / 2)
+
+    def log_density(self, parts: Parts, y: Tensor) -> Tensor:
+        """See `Head`."""
+        weights, means, deviations = parts
+        mixture = td.MixtureSameFamily(
+            td.Categorical(weights, validate_args=False),
+            td.Independent(td.Normal(means, deviations, validate_args=False), 1),
+            validate_args=False,
+        )
+        return mixture.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
+
+    def mean(self, raw: Any, xp: Any) -> Any:
+        """Of the components' means."""
+        weights, means, _ = self.parts(raw, xp)
+        return (weights[..., None] * means).sum(-2)
+
+    def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
+        """By the weights and by the components' means."""
+        k, d = self.components, self.dimensions
+        weights, means, _ = self.parts(raw, np)
+        logits = slope[:, :k] / np.cosh(raw[:, :k, None] / _LARGEST_LOGIT) ** 2
+        logits = logits - np.einsum("nk,nka->na", weights, logits)[:, None, :]
+        by_weight = np.einsum("nk,nka,nkd->nda", weights, logits, means)
+        components = slope[:, k : k + k * d].reshape(len(raw), k, d, -1)
+        by_mean = np.einsum("nk,nkda->nda", weights, components)
+        return np.asarray(by_weight + by_mean)
+
+    def covariance(self, parts: Parts) -> FloatArray:
+        """Within the components and between their means."""
+        weights, means, deviations = parts
+        off = means - (weights[..., None] * means).sum(axis=-2, keepdims=True)
+        between = np.einsum("...k,...ki,...kj->...ij", weights, off, off)
+        within = (weights[..., None] * deviations**2).sum(axis=-2)
+        return np.asarray(between + within[..., None] * np.eye(self.dimensions))
+
+    def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
+        """Of the component that the uniform choice falls on."""
+        weights, means, deviations = parts
+        chosen = _pick(weights, choice)
+        return _rows(means, chosen) + _rows(deviations, chosen) * z
+
+    def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
+        """Of a component drawn by its probability of having made y.
+
+        Taking the most probable one would make the residuals of overlapping
+        components look too small.
+        """
+        weights, means, deviations = parts
+        z = (y[..., None, :] - means) / deviations
+        log = np.log(weights) - (z**2 / 2 + np.log(deviations)).sum(axis=-1)
+        posterior = np.exp(log - log.max(axis=-1, keepdims=True))
+        posterior /= posterior.sum(axis=-1, keepdims=True)
+        return _rows(z, _pick(posterior, choice))
+
+
+def _pick(weights: FloatArray, choice: FloatArray) -> IntArray:
+    """(n,) the component on whose part of 0 to 1 the choice (n,) falls."""
+    passed = np.cumsum(weights, axis=-1) <= choice[:, None]
+    return np.asarray(np.minimum(passed.sum(axis=-1), weights.shape[-1] - 1))
+
+
+def _rows(values: FloatArray, chosen: IntArray) -> FloatArray:
+    """(n, d) of the (n, k, d) values, the chosen (n,) component's."""
+    return values[np.arange(len(values)), chosen]

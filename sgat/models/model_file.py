@@ -1,0 +1,65 @@
+"""Models in files: plain tensors and JSON, so that reading one runs no code."""
+
+import io
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TypeVar
+
+import torch
+
+from groundwalk.errors import BadModelError
+from groundwalk.files import write_bytes
+from sgat.models.network_config import NetworkConfig
+from sgat.models.scaled_network import ScaledNetwork
+
+Config = TypeVar("Config", bound=NetworkConfig)
+
+_FORMAT = 1
+
+
+def write_model(
+    path: Path, kind: str, config: NetworkConfig, network: ScaledNetwork
+) -> None:
+    """Write one model into one file.
+
+    Args:
+      path: the file; its folder is made if it is not there.
+      kind: what `read_model` must ask for.
+      config: how the network was made.
+      network: its numbers.
+    """
+    header = {"format": _FORMAT, "kind": kind, "config": asdict(config)}
+    content = io.BytesIO()
+    torch.save({"header": json.dumps(header), "tensors": network.to_tensors()}, content)
+    write_bytes(path, content.getvalue())
+
+
+def read_model(
+    path: Path, kind: str, config_type: type[Config]
+) -> tuple[Config, ScaledNetwork]:
+    """Read back, to the same bits, what `write_model` has written.
+
+    Only tensors and plain values are read (torch's `weights_only`); of whatever else
+    a file may hold, nothing is run.
+
+    Raises:
+      BadModelError: there is no such file, or it holds no sound model of this kind.
+    """
+    try:
+        file = io.BytesIO(path.read_bytes())
+    except OSError as error:
+        raise BadModelError(f"{path} cannot be read: {error.strerror}") from error
+    try:
+        content = torch.load(file, map_location="cpu", weights_only=True)
+        header = json.loads(content["header"])
+        found = header["format"], header["kind"]
+        if found == (_FORMAT, kind):
+            network = ScaledNetwork.from_tensors(content["tensors"])
+            return config_type(**header["config"]), network
+    except Exception as error:  # a foreign file fails in any way it likes
+        raise BadModelError(f"{path} is no model file, or a damaged one") from error
+    raise BadModelError(
+        f"{path} holds a model of kind {found[1]!r}, format {found[0]}; wanted is "
+        f"{kind!r}, format {_FORMAT}"
+    )

@@ -1,0 +1,195 @@
+"""Fitting networks with Adam, early stopping and nothing global."""
+
+import contextlib
+import itertools
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple, Self
+
+import torch
+from torch import Tensor
+
+from groundwalk.arrays import FloatArray
+from sgat.models.network import Network
+from sgat.models.network_config import NetworkConfig
+
+Loss = Callable[[Tensor, Tensor], Tensor]
+"""Raw outputs (members, n, outputs) and targets (n, d) to losses (members, n)."""
+
+_LARGEST_GRADIENT = 10.0
+"""Norm to which a member's gradient is cut: one outlier must not undo an epoch."""
+
+
+def squared_error(raw: Tensor, y: Tensor) -> Tensor:
+    """(members, n) of outputs that start with what is to be told."""
+    return (raw[..., : y.shape[-1]] - y).square().sum(dim=-1)
+
+
+class Stage(NamedTuple):
+    """A part of training; each goes on from the best weights of the one before.
+
+    Attributes:
+      loss: what is made small.
+      score: what is watched on held-out episodes: the loss without whatever only
+        helps it to learn.
+      rate: share of the learning rate.
+    """
+
+    loss: Loss
+    score: Loss
+    rate: float = 1.0
+
+
+class Examples(NamedTuple):
+    """Scaled inputs (n, inputs) and targets (n, d)."""
+
+    x: Tensor
+    y: Tensor
+
+    @classmethod
+    def of(cls, x: FloatArray, y: FloatArray) -> Self:
+        """Examples from NumPy's arrays."""
+        return cls(*(torch.tensor(array, dtype=torch.float32) for array in (x, y)))
+
+
+def train(
+    outputs: int,
+    stages: Sequence[Stage],
+    examples: Examples,
+    weights: FloatArray,
+    held_out: Examples,
+    config: NetworkConfig,
+    generator: torch.Generator,
+) -> Network:
+    """Fit several networks side by side.
+
+    The result depends on the arguments alone: all randomness is the generator's, and
+    one thread computes whatever the machine has.
+
+    Args:
+      outputs: width of the last layer.
+      stages: what to train for, one after the other.
+      examples: n, to learn from.
+      weights: (members, n) how much each network minds each example.
+      held_out: to decide when a stage ends; the best weights for them are kept.
+      config: see there.
+      generator: of the first weights and of the order of the examples.
+    """
+    sizes = [examples.x.shape[1], *config.hidden, outputs]
+    minds = torch.tensor(weights, dtype=torch.float32)
+    with one_thread():
+        parameters = _first_parameters(sizes, len(minds), generator)
+        for stage in stages:
+            epochs = _epochs(stage, parameters, examples, minds, config, generator)
+            keeper = _BestWeights(parameters)
+            keeper.look(_means(stage.score, parameters, held_out))
+            for _ in itertools.islice(epochs, config.epochs):
+                keeper.look(_means(stage.score, parameters, held_out))
+                if keeper.epochs_without_better >= config.patience:
+                    break
+            keeper.restore()
+    arrays = [parameter.detach().numpy() for parameter in parameters]
+    return Network(tuple(arrays[::2]), tuple(arrays[1::2]))
+
+
+@contextlib.contextmanager
+def one_thread() -> Iterator[None]:
+    """Let torch compute with one thread inside: faster for small networks."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+def _first_parameters(
+    sizes: list[int], members: int, generator: torch.Generator
+) -> list[Tensor]:
+    """Weight, bias, weight, bias ...; weights after Glorot and Bengio 2010, eq. 16."""
+    parameters = []
+    for inputs, outputs in itertools.pairwise(sizes):
+        bound = (6 / (inputs + outputs)) ** 0.5
+        uniform = torch.rand(members, inputs, outputs, generator=generator)
+        parameters += [bound * (2 * uniform - 1), torch.zeros(members, 1, outputs)]
+    for parameter in parameters:
+        parameter.requires_grad_()
+    return parameters
+
+
+def raw_outputs(parameters: Sequence[Tensor], x: Tensor) -> Tensor:
+    """(members, n, outputs): what `Network` computes, with gradients."""
+    values = x.expand(len(parameters[0]), *x.shape)
+    for weight, bias in zip(parameters[:-2:2], parameters[1:-2:2], strict=True):
+        values = torch.tanh(torch.baddbmm(bias, values, weight))
+    return torch.baddbmm(parameters[-1], values, parameters[-2])
+
+
+def _epochs(
+    stage: Stage,
+    parameters: list[Tensor],
+    examples: Examples,
+    minds: Tensor,
+    config: NetworkConfig,
+    generator: torch.Generator,
+) -> Iterator[None]:
+    """Each step is one pass through the examples, in random order."""
+    rate = stage.rate * config.learning_rate
+    optimiser = torch.optim.AdamW(
+        parameters, lr=rate, weight_decay=config.weight_decay, fused=True
+    )
+    while True:
+        order = torch.randperm(len(examples.x), generator=generator)
+        for first in range(0, len(order), config.batch):
+            rows = order[first : first + config.batch]
+            losses = stage.loss(
+                raw_outputs(parameters, examples.x[rows]), examples.y[rows]
+            )
+            optimiser.zero_grad()
+            mean = (losses * minds[:, rows]).mean(dim=1)
+            mean.sum().backward()  # type: ignore[no-untyped-call]
+            _cut_gradients(parameters)
+            optimiser.step()
+        yield
+
+
+def _cut_gradients(parameters: list[Tensor]) -> None:
+    """Shorten each member's gradient to the largest norm: members stay independent."""
+    gradients = [p.grad for p in parameters if p.grad is not None]
+    squares = torch.stack([g.square().sum(dim=(1, 2)) for g in gradients])
+    norm = squares.sum(dim=0).sqrt()
+    factor = (_LARGEST_GRADIENT / (norm + 1e-12)).clamp(max=1.0)
+    for gradient in gradients:
+        gradient *= factor[:, None, None]
+
+
+@torch.no_grad()
+def _means(score: Loss, parameters: list[Tensor], examples: Examples) -> Tensor:
+    """(members,) mean score."""
+    return score(raw_outputs(parameters, examples.x), examples.y).mean(dim=1)
+
+
+class _BestWeights:
+    """Each member's parameters at its own best epoch."""
+
+    def __init__(self, parameters: list[Tensor]) -> None:
+        self._parameters = parameters
+        self._best = [p.detach().clone() for p in parameters]
+        self._score = torch.full((len(parameters[0]),), torch.inf)
+        self.epochs_without_better = 0
+
+    def look(self, score: Tensor) -> None:
+        """Keep the parameters of the members that have become better."""
+        better = score < self._score
+        self._score = torch.where(better, score, self._score)
+        for best, now in zip(self._best, self._parameters, strict=True):
+            best[better] = now.detach()[better]
+        if better.any():
+            self.epochs_without_better = 0
+        else:
+            self.epochs_without_better += 1
+
+    @torch.no_grad()
+    def restore(self) -> None:
+        """Put the best parameters back."""
+        for best, now in zip(self._best, self._parameters, strict=True):
+            now.copy_(best)

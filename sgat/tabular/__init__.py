@@ -1,0 +1,1 @@
+"""Grounding in finite worlds, where all of it is a table."""

@@ -1,0 +1,54 @@
+"""GAT and SGAT in finite worlds, where a grounded simulator is a table."""
+
+import dataclasses
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from sgat.tabular.mdp import FiniteMdp
+from sgat.tabular.models import NONE, inverse_model
+
+
+def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMdp:
+    """The simulator behind an action transformer, as a world of its own.
+
+    Args:
+      sim: a deterministic simulator.
+      forward: (S, A, S) the forward model: probabilities of the real next states.
+      samples: whether next states are sampled (SGAT), or the likeliest one is taken
+        (GAT).
+    """
+    transformer = action_transformer(sim, forward, samples)
+    transition = np.einsum("sab,sbn->san", transformer, sim.transition)
+    return dataclasses.replace(sim, transition=transition)
+
+
+def action_transformer(
+    sim: FiniteMdp, forward: FloatArray, samples: bool
+) -> FloatArray:
+    """(S, A, A) with which probability an action becomes which action.
+
+    g(s, a) = f_inv(s, f_real(s, a)). For finite states GAT's deterministic forward
+    model is the likeliest next state, the first of equally likely ones: a mean of
+    states has no meaning here, and the paper speaks of the likeliest. Next states that
+    no action of the sim leads to cannot be imitated: the others' probabilities are
+    scaled up for them, and an action stays as it is where none is left.
+
+    Args:
+      sim: a deterministic simulator.
+      forward: as in `grounded_sim`.
+      samples: as in `grounded_sim`.
+    """
+    inverse = inverse_model(sim)
+    wanted = np.where((inverse != NONE)[:, np.newaxis], forward, 0)
+    if not samples:
+        likeliest = wanted.argmax(axis=-1, keepdims=True)
+        others = np.arange(sim.states) != likeliest
+        wanted = np.where(others, 0, wanted)
+    transformer = np.zeros((sim.states, sim.actions, sim.actions))
+    state, action, after = np.nonzero(wanted)
+    taken = inverse[state, after]
+    np.add.at(transformer, (state, action, taken), wanted[state, action, after])
+    total = transformer.sum(axis=-1, keepdims=True)
+    unchanged = np.eye(sim.actions)
+    return np.where(total > 0, transformer / np.where(total > 0, total, 1), unchanged)

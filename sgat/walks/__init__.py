@@ -1,0 +1,1 @@
+"""Grounding of worlds in which robots walk."""

@@ -1,0 +1,52 @@
+"""A world whose commands first pass through an action transformer."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from sgat.transformers.action_transformer import Transformer
+from sgat.walks.walk_senses import WalkSenses
+from sgat.walks.world_wrapper import WorldWrapper
+from worlds import Observation, World
+
+
+class GroundedWorld(WorldWrapper):
+    """The world inside, made to behave like the one that the transformer knows."""
+
+    def __init__(
+        self,
+        world: World,
+        senses: WalkSenses,
+        transformer: Transformer,
+        seeds: Sequence[np.random.SeedSequence],
+    ) -> None:
+        """Put a transformer before a world.
+
+        Args:
+          world: the sim.
+          senses: what the transformer's models look at.
+          transformer: of actions as `WalkSenses.action` gives them.
+          seeds: one per robot, for the transformer's noise.
+        """
+        super().__init__(world)
+        self._senses, self._transformer = senses, transformer
+        self._seeds = list(seeds)
+
+    def reset(self, pose_rad: FloatArray) -> Observation:
+        """Put every robot on its ground; see `World.reset`."""
+        observation = self.world.reset(pose_rad)
+        self._senses.reset(observation)
+        self._transformer.reset(self._seeds)
+        return observation
+
+    def step(self, command_rad: FloatArray) -> Observation:
+        """Advance by one tick with the transformed command; see `World.step`."""
+        senses = self._senses
+        action = self._transformer(senses.state(), senses.action(command_rad))
+        transformed_rad = senses.command(action, command_rad)
+        # The real world's past commands are those that the gait gave.
+        senses.remember(command_rad)
+        observation = self.world.step(transformed_rad)
+        senses.observe(observation)
+        return observation

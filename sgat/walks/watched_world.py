@@ -1,0 +1,99 @@
+"""A world whose transitions are noted for the models to learn from."""
+
+import numpy as np
+
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.errors import BadValueError
+from sgat.transitions import Transitions
+from sgat.walks.walk_senses import WalkSenses
+from sgat.walks.world_wrapper import WorldWrapper
+from worlds import End, Observation, World
+
+EXPLORATION_MEMORY = 0.9
+"""Lag-1 correlation of the exploration: about ten ticks, so that the torso feels it."""
+
+SETTLING_TICKS = 5
+"""Ticks after the start that are not noted: the history is made up there."""
+
+
+class WatchedWorld(WorldWrapper):
+    """The world inside, with noise on the commands if asked, and a notebook.
+
+    Data of one gait hardly show what an action does: every action comes at its own
+    phase of the step. Noise that lasts for some ticks shows it.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        senses: WalkSenses,
+        exploration_rad: float | FloatArray = 0.0,
+        seed: np.random.SeedSequence | None = None,
+    ) -> None:
+        """Begin to watch.
+
+        Args:
+          world: the world to learn about.
+          senses: what the models shall look at.
+          exploration_rad: standard deviation of the noise on the commands of the
+            grounded joints, one number or one per robot (n, 1); the noise grows to
+            it from none at the start.
+          seed: of that noise.
+
+        Raises:
+          BadValueError: exploration is negative, or has no seed.
+        """
+        super().__init__(world)
+        if not np.all(np.asarray(exploration_rad) >= 0):
+            raise BadValueError("exploration must not be negative")
+        if np.any(np.asarray(exploration_rad) > 0) and seed is None:
+            raise BadValueError("exploration needs a seed")
+        self._senses = senses
+        self._exploration_rad = exploration_rad
+        self._generator = np.random.default_rng(seed)
+
+    def reset(self, pose_rad: FloatArray) -> Observation:
+        """Put every robot on its ground; see `World.reset`. Notes begin anew."""
+        observation = self.world.reset(pose_rad)
+        self._senses.reset(observation)
+        self._noise = np.zeros((self.n, len(self._senses.joints)))
+        self._rows: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        self._walking: list[BoolArray] = []
+        return observation
+
+    def step(self, command_rad: FloatArray) -> Observation:
+        """Advance by one tick, with noise on the command; see `World.step`."""
+        senses, walking = self._senses, self.active
+        self._noise = self._next_noise()
+        state = senses.state()
+        # Added to the command, not to the action: no noise shall change no bit.
+        given_rad = command_rad.copy()
+        given_rad[:, senses.joints] += self._noise
+        action = senses.action(given_rad)
+        senses.remember(given_rad)
+        observation = self.world.step(given_rad)
+        senses.observe(observation)
+        self._rows.append((state, action, senses.outcome()))
+        sound = np.array([end is not End.DIVERGED for end in self.ended])
+        self._walking.append(walking & sound)
+        return observation
+
+    def transitions(self) -> Transitions:
+        """Everything noted since the last reset, robot by robot."""
+        noted = self._rows[SETTLING_TICKS:]
+        if not noted:
+            raise BadValueError(
+                f"nothing was noted: walk more than {SETTLING_TICKS} ticks"
+            )
+        state, action, outcome = (
+            np.stack(columns, axis=1) for columns in zip(*noted, strict=True)
+        )
+        keep = np.stack(self._walking[SETTLING_TICKS:], axis=1)
+        episode = np.broadcast_to(np.arange(self.n)[:, None], keep.shape)
+        return Transitions(state[keep], action[keep], outcome[keep], episode[keep])
+
+    def _next_noise(self) -> FloatArray:
+        rho = EXPLORATION_MEMORY
+        fresh = self._generator.standard_normal(self._noise.shape)
+        scale = self._exploration_rad * np.sqrt(1 - rho * rho)
+        return np.asarray(rho * self._noise + scale * fresh)

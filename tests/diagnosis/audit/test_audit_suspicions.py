@@ -1,0 +1,142 @@
+"""Signals that are not what they seem: units, signs, places, limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from audited_arm import QUANTUM, changed, motions, one, texts
+
+from diagnosis.audit.audit import audit
+from diagnosis.plant.servo import Servo
+
+
+def test_velocity_in_another_unit(trace, plant):
+    rpm = replace(trace, velocity_rad_s=trace.velocity_rad_s * 60 / (2 * np.pi))
+    found = texts([rpm], plant, "refuse")
+    assert len(found) == 3
+    one(found, "velocity.a", "9.5")
+    weak = replace(trace, velocity_rad_s=1.3 * trace.velocity_rad_s)
+    assert texts([weak], plant, "refuse") == []
+
+
+def test_swapped_joints(trace, plant):
+    swapped = replace(
+        trace, position_rad=trace.position_rad[:, [1, 0, 2]], velocity_rad_s=None
+    )
+    found = texts([swapped], plant, "refuse")
+    assert len(found) == 2
+    one(found, "position.a of good follows the command of b")
+    one(found, "position.b of good follows the command of a")
+    turned = replace(
+        trace, position_rad=trace.position_rad[:, [1, 2, 0]], velocity_rad_s=None
+    )
+    assert len(texts([turned], plant, "refuse")) == 3
+
+
+def test_a_bad_joint_is_not_taken_for_a_swapped_one(trace, plant):
+    # b hardly follows and happens to look like a; a is healthy
+    weak = 0.9 * motions(trace.time_s)[:, 0]
+    tired = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 1, weak),
+        velocity_rad_s=None,
+    )
+    assert texts([tired], plant, "refuse") == []
+
+
+def test_flipped_sign(trace, plant):
+    flipped = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 2, -trace.position_rad[:, 2]),
+        velocity_rad_s=None,
+    )
+    one(texts([flipped], plant, "refuse"), "position.c", "runs against its command")
+
+
+def test_degrees_are_refused(trace, plant):
+    both = replace(
+        trace,
+        position_rad=np.degrees(trace.position_rad),
+        command_rad=np.degrees(trace.command_rad),
+        velocity_rad_s=np.degrees(trace.velocity_rad_s),
+    )
+    found = texts([both], plant, "refuse")
+    one(found, "position.a", "degrees")
+    half = replace(trace, position_rad=0.5 * trace.position_rad, velocity_rad_s=None)
+    assert texts([half], plant, "refuse") == []
+    commands = replace(trace, command_rad=np.degrees(trace.command_rad))
+    one(texts([commands], plant, "refuse"), "position.b", "its command", "degrees")
+
+
+def test_clipping(trace, plant):
+    torque = 4 * np.sin(2 * np.pi * 0.7 * trace.time_s)
+    torques = np.zeros_like(trace.position_rad) + torque[:, None]
+    free = replace(trace, torque_nm=torques)
+    assert texts([free], plant, "limit") == []
+    clipped = replace(trace, torque_nm=changed(torques, 1, np.clip(torque, -4, 2)))
+    text = one(texts([clipped], plant, "limit"), "torque.b", "stuck at an extreme")
+    # sin is above one half a third of the time
+    share = audit([clipped], plant).traces[0].channels[-2].clipped_share
+    assert share == pytest.approx(1 / 3, abs=0.02)
+    assert f"{share:.1%}" in text
+
+
+def test_positions_that_come_to_rest_are_not_clipped(trace, plant):
+    steps = np.where(trace.time_s % 4 < 2, 0.0, 1.0)
+    rest = np.zeros_like(steps)
+    for k in range(1, len(rest)):
+        rest[k] = rest[k - 1] + 0.1 * (steps[k] - rest[k - 1])
+    rested = replace(
+        trace,
+        position_rad=changed(trace.position_rad, 0, np.round(rest / QUANTUM) * QUANTUM),
+        command_rad=changed(trace.command_rad, 0, steps),
+        velocity_rad_s=None,
+    )
+    assert audit([rested], plant).findings == ()
+
+
+def test_repeated_rows(trace, plant):
+    position = trace.position_rad.copy()
+    position[1::2] = position[::2]
+    twice = replace(trace, position_rad=position, velocity_rad_s=None)
+    text = one(texts([twice], plant, "limit"), "repeat the positions")
+    assert audit([twice], plant).traces[0].repeated_share == pytest.approx(
+        0.5, abs=0.03
+    )
+    assert "50%" in text or "49%" in text or "51%" in text
+    assert audit([trace], plant).traces[0].repeated_share < 0.02
+
+
+def test_unknown_servo(trace, plant):
+    unknown = replace(trace, servo=Servo.ideal(3))
+    assert len(texts([unknown], plant, "refuse")) == 3
+    one(texts([unknown], plant, "refuse"), "command.a", "no servo gains are known")
+    driven = replace(unknown, torque_nm=1e-2 * trace.velocity_rad_s)
+    assert texts([driven], plant, "refuse") == []
+
+
+def test_joint_without_any_drive(trace, plant):
+    half = replace(trace, command_rad=changed(trace.command_rad, 1, np.nan))
+    one(texts([half], plant, "refuse"), "nothing says what drove b")
+
+
+def test_torques_in_another_unit(trace, plant):
+    torque = 4 * np.sin(trace.time_s)[:, None] * np.ones(3)
+    assert texts([replace(trace, torque_nm=torque)], plant, "refuse") == []
+    milli = replace(trace, torque_nm=1e3 * torque)
+    one(texts([milli], plant, "refuse"), "torque.a", "4e+03")
+
+
+def test_accelerometer_in_g(trace, plant):
+    rng = np.random.default_rng(4)
+    lying = np.array([0.1, 0.0, 9.81]) + 0.1 * rng.normal(size=(trace.ticks, 3))
+    assert texts([replace(trace, accelerometer_m_s2=lying)], plant, "refuse") == []
+    in_g = replace(trace, accelerometer_m_s2=lying / 9.81)
+    one(texts([in_g], plant, "refuse"), "accelerometer", "in g")
+
+
+def test_gyroscope_in_degrees(trace, plant):
+    turning = np.sin(trace.time_s)[:, None] * np.array([3.0, 1.0, 0.5])
+    assert texts([replace(trace, gyroscope_rad_s=turning)], plant, "refuse") == []
+    degrees = replace(trace, gyroscope_rad_s=np.degrees(turning))
+    one(texts([degrees], plant, "refuse"), "gyroscope", "degrees per second")

@@ -1,0 +1,176 @@
+"""Each baseline names what is plain to see, and nothing where nothing is missing.
+
+The truth is MuJoCo at a quarter of a millisecond, driven by a servo written here.
+"""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+import pytest
+
+from diagnosis.baselines import BASELINES, bic, sparse, sysid
+from diagnosis.baselines.sparse import sequential_threshold
+from diagnosis.effects.effect import Placed
+from diagnosis.plant.load import load_plant
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.fitting import fit_all
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Verdict
+from groundwalk.errors import GroundwalkError
+from worlds.recordings.metadata import ServoGains
+
+XML = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody>
+<body name="link"><joint name="swing" axis="0 1 0" range="-3 3"/>
+<inertial pos="0 0 -0.3" mass="0.5" diaginertia="0.002 0.002 0.001"/></body>
+</worldbody></mujoco>"""
+KP, KD, LIMIT = 8.0, 0.2, 4.0
+STEP_S, TICK_S, QUANTUM_RAD = 0.00025, 0.01, 0.0005
+NEEDS_SYSID = pytest.mark.skipif(
+    not hasattr(__import__("mujoco.sysid").sysid, "optimize"),
+    reason="mujoco[sysid] is not installed",
+)
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory):
+    path = tmp_path_factory.mktemp("pendulum") / "pendulum.xml"
+    path.write_text(XML)
+    return load_plant(path, "fixed", servo=ServoGains(KP, KD, LIMIT))
+
+
+def swing(plant, seed, damping=0.0, dry=0.0, gain=1.0, seconds=4.0):
+    """A recording of the pendulum following three sines, with physics added."""
+    spec = mujoco.MjSpec.from_string(XML)
+    spec.option.timestep = STEP_S
+    spec.joint("swing").damping[0] = damping
+    spec.joint("swing").frictionloss = dry
+    model = spec.compile()
+    model.dof_solimp[:] = (0.999, 0.9999, 0.001, 0.5, 2.0)
+    model.dof_solref[:] = (2 * STEP_S, 1.0)
+    data, rng = mujoco.MjData(model), np.random.default_rng(seed)
+    phase, ticks = rng.uniform(0, 2 * np.pi, 3), round(seconds / TICK_S) + 1
+    time_s = TICK_S * np.arange(ticks)
+    waves = np.sin(2 * np.pi * np.outer(time_s, (0.3, 0.8, 1.7)) + phase)
+    command = waves @ np.array([0.5, 0.3, 0.15])
+    data.qpos[0] = command[0]
+    position = np.zeros(ticks)
+    for row in range(ticks):
+        position[row] = data.qpos[0]
+        for _ in range(round(TICK_S / STEP_S)):
+            torque = gain * KP * (command[row] - data.qpos[0]) - KD * data.qvel[0]
+            data.qfrc_applied[0] = np.clip(torque, -LIMIT, LIMIT)
+            mujoco.mj_step(model, data)
+    position += rng.normal(0, 0.0003, ticks)
+    measured = np.round(position / QUANTUM_RAD) * QUANTUM_RAD
+    name = f"swing_{seed}"
+    return Trace(name, time_s, measured[:, None], plant.servo, None, command[:, None])
+
+
+@pytest.fixture(scope="module")
+def clean(plant):
+    return [swing(plant, 0), swing(plant, 1)]
+
+
+@pytest.fixture(scope="module")
+def dry(plant):
+    return [swing(plant, seed, dry=0.15) for seed in (0, 1)]
+
+
+def first(verdict):
+    return verdict.effects[0].name, verdict.effects[0].place
+
+
+@pytest.mark.slow
+def test_bic_names_dry_friction_with_its_value_only_where_it_is(plant, dry, clean):
+    verdict = bic.answer(plant, dry)
+    assert (verdict.kind, first(verdict)) == (
+        "effects",
+        ("coulomb_friction", "swing"),
+    )
+    torque = verdict.effects[0].parameters["torque"]
+    assert torque.value == pytest.approx(0.15, rel=0.1)
+    assert torque.low < torque.value < torque.high
+    assert verdict.effects[0].probability > 0.9
+    assert verdict.recordings.fit == ("swing_0", "swing_1")
+    # it is known to name what is too small to matter, but not this
+    others = bic.answer(plant, clean).effects
+    assert "coulomb_friction" not in {each.name for each in others}
+
+
+def test_bic_charges_each_parameter_half_the_logarithm_of_the_samples(plant, clean):
+    predictor = Predictor(plant, clean)
+    one, three = (
+        fit_all(predictor, [(Placed(*placed),)], steps=1)[0]
+        for placed in (
+            ("viscous_friction", "swing", (0.01,)),
+            ("stribeck_friction", "swing", (0.01, 0.01, 0.1)),
+        )
+    )
+    for fit, parameters in ((one, 1), (three, 3)):
+        energy = float(fit.residual @ fit.residual)
+        charged = bic.criterion(fit, 1000) - energy
+        assert charged == pytest.approx(parameters * np.log(1000))
+
+
+def test_sparse_names_dry_friction_only_where_it_is(plant, dry, clean):
+    verdict = sparse.answer(plant, dry)
+    assert (verdict.kind, first(verdict)) == (
+        "effects",
+        ("coulomb_friction", "swing"),
+    )
+    torque = verdict.effects[0].parameters["torque"].value
+    assert torque == pytest.approx(0.15, rel=0.4)  # smoothing takes some of it
+    assert sum(each.probability for each in verdict.effects) <= 1 + 1e-9
+    assert sparse.answer(plant, clean).kind == "none"
+
+
+def test_thresholding_keeps_what_made_the_target_and_drops_the_rest():
+    rng = np.random.default_rng(3)
+    columns = rng.normal(size=(400, 6)) * [1, 10, 1, 1, 0, 1]
+    target = 3 * columns[:, 1] - 20 * columns[:, 3] + rng.normal(0, 0.1, 400)
+    kept, size, error = sequential_threshold(columns, target)
+    np.testing.assert_array_equal(kept, [1, 3])
+    np.testing.assert_allclose(size, [3, -20], rtol=0.1)
+    assert (error > 0).all()
+    kept, size, _ = sequential_threshold(columns, rng.normal(size=400) * 1e-3, 0.5)
+    assert len(kept) == len(size) == 0
+
+
+@NEEDS_SYSID
+@pytest.mark.slow
+def test_sysid_names_a_stiffer_servo_and_nothing_where_nothing_is_missing(plant, clean):
+    stiff = [swing(plant, seed, gain=1.3) for seed in (0, 1)]
+    verdict = sysid.answer(plant, stiff)
+    assert (verdict.kind, first(verdict)) == (
+        "effects",
+        ("servo_gain", "swing"),
+    )
+    factor = verdict.effects[0].parameters["factor"]
+    assert factor.value == pytest.approx(1.3, rel=0.05)
+    assert factor.low < factor.value < factor.high
+    assert sysid.answer(plant, clean).kind == "none"
+
+
+def test_sysid_says_so_where_its_package_is_not_whole(plant, clean, monkeypatch):
+    monkeypatch.setattr(sysid, "import_module", lambda name: SimpleNamespace())
+    with pytest.raises(GroundwalkError, match=r"pip install 'mujoco\[sysid\]'"):
+        sysid.answer(plant, clean)
+
+
+def test_without_a_position_command_or_with_a_free_base_sparse_abstains(plant, dry):
+    torque_driven = [replace(dry[0], command_rad=None)]
+    floating = replace(plant, base="floating")
+    for verdict in (
+        sparse.answer(plant, torque_driven),
+        sparse.answer(floating, dry),
+    ):
+        assert verdict.kind == "not_identifiable"
+        assert "fixed base" in verdict.limits[0]
+
+
+def test_answers_survive_being_written(plant, dry):
+    verdict = BASELINES["sparse"](plant, dry)
+    assert Verdict.from_json(verdict.to_json()) == verdict
+    assert verdict.seconds > 0

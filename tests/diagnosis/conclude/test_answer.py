@@ -1,0 +1,82 @@
+"""Verdicts on searches that are made up."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+from made_up_search import found
+from made_up_traces import arm
+
+from diagnosis.conclude.answer import kind_of, sure
+from diagnosis.search.result import Found
+
+ARM = arm()
+ALL, ELBOW_STILL = frozenset({"shoulder", "elbow"}), frozenset({"shoulder"})
+SHOULDER_STILL = frozenset({"elbow"})
+OPEN = "not_identifiable"
+
+
+def kind(searched, moving=ALL):
+    return kind_of(searched, ARM, SimpleNamespace(moving=moving))
+
+
+@pytest.mark.parametrize(
+    ("pair", "other", "single", "chosen"),
+    [
+        (100.0, 101.0, 150.0, 1),  # another second effect does as well
+        (100.0, 400.0, 150.0, 2),  # none does
+        (100.0, 101.0, 170.0, 2),  # one effect alone is clearly worse
+    ],
+)
+def test_an_effect_that_may_as_well_be_another_is_needed_or_left_out(
+    pair, other, single, chosen
+):
+    pairs = found(
+        ARM,
+        (pair, "servo_gain@shoulder", "viscous_friction@elbow"),
+        (other, "servo_gain@shoulder", "coulomb_friction@elbow"),
+    )
+    ones = found(ARM, (single, "servo_gain@shoulder"))
+    both = Found(pairs.nothing, pairs.floor, {**ones.best, **pairs.best}, 2)
+    assert sure(both, 15.0).chosen == chosen
+    elsewhere = found(ARM, (single, "servo_gain@elbow"))
+    other_one = Found(both.nothing, both.floor, {**elsewhere.best, **pairs.best}, 2)
+    assert sure(other_one, 15.0) is other_one
+    assert sure(ones, 15.0) is ones
+
+
+def nothing(energy):
+    return Found(energy, 100.0, {}, 0)
+
+
+@pytest.mark.parametrize(
+    ("searched", "moving", "wanted"),
+    [
+        (found(ARM, (101.0, "viscous_friction@elbow")), ALL, "effects"),
+        (
+            found(ARM, (101.0, "viscous_friction@elbow")),
+            ELBOW_STILL,
+            "not_identifiable",
+        ),
+        (found(ARM, (101.0, "viscous_friction@shoulder")), ELBOW_STILL, "effects"),
+        (
+            found(ARM, (101.0, "servo_gain@shoulder", "viscous_friction@elbow")),
+            ELBOW_STILL,
+            "effects",
+        ),
+        (found(ARM, (101.0, "payload_mass@lower")), ELBOW_STILL, "effects"),
+        (found(ARM, (101.0, "payload_mass@lower")), SHOULDER_STILL, "effects"),
+        (found(ARM, (101.0, "payload_mass@upper")), SHOULDER_STILL, OPEN),
+        (found(ARM, (101.0, "payload_mass@lower")), frozenset(), OPEN),
+        (found(ARM, (5000.0, "viscous_friction@elbow")), ALL, "unknown"),
+        (found(ARM, (120.0, "viscous_friction@elbow"), nothing=140.0), ALL, "effects"),
+        (nothing(101.0), ALL, "none"),
+        (nothing(101.0), ELBOW_STILL, OPEN),
+        (nothing(300.0), ALL, "unknown"),
+        (replace(nothing(101.0), nothing_fit=150.0, floor_fit=200.0), ALL, "none"),
+        (replace(nothing(101.0), nothing_fit=900.0, floor_fit=200.0), ALL, "unknown"),
+    ],
+)
+def test_kinds(searched, moving, wanted):
+    """What no moving joint shows is named only together with what one shows."""
+    assert kind(searched, moving) == wanted

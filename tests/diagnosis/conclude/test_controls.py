@@ -1,0 +1,90 @@
+"""Controls: what must do worse than the truth."""
+
+import numpy as np
+import pytest
+from made_up_traces import arm, recorded
+
+from diagnosis.conclude.controls import Controls
+from diagnosis.effects.effect import Placed
+from diagnosis.residuals.predictor import Channels, Predictor
+
+CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, 4e-4))
+TRUTH = Placed("servo_gain", "elbow", (0.8,))
+PLANT = arm()
+
+
+def controls(predictor, *model, alike=(), seed=1):
+    return Controls.of(predictor, model, alike, np.random.default_rng(seed))
+
+
+@pytest.fixture(scope="module")
+def predictor():
+    trace = recorded(PLANT, ("servo_gain", "elbow", 0.8), duration_s=2.0)
+    predictor = Predictor(PLANT, [trace], CHANNELS, step_s=0.004)
+    predictor.calibrate()
+    return predictor
+
+
+def energy(predictor, model):
+    (residual,) = predictor.residuals([model])
+    return 0.5 * residual @ residual
+
+
+def test_the_same_effect_elsewhere_does_its_best_and_is_worse(predictor):
+    found = controls(predictor, TRUTH)
+    assert found.without == ()
+    (placed,) = found.wrong_place
+    assert placed.key == "servo_gain@shoulder"
+    assert placed.values != TRUTH.values
+    unfitted = Placed("servo_gain", "shoulder", TRUTH.values)
+    assert energy(predictor, (placed,)) < energy(predictor, (unfitted,))
+    assert energy(predictor, (placed,)) > 20 * energy(predictor, (TRUTH,))
+
+
+def test_of_a_pair_the_main_effect_is_replaced(predictor):
+    friction = Placed("viscous_friction", "shoulder", (0.01,))
+    for pair in ((TRUTH, friction), (friction, TRUTH)):
+        found = controls(predictor, *pair)
+        assert [one.key for one in found.without] == [friction.key]
+        keys = [one.key for one in found.wrong_place]
+        assert keys == [friction.key, "servo_gain@shoulder"]
+        kept, other = found.wrong_effect
+        assert kept.key == friction.key
+        assert other.place == "elbow"
+        assert other.effect != "servo_gain"
+
+
+def test_what_has_one_place_has_no_wrong_one(predictor):
+    latency = Placed("command_latency", "commands", (0.01,))
+    found = controls(predictor, latency)
+    assert found.wrong_place is None
+    assert found.wrong_effect is None
+    both_shoulders = Placed("servo_gain", "shoulder", (1.01,))
+    assert controls(predictor, TRUTH, both_shoulders).wrong_place is None
+
+
+def test_another_effect_is_drawn_by_lot(predictor):
+    """With as many values as the true one, and none that explains the same."""
+    drawn = {
+        controls(predictor, TRUTH, seed=seed).wrong_effect[0].key for seed in range(12)
+    }
+    assert len(drawn) > 3
+    assert TRUTH.key not in drawn
+    alike = {"armature@elbow", "torque_limit@elbow", "viscous_friction@elbow"}
+    others = {
+        controls(predictor, TRUTH, alike=alike, seed=seed).wrong_effect[0]
+        for seed in range(12)
+    }
+    assert not alike & {one.key for one in others}
+    assert {len(one.values) for one in others} == {1}
+    for one in others:
+        assert energy(predictor, (one,)) > 5 * energy(predictor, (TRUTH,))
+
+
+def test_what_contains_an_effect_is_no_other_effect(predictor):
+    dry = Placed("coulomb_friction", "elbow", (0.1,))
+    worn = Placed("stribeck_friction", "elbow", (0.1, 0.05, 0.1))
+    for one, other in ((dry, worn), (worn, dry)):
+        for seed in range(12):
+            found = controls(predictor, one, seed=seed)
+            assert found.wrong_effect[0].key != other.key

@@ -1,0 +1,129 @@
+"""The corrected model, loaded by nothing but MuJoCo, against replays."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from joint_rigs import run_from, smooth_command, ticks, trace_of
+
+from diagnosis.corrected.mjcf import corrected_mjcf
+from diagnosis.effects.effect import Placed
+from diagnosis.plant.load import load_plant
+from diagnosis.plant.servo import Servo
+from diagnosis.replay.replay import replay
+from diagnosis.residuals.predictor import variants_of
+from diagnosis.traces.windows import Run
+
+STEPS_PER_TICK = 5
+ABOVE_GROUND = np.array([0, 0, 0.33, 1, 0, 0, 0, *[0.0] * 6])
+
+
+def everywhere(plant, joint, body):
+    """Every native effect that acts without a ground, but no latency."""
+    effects = [
+        ("servo_gain", joint, 0.7),
+        ("servo_damping", joint, 1.3),
+        ("coulomb_friction", joint, 0.123),
+        ("viscous_friction", joint, 1 / 3),
+        ("armature", joint, 0.0123),
+        ("torque_limit", joint, 0.8),
+        ("payload_mass", body, 0.2),
+        ("com_offset", body, 0.01, 0.02, 1 / 300),
+        ("joint_spring", joint, 0.3, 0.1),
+        ("end_stop", joint, 0.3, 1.0),
+        ("ground_slope", "world", 0.1, 0.05),
+    ]
+    if plant.base == "floating":
+        effects += [
+            ("contact_friction", "feet", 0.5),
+            ("contact_compliance", "feet", 20000 / 3),
+        ]
+    return effects
+
+
+def commanded_run(plant, servo=None):
+    time_s = ticks(1.0)
+    command = np.repeat(smooth_command(time_s), len(plant.joints))
+    trace = trace_of(plant, time_s, command_rad=command)
+    trace = replace(trace, servo=servo or plant.servo)
+    base = ABOVE_GROUND if plant.base == "floating" else None
+    start = run_from(trace)
+    return Run(trace, start.position_rad, start.velocity_rad_s, base)
+
+
+def simulated(text, plant, run):
+    """Positions (T, j) as MuJoCo alone has them."""
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    if run.base is not None:
+        data.qpos[:7] = run.base[:7]
+    columns = [model.joint(name).qposadr[0] for name in plant.joints]
+    actuators = [model.actuator(name).id for name in plant.joints]
+    positions = [data.qpos[columns].copy()]
+    for command in run.trace.command_rad[:-1]:
+        data.ctrl[actuators] = command
+        mujoco.mj_step(model, data, STEPS_PER_TICK)
+        positions.append(data.qpos[columns].copy())
+    return np.array(positions)
+
+
+def check_same(plant, effects, servo=None, atol=1e-9):
+    model = tuple(Placed(name, place, values) for name, place, *values in effects)
+    run = commanded_run(plant, servo)
+    found = simulated(corrected_mjcf(plant, model, servo), plant, run)
+    corrected, nominal = replay([run], variants_of(plant, [model, ()]))[0].position_rad
+    np.testing.assert_allclose(found, corrected, rtol=0, atol=atol)
+    assert np.abs(found - nominal).max() > 1e-3
+
+
+@pytest.mark.parametrize("base", ["fixed", "floating"])
+def test_a_described_robot(base):
+    plant = load_plant("nao", base)
+    check_same(plant, everywhere(plant, "LKneePitch", "LTibia"))
+
+
+def test_a_urdf_with_the_recordings_servos():
+    plant = load_plant("so101", "fixed")
+    full = np.full(len(plant.joints), 1.0)
+    servo = Servo(17 * full, 0.6 * full, 2.9 * full, 0 * full)
+    # in the step in which a servo leaves its limit MuJoCo has it there to the end
+    effects = everywhere(plant, "elbow_flex", plant.bodies[2])
+    check_same(plant, effects, servo, atol=5e-4)
+
+
+@pytest.mark.parametrize("delay_s", [0.02, 0.0133])
+def test_late_commands(delay_s):
+    """Before the first command is due both ask for 0."""
+    plant = load_plant("nao", "fixed")
+    check_same(plant, [("command_latency", "commands", delay_s)])
+
+
+def test_what_mujoco_lacks_is_left_out():
+    plant = load_plant("nao", "fixed")
+    play = Placed("backlash", "LKneePitch", (0.03,))
+    assert corrected_mjcf(plant, (play,)) == corrected_mjcf(plant, ())
+
+
+def test_others_are_written_with_as_few_digits_as_ever():
+    plant = load_plant("nao", "fixed")
+    before = plant.spec.copy().to_xml()
+    assert corrected_mjcf(plant, ()) != before
+    assert plant.spec.copy().to_xml() == before
+
+
+def test_meshes_are_found_from_anywhere(tmp_path, monkeypatch):
+    corners = ("0 0 0", "1 0 0", "0 1 0", "0 0 1")
+    faces = ("1 3 2", "1 2 4", "2 3 4", "3 1 4")
+    lines = [f"v {c}" for c in corners] + [f"f {f}" for f in faces]
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "link.obj").write_text("\n".join(lines))
+    path = tmp_path / "arm.xml"
+    path.write_text("""<mujoco><compiler meshdir="parts"/>
+      <asset><mesh name="link" file="link.obj"/></asset><worldbody><body>
+      <joint name="hinge"/><geom type="mesh" mesh="link"/></body></worldbody>
+      <actuator><position joint="hinge" kp="5"/></actuator></mujoco>""")
+    plant = load_plant(path, "fixed")
+    text = corrected_mjcf(plant, (Placed("armature", "hinge", (0.1,)),))
+    monkeypatch.chdir("/")
+    assert mujoco.MjModel.from_xml_string(text).dof_armature[0] == 0.1

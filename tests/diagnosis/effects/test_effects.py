@@ -1,0 +1,189 @@
+"""All effects: their names, their neutral values, one row at a time."""
+
+import mujoco
+import numpy as np
+import pytest
+
+from diagnosis.effects.library import EFFECTS, effect
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.plant.servo import Servo
+from diagnosis.traces.trace import Trace
+from groundwalk.errors import UnknownNameError
+
+# As fixed in the specification of the room.
+PARAMETERS = {
+    "viscous_friction": "coefficient",
+    "coulomb_friction": "torque",
+    "stribeck_friction": "coulomb_torque extra_torque speed",
+    "load_friction": "share",
+    "backlash": "gap",
+    "joint_elasticity": "stiffness damping",
+    "command_latency": "delay",
+    "sensor_delay": "delay",
+    "encoder_offset": "offset",
+    "gyro_bias": "x y z",
+    "torque_limit": "torque",
+    "speed_limit": "speed",
+    "servo_gain": "factor",
+    "servo_damping": "factor",
+    "armature": "inertia",
+    "payload_mass": "mass",
+    "com_offset": "x y z",
+    "joint_spring": "stiffness rest",
+    "end_stop": "angle side",
+    "servo_fade": "rate",
+    "contact_friction": "coefficient",
+    "contact_compliance": "stiffness",
+    "ground_slope": "pitch roll",
+    "uneven_ground": "height",
+    "external_force": "x y z start duration",
+    "drag": "coefficient",
+}
+
+WALKER = """
+<mujoco><worldbody><geom name="ground" type="plane" size="1 1 1"/>
+  <body name="trunk" pos="0 0 .5"><freejoint name="root"/>
+    <geom size=".1" mass="2" contype="0" conaffinity="0"/>
+    <body name="left"><joint name="hip" axis="0 1 0" range="-1 1"/>
+      <geom type="box" size=".1 .05 .01" pos="0 .1 -.3" mass=".5"/></body>
+    <body name="right"><joint name="knee" axis="0 1 0"/>
+      <geom type="box" size=".1 .05 .01" pos="0 -.1 -.3" mass=".5"/></body>
+    <body><geom size=".01" mass=".1" contype="0" conaffinity="0"/></body>
+  </body></worldbody>
+  <actuator><general name="hip" joint="hip"/><general name="knee" joint="knee"/>
+  </actuator></mujoco>"""
+
+
+def servo(kp=(20.0, 0.0), kd=(0.5, 0.0), limit=(5.0, np.inf)):
+    return Servo(np.array(kp), np.array(kd), np.array(limit), np.zeros(2))
+
+
+def walker(**changes):
+    spec = mujoco.MjSpec.from_string(WALKER)
+    given = {"base": "floating", "feet": ("left", "right"), "servo": servo()}
+    return Plant("walker", spec, ("hip", "knee"), **(given | changes))
+
+
+def trace(**channels):
+    time_s = np.arange(3) * 0.01
+    return Trace("test", time_s, np.zeros((3, 2)), servo(), **channels)
+
+
+EVERYTHING = [trace(command_rad=np.zeros((3, 2)), gyroscope_rad_s=np.zeros((3, 3)))]
+
+
+def contents(variants):
+    """Everything that an effect can change, by name; lists of pushes as text."""
+    arrays = {
+        f"{part}.{name}": np.array([str(v) for v in value])
+        if name == "pushes"
+        else value
+        for part in ("joints", "signals", "outside")
+        for name, value in vars(getattr(variants, part)).items()
+    }
+    return arrays | variants.fields
+
+
+def changed_rows(plant, variants):
+    """Rows in which a variant is not bit for bit the plant."""
+    nominal = Variants(plant, variants.n)
+    for name in variants.fields:
+        nominal.field(name)
+    rows = set()
+    before = contents(nominal)
+    for name, value in contents(variants).items():
+        same = (value == before[name]).reshape(variants.n, -1).all(axis=1)
+        rows |= set(np.flatnonzero(~same))
+    return rows
+
+
+def test_the_library_is_as_specified():
+    plant = walker()
+    names = {
+        name: " ".join(
+            p.name for p in one.parameters(plant, one.places(plant, EVERYTHING)[0])
+        )
+        for name, one in EFFECTS.items()
+    }
+    assert names == PARAMETERS
+    assert list(names) == list(PARAMETERS)
+
+
+def test_a_wrong_name_is_told_the_nearest():
+    assert effect("backlash").name == "backlash"
+    with pytest.raises(UnknownNameError, match="'backlash'"):
+        effect("backlas")
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_neutral_values_change_nothing(name):
+    plant, one = walker(), effect(name)
+    variants = Variants(plant, 2)
+    for place in one.places(plant, EVERYTHING):
+        neutral = np.array([p.neutral for p in one.parameters(plant, place)])
+        one.apply(variants, 1, place, neutral)
+    assert changed_rows(plant, variants) == set()
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_typical_values_change_one_row(name):
+    plant, one = walker(), effect(name)
+    for place in one.places(plant, EVERYTHING):
+        variants = Variants(plant, 3)
+        typical = np.array([p.typical for p in one.parameters(plant, place)])
+        one.apply(variants, 1, place, typical)
+        assert changed_rows(plant, variants) == {1}
+
+
+@pytest.mark.parametrize("base", ["fixed", "floating"])
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_sizes_lie_within_bounds(name, base):
+    plant, one = walker(base=base), effect(name)
+    for place in one.places(plant, EVERYTHING):
+        for parameter in one.parameters(plant, place):
+            assert parameter.low < parameter.high
+            assert parameter.low <= parameter.typical <= parameter.high
+            assert parameter.neutral >= parameter.low
+            # Infinite stiffnesses and limits are not there; all others can be reached.
+            assert parameter.neutral <= parameter.high or parameter.neutral == np.inf
+            assert parameter.low > 0 or not parameter.logarithmic
+            assert np.isfinite([parameter.low, parameter.high]).all()
+
+
+def test_where_effects_may_be():
+    plant = walker()
+    places = {name: one.places(plant, EVERYTHING) for name, one in EFFECTS.items()}
+    kinds = {name: one.place_kind for name, one in EFFECTS.items()}
+    for name, kind in kinds.items():
+        if kind in ("commands", "encoders", "gyroscope", "feet", "world"):
+            assert places[name] == (kind,)
+        elif kind == "body":
+            assert places[name] == ("trunk", "left", "right")
+    driven = {name for name, found in places.items() if found == ("hip",)}
+    assert driven == {
+        *("backlash", "servo_gain", "servo_damping", "servo_fade", "speed_limit"),
+    }
+    assert places["torque_limit"] == ("hip", "knee")
+
+
+def test_where_effects_cannot_be():
+    fixed, bare = walker(base="fixed"), [trace()]
+    none = ("command_latency", "gyro_bias", "speed_limit", "contact_friction")
+    for name in (*none, "contact_compliance", "uneven_ground"):
+        assert effect(name).places(fixed, bare) == ()
+    assert effect("ground_slope").places(fixed, bare) == ("world",)
+    assert effect("contact_friction").places(walker(feet=()), bare) == ()
+    assert effect("contact_friction").places(walker(), bare) == ("feet",)
+
+
+def test_the_traces_own_servos_count():
+    plant = walker(servo=Servo.ideal(2))
+    assert effect("backlash").places(plant, EVERYTHING) == ("hip",)
+    assert effect("backlash").places(plant, []) == ()
+
+
+def test_torque_commands_can_be_late():
+    by_torque = [trace(command_torque_nm=np.zeros((3, 2)))]
+    assert effect("command_latency").places(walker(), by_torque) == ("commands",)
+    assert effect("speed_limit").places(walker(), by_torque) == ()

@@ -1,0 +1,26 @@
+"""Steps of replays: as long as they are exact enough."""
+
+import pytest
+from joint_rigs import ARM, plant_of
+from made_up_traces import recorded
+
+from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.data_sets import MOST_WRONG, Evidence
+from diagnosis.residuals.predictor import STEPS_S
+
+
+@pytest.mark.parametrize(
+    ("kp", "kd", "wanted_s"), [(8.0, 0.4, 0.004), (2000.0, 1.0, 0.001)]
+)
+def test_stiff_joints_take_short_steps(kp, kd, wanted_s):
+    plant = plant_of(ARM, kp=kp, kd=kd)
+    traces = [
+        recorded(plant, noise_rad=1e-4, seed=seed, duration_s=3.0) for seed in range(4)
+    ]
+    data = Evidence.of(plant, traces, channels_of(plant, traces), None, 1)
+    assert data.learned.step_s == wanted_s
+    assert data.test.step_s == wanted_s
+    longest = data.learned.stepped(STEPS_S["fixed"][0])
+    assert (longest.calibrate() < MOST_WRONG) is (wanted_s == STEPS_S["fixed"][0])
+    both, test = data.calibrated(())
+    assert both.step_s == test.step_s == wanted_s

@@ -1,0 +1,166 @@
+"""Residuals in units of noise, without what the integrator's step costs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
+from made_up_traces import arm, arm_command, recorded
+
+from diagnosis.effects.effect import Placed
+from diagnosis.residuals.predictor import WARM_UP_S, WORST, Channels, Predictor
+
+NOISE_RAD = 4e-4
+CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
+
+
+def measured(kp, kd, noise_rad):
+    """A recording of another library's integrator, and its plant."""
+    plant = plant_of(ARM, kp=kp, kd=kd)
+    time_s = ticks(2.5, 0.02)
+    command = arm_command(time_s)
+    law = arm_law(lambda t, q, v, k: kp * (command[k] - q) - kd * v)
+    truth = integrated(law, time_s, [0, 0, 0, 0])[:, :2]
+    noise = noise_rad * np.random.default_rng(5).standard_normal(truth.shape)
+    return plant, trace_of(plant, time_s, truth + noise, command_rad=command)
+
+
+@pytest.fixture(scope="module")
+def pendulum():
+    return measured(8.0, 0.2, NOISE_RAD)
+
+
+def rms(predictor, model=()):
+    residual = predictor.residuals([model])[0]
+    return float(np.sqrt(np.mean(residual[predictor.scored] ** 2)))
+
+
+def test_calibration_takes_out_what_the_step_costs():
+    plant, trace = measured(8.0, 0.2, noise_rad=0.0)
+    predictor = Predictor(plant, [trace], CHANNELS)
+    assert rms(predictor) > 2
+    assert predictor.calibrate() < 0.05
+    assert rms(predictor) < 0.05
+
+
+def test_another_step_is_of_the_same_traces():
+    plant, trace = measured(8.0, 0.2, noise_rad=0.0)
+    predictor = Predictor(plant, [trace], CHANNELS)
+    finer = predictor.stepped(predictor.step_s / 4)
+    assert finer.traces == predictor.traces
+    assert rms(finer) == pytest.approx(rms(predictor) / 4, rel=0.1)
+
+
+def test_of_a_right_model_only_noise_is_left():
+    plant, trace = measured(8.0, 1.0, NOISE_RAD)
+    predictor = Predictor(plant, [trace], CHANNELS)
+    assert rms(predictor) > 1.5
+    predictor.calibrate()
+    assert rms(predictor) == pytest.approx(1, abs=0.15)
+
+
+def test_the_noise_is_found_on_the_traces(pendulum):
+    plant, trace = pendulum
+    channels = Predictor(plant, [trace]).channels
+    assert channels.names == CHANNELS.names
+    np.testing.assert_allclose(channels.noise, NOISE_RAD, rtol=0.4)
+
+
+def test_calibration_at_one_model_serves_others(pendulum):
+    """The step's error hardly depends on the model."""
+    plant, trace = pendulum
+    near = (Placed("servo_gain", "elbow", (0.8,)),)
+    here, there = (Predictor(plant, [trace], CHANNELS) for _ in range(2))
+    here.calibrate(near)
+    there.calibrate()
+    difference = (here.predict([near]) - there.predict([near])) / NOISE_RAD
+    assert np.sqrt(np.mean(difference**2)) < 1
+    assert np.sqrt(np.mean(difference**2)) > 0
+
+
+def test_a_stiff_spring_takes_shorter_steps(monkeypatch):
+    """What a joint without one needs would be half the noise off."""
+    spring = (Placed("joint_elasticity", "elbow", (800.0, 0.2)),)
+    plant = arm()
+    trace = recorded(plant, duration_s=2.0)
+    truth = Predictor(plant, [trace], CHANNELS, step_s=5e-4)
+    truth.calibrate(spring)
+    predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
+    predictor.calibrate()
+
+    def wrong():
+        found = predictor.predict([(), spring])[1] - truth.predict([spring])[0]
+        return float(np.sqrt(np.mean((found[20:] / NOISE_RAD) ** 2)))
+
+    assert wrong() < 0.15
+    monkeypatch.setattr("diagnosis.residuals.predictor.STIFF", frozenset())
+    assert wrong() > 0.4
+
+
+def test_what_is_missing_or_early_is_not_scored(pendulum):
+    plant, trace = pendulum
+    position = trace.position_rad.copy()
+    position[70:80, 1] = np.nan
+    predictor = Predictor(plant, [replace(trace, position_rad=position)], CHANNELS)
+    residual = predictor.residuals([()])[0].reshape(-1, 2)
+    scored = predictor.scored.reshape(-1, 2)
+    early = trace.time_s < WARM_UP_S
+    assert not scored[early].any()
+    assert not scored[70:80, 1].any()
+    assert scored.sum() == 2 * np.sum(~early) - 10
+    assert (residual[~scored] == 0).all()
+    assert (residual[scored] != 0).all()
+
+
+def test_rows_say_which_trace_and_channel_they_are_of():
+    plant = arm()
+    traces = [recorded(plant, duration_s=1.0), recorded(plant, duration_s=0.6, seed=1)]
+    predictor = Predictor(plant, traces, CHANNELS)
+    residual = predictor.residuals([()])[0]
+    assert residual.shape == predictor.trace.shape == predictor.channel.shape
+    for k, trace in enumerate(traces):
+        alone = Predictor(plant, [trace], CHANNELS)
+        for j in range(2):
+            rows = (predictor.trace == k) & (predictor.channel == j)
+            own = alone.residuals([()])[0][alone.channel == j]
+            np.testing.assert_allclose(residual[rows], own, atol=1e-6)
+
+
+def test_more_models_than_a_batch_holds():
+    plant = arm()
+    trace = recorded(plant, duration_s=0.5)
+    predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
+    factors = np.linspace(0.8, 1.2, 400)
+    models = [(Placed("servo_gain", "elbow", (float(f),)),) for f in factors]
+    every = predictor.residuals(models)
+    for row in (0, 191, 192, 399):
+        alone = predictor.residuals([models[row]])[0]
+        np.testing.assert_allclose(every[row], alone, atol=1e-6)
+
+
+def test_what_blows_up_is_as_wrong_as_can_be(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # MuJoCo writes a log
+    plant = arm()
+    predictor = Predictor(plant, [recorded(plant, duration_s=1.0)], CHANNELS)
+    wild = (Placed("servo_gain", "elbow", (1e9,)),)
+    bad, good = predictor.residuals([wild, ()])
+    assert np.abs(bad).max() == WORST
+    assert np.isfinite(bad).all()
+    assert np.abs(good).max() < 30
+
+
+def test_gyroscopes_are_a_channel_if_all_traces_have_them():
+    plant = arm()
+    still = recorded(plant, duration_s=1.0)
+    random = np.random.default_rng(2)
+    turns = 0.1 + 0.01 * random.standard_normal((still.ticks, 3))
+    trace = replace(still, gyroscope_rad_s=turns)
+    predictor = Predictor(plant, [trace])
+    assert predictor.channels.names[2:] == ("gyroscope.x", "gyroscope.y", "gyroscope.z")
+    np.testing.assert_allclose(predictor.channels.noise[2:], 0.01, rtol=0.5)
+    bias = (Placed("gyro_bias", "gyroscope", (0.1, 0.1, 0.1)),)
+    without, with_bias = predictor.residuals([(), bias])
+    rows = predictor.scored & (predictor.channel >= 2)
+    assert np.mean(without[rows] ** 2) > 50
+    assert np.mean(with_bias[rows] ** 2) < 3
+    assert len(Predictor(plant, [trace, still]).channels.names) == 2

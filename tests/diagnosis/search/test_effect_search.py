@@ -1,0 +1,304 @@
+"""Searches on recordings whose truth is known, and the sizes they can see."""
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from known_arms import CHANNELS, LEAN, NOISE_RAD, measured
+from made_up_search import judged
+from made_up_traces import arm, recorded
+
+from diagnosis.conclude.detectable import smallest_detectable
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.result import Found, ranked
+from diagnosis.search.search import Search
+
+PLANT = arm()
+
+
+def search_of(*traces):
+    """The first is fitted, the second selects."""
+    predictors = [Predictor(PLANT, [trace], CHANNELS, step_s=0.004) for trace in traces]
+    for predictor in predictors:
+        predictor.calibrate()
+    return Search(*predictors, LEAN)
+
+
+@cache
+def searched(*effects):
+    traces = [
+        recorded(PLANT, *effects, duration_s=3.0, seed=seed, noise_rad=NOISE_RAD)
+        for seed in range(2)
+    ]
+    search = search_of(*traces)
+    return search, search.run()
+
+
+@pytest.mark.parametrize(
+    "truth",
+    [
+        ("coulomb_friction", "shoulder", 0.1),
+        ("payload_mass", "lower", 0.05),
+        ("command_latency", "commands", 0.007),
+    ],
+)
+def test_one_effect_is_found_with_its_value(truth):
+    name, place, value = truth
+    _, found = searched(truth)
+    assert found.chosen == 1
+    (placed,) = found.winner.model
+    assert placed.key == f"{name}@{place}"
+    assert placed.values[0] == pytest.approx(value, rel=0.05)
+    assert found.closed(found.winner) == pytest.approx(1, abs=0.03)
+    assert found.winner.selected == pytest.approx(found.floor, rel=0.4)
+    assert found.nothing > 2 * found.floor
+
+
+def test_two_effects_that_hide_each_other_are_found_together():
+    """A servo that is stiffer, and a forearm that is heavier: they sag as before."""
+    truth = ("servo_gain", "elbow", 1.3), ("payload_mass", "lower", 0.12)
+    _, found = searched(*truth)
+    assert found.chosen == 2
+    assert found.winner.keys == {"servo_gain@elbow", "payload_mass@lower"}
+    values = {placed.effect: placed.values[0] for placed in found.winner.model}
+    assert values["servo_gain"] == pytest.approx(1.3, rel=0.03)
+    assert values["payload_mass"] == pytest.approx(0.12, rel=0.1)
+
+
+def test_a_servo_that_is_much_too_weak():
+    """It drops its arm: it can do far less than the motion should have taken."""
+    search, _ = searched()
+    least_nm = 0.6 * float(search.usage.torque_nm[0])
+    _, found = searched(("torque_limit", "shoulder", least_nm))
+    (placed,) = found.winner.model
+    assert placed.key == "torque_limit@shoulder"
+    assert placed.values[0] == pytest.approx(least_nm, rel=0.02)
+
+
+def test_two_effects_are_found_together():
+    truth = ("servo_gain", "elbow", 0.9), ("coulomb_friction", "shoulder", 0.1)
+    _, found = searched(*truth)
+    assert found.chosen == 2
+    values = {placed.key: placed.values[0] for placed in found.winner.model}
+    assert set(values) == {"servo_gain@elbow", "coulomb_friction@shoulder"}
+    assert values["servo_gain@elbow"] == pytest.approx(0.9, rel=0.02)
+    assert values["coulomb_friction@shoulder"] == pytest.approx(0.1, rel=0.1)
+    assert found.best[2][0].selected < found.best[1][0].selected - 100
+
+
+def test_a_push_that_another_effect_outshouts():
+    """It stands out only from what the weak servo leaves."""
+    push = ("external_force", "lower", 0.0, 3.0, 3.0, 1.5, 0.2)
+    _, found = searched(("servo_gain", "elbow", 0.6), push)
+    assert found.chosen == 2
+    assert found.winner.keys == {"servo_gain@elbow", "external_force@lower"}
+    values = {placed.effect: placed.values for placed in found.winner.model}
+    assert values["servo_gain"][0] == pytest.approx(0.6, rel=0.02)
+    assert values["external_force"][3:] == pytest.approx((1.5, 0.2), abs=0.05)
+
+
+def test_where_nothing_is_nothing_is_found():
+    _, found = searched()
+    assert found.chosen == 0
+    assert found.winner is None
+    assert found.nothing == pytest.approx(found.floor, rel=0.4)
+    assert found.best[1]  # it did look
+
+
+@pytest.mark.parametrize(("gained", "chosen"), [(0.5, 0), (2.0, 1)])
+def test_what_was_fitted_must_show_it_too(monkeypatch, gained, chosen):
+    """Of many models some do well on a quarter of the data by chance."""
+    search, _ = searched()
+    nothing = 0.5 * float(np.sum(search.fit.residuals([()])[0] ** 2))
+    kept_aside = search.energies([()])[0]
+
+    def lucky(starts, jacobians=None):
+        one = judged(PLANT, kept_aside - 3 * search.least_gain, "armature@elbow")
+        energy = nothing - gained * search.least_gain
+        fit = replace(one.fit, residual=np.sqrt([2 * energy]))
+        return [replace(one, fit=fit)]
+
+    monkeypatch.setattr(search, "judged", lucky)
+    monkeypatch.setattr(search, "_refined", lambda best: best)
+    starts = SimpleNamespace(swapped=lambda leader: [])
+    monkeypatch.setattr(search, "_starts_from", lambda leader: starts)
+    monkeypatch.setattr(search, "_larger", lambda *_: [])
+    assert search.run().chosen == chosen
+
+
+@pytest.mark.slow
+def test_what_no_effect_makes_is_not_explained():
+    """Cogging: a torque by position, in waves of a quarter of a radian."""
+
+    def cogging(t, q, v):
+        return np.array([0, 0.6]) * np.sin(25 * q)
+
+    traces = [measured(seed, cogging) for seed in range(2)]
+    found = search_of(*traces).run()
+    assert found.nothing > 20 * found.floor
+    best = found.winner.selected if found.winner else found.nothing
+    assert best - found.floor > 0.5 * (found.nothing - found.floor)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("key", "values_of"),
+    [
+        ("viscous_friction@elbow", lambda size: size),
+        ("servo_gain@elbow", lambda size: 1 - size),
+    ],
+)
+def test_the_smallest_size_is_just_seen(key, values_of):
+    """What is a quarter larger is found and named, half of it is not."""
+    search, nothing = searched()
+    assert nothing.chosen == 0
+    sizes = smallest_detectable(search.fit, search.signatures, search.least_gain)
+    name, place = key.split("@")
+    _, found = searched((name, place, values_of(1.25 * sizes[key].value)))
+    assert found.chosen == 1
+    assert found.winner.keys == {key}
+    _, found = searched((name, place, values_of(0.5 * sizes[key].value)))
+    assert found.chosen == 0
+
+
+def test_what_acts_above_a_threshold_has_no_smallest_size():
+    search, _ = searched()
+    sizes = smallest_detectable(search.fit, search.signatures, search.least_gain)
+    names = {key.split("@")[0] for key in sizes}
+    assert not names & {"torque_limit", "speed_limit", "end_stop", "joint_elasticity"}
+    assert {"backlash", "armature", "payload_mass", "encoder_offset"} <= names
+    assert sizes["viscous_friction@elbow"].unit == "N m s/rad"
+    more = smallest_detectable(search.fit, search.signatures, 4 * search.least_gain)
+    for key, size in sizes.items():
+        assert more[key].value == pytest.approx(2 * size.value)
+
+
+def test_shares_of_what_is_above_the_noise():
+    best = judged(PLANT, 200.0, "armature@elbow")
+    found = Found(1100.0, 100.0, {1: [best]}, 1)
+    assert found.closed(best) == pytest.approx(0.9)
+    assert found.winner is best
+    assert Found(90.0, 100.0, {1: [best]}, 0).closed(best) == 0.0
+    # an effect that hardly shows in the selection data, and much in the others
+    both = Found(250.0, 100.0, {1: [best]}, 1, nothing_fit=1e4, floor_fit=200.0)
+    assert best.fit.energy == 0
+    assert both.closed(best) == pytest.approx((50 + 1e4) / (150 + 9800))
+    here = Found(1100.0, 100.0, {1: [best]}, 1, nothing_fit=1.0, floor_fit=0.0)
+    assert here.closed(best) == pytest.approx(901 / 1001)
+    assert Found(90.0, 100.0, {1: [best]}, 0).winner is None
+
+
+def test_rare_effects_and_more_values_must_fit_better():
+    one = judged(PLANT, 100.0, "armature@elbow")
+    three = judged(PLANT, 100.0, "stribeck_friction@elbow")
+    both = judged(PLANT, 100.0, "armature@elbow", "servo_gain@elbow")
+    better = judged(PLANT, 90.0, "stribeck_friction@elbow")
+    assert ranked([three, one, both], 100.0) == [one, both, three]
+    assert ranked([three, one, both, better], 100.0)[0] is better
+
+
+def test_residuals_that_are_no_noise_tell_less():
+    """Of 900 and 906 nats where noise leaves 100 a ninth counts."""
+    one = judged(PLANT, 906.0, "armature@elbow")
+    both = judged(PLANT, 900.0, "armature@elbow", "servo_gain@elbow")
+    assert ranked([one, both], 900.0)[0] is both
+    assert ranked([one, both], 100.0)[0] is one
+
+
+@pytest.mark.parametrize(("weight", "first"), [(0.0, "lucky"), (1.0, "right")])
+def test_what_was_fitted_is_evidence_of_names_too(weight, first):
+    """Of models with as many values none fits more by chance than another."""
+
+    def leaving(fitted, selected, key):
+        one = judged(PLANT, selected, key)
+        fit = replace(one.fit, residual=np.sqrt([2 * fitted]))
+        return replace(one, fit=fit, weight=weight)
+
+    models = {
+        "lucky": leaving(250.0, 97.0, "armature@elbow"),
+        "right": leaving(200.0, 100.0, "servo_gain@elbow"),
+    }
+    best = ranked([*models.values()], 300.0)
+    assert best[0] is models[first]
+    found = Found(400.0, 100.0, {1: best}, 1, nothing_fit=800.0, floor_fit=200.0)
+    gap = {0.0: 3.0, 1.0: 47.0}[weight]
+    assert found.worse(best[1]) == pytest.approx(gap)
+
+
+def test_beside_a_reference_only_the_selection_data_are():
+    search, _ = searched()
+    fit = judged(PLANT, 0.0, "armature@elbow").fit
+    (alone,) = search.judge([fit])
+    assert alone.weight == 1.0
+    before = Search(search.fit, search.select, LEAN, well=[search.select])
+    (beside,) = before.judge([fit])
+    assert beside.weight == 0.0
+    assert beside.evidence == beside.selected
+
+
+def test_little_in_the_selection_data_is_enough_if_much_is_fitted():
+    """A joint need not move as much in a part that is short."""
+    truth = ("viscous_friction", "elbow", 0.008)
+    traces = [
+        recorded(PLANT, truth, duration_s=seconds, seed=4, noise_rad=NOISE_RAD)
+        for seconds in (4.0, 1.0)
+    ]
+    search = search_of(*traces)
+    found = search.run()
+    gained = found.nothing - found.winner.selected
+    assert search.rules.least_hint < gained < search.least_gain
+    close = [one.keys for one in found.best[1] if found.worse(one) < 3.0]
+    assert {"viscous_friction@elbow"} in close
+
+
+def test_hints_are_of_both_kinds_of_data_and_of_a_fixed_base():
+    search, _ = searched()
+    least = search.least_gain
+    assert search._hints(1.9 * least, 0.3 * least)
+    assert not search._hints(1.9 * least, 0.05 * least)
+    assert not search._hints(1.6 * least, 0.3 * least)
+    assert not search._hints(0.5 * least, 3.0 * least)
+    assert search._hints(5.0 * least, 0.0)  # a stop that is met in one part
+    assert not search._hints(3.0 * least, 0.0)
+    assert not search._hints(5.0 * least, -0.5 * least)
+    floating = SimpleNamespace(
+        fit=SimpleNamespace(plant=SimpleNamespace(base="floating")),
+        least_gain=least,
+        rules=search.rules,
+        floor_fit=search.floor_fit,
+        _nothing_fit=search.floor_fit,
+    )
+    assert not Search._hints(floating, 1.9 * least, 0.3 * least)
+
+
+def test_what_is_just_believed_is_believed_and_less_is_not():
+    """Shown evenly: as much on each kind of data as there is of it."""
+    search, _ = searched()
+    share = search.fit.scored.sum() / search.select.scored.sum()
+    for part, believed in ((1.01, True), (0.99, False)):
+        fitted = part * search.least_fitted
+        gains = fitted, fitted / share
+        assert (search._hints(*gains) or search._shows(*gains)) is believed
+
+
+@pytest.mark.parametrize(("left", "chosen"), [(50.0, 3), (1.1, 1)])
+def test_where_much_is_left_two_more_are_tried_together(monkeypatch, left, chosen):
+    """A gap that rattles without its friction explains little alone."""
+    search, _ = searched()
+    effects = ("armature@elbow", "servo_gain@elbow", "coulomb_friction@elbow")
+    energies = [left * search.floor, 0.9 * left * search.floor, 0.5 * search.floor]
+    models = []
+    for size, energy in enumerate(energies, 1):
+        one = judged(PLANT, energy, *effects[:size])
+        fit = replace(one.fit, residual=np.sqrt([100.0 / size**3]))
+        models.append([replace(one, fit=fit)])
+    grown = iter(models)
+    monkeypatch.setattr(search, "energies", lambda asked: [100 * energies[0]])
+    monkeypatch.setattr(search, "judged", lambda starts: next(grown, []))
+    monkeypatch.setattr(search, "_refined", lambda best: best)
+    monkeypatch.setattr(search, "_larger", lambda *_: [])
+    starts = SimpleNamespace(swapped=lambda leader: [])
+    monkeypatch.setattr(search, "_starts_from", lambda leader: starts)
+    assert search.run().chosen == chosen

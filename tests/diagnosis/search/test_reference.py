@@ -1,0 +1,156 @@
+"""With recordings of when all was well, only what has changed since is named."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from known_arms import LEAN, measured
+from made_up_traces import arm
+from swinger_rig import moved, swinger, with_speeds
+
+from diagnosis.diagnose import diagnose
+from diagnosis.effects.effect import Placed
+from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.reference_noise import Standing
+from diagnosis.search.reference import standing_of, well_of
+from diagnosis.search.search import Search
+from diagnosis.traces.windows import runs_of
+from groundwalk.errors import BadRecordingError
+
+SEED = np.random.SeedSequence(0)
+
+
+def rubbing(t, q, v):
+    """What the arm's model never had."""
+    return np.array([0.0, -0.3]) * v
+
+
+def waving(t, q, v):
+    """What no effect describes: a torque from somewhere."""
+    return np.array([0.15, 0.0]) * np.sin(9 * t)
+
+
+@cache
+def of_arm(first, gain=(1.0, 1.0)):
+    return [
+        replace(measured(seed, rubbing, gain=gain), name=f"recording {seed}")
+        for seed in range(first, first + 3)
+    ]
+
+
+@cache
+def of_swinger(first, **options):
+    return [moved(seed, **options) for seed in range(first, first + 3)]
+
+
+def verdict_of(plant, traces, reference):
+    return diagnose(plant, traces, SEED, LEAN, reference=reference).verdict
+
+
+@pytest.mark.slow
+def test_what_an_arm_lacked_before_is_part_of_it():
+    plant, before = arm(), of_arm(0)
+    found = diagnose(plant, of_arm(10), SEED, LEAN, reference=before)
+    (given,) = found.given
+    assert given.place == "elbow"
+    assert given.effect in ("viscous_friction", "servo_damping")
+    assert found.verdict.kind == "none"
+    assert given.effect in found.verdict.limits[-1]
+
+
+@pytest.mark.slow
+def test_of_an_arm_only_the_change_is_named():
+    verdict = verdict_of(arm(), of_arm(10, gain=(0.8, 1.0)), of_arm(0))
+    (found,) = verdict.effects
+    assert (found.name, found.place) == ("servo_gain", "shoulder")
+    assert found.parameters["factor"].value == pytest.approx(0.8, abs=0.02)
+
+
+@pytest.mark.slow
+def test_without_a_reference_the_arm_still_lacks_its_friction():
+    verdict = diagnose(arm(), of_arm(10), SEED, LEAN).verdict
+    assert {found.place for found in verdict.effects} == {"elbow"}
+
+
+@pytest.mark.slow
+def test_a_robot_on_its_feet_with_the_same_old_fault_lacks_nothing():
+    before = of_swinger(0, load=waving)
+    verdict = verdict_of(swinger(), of_swinger(10, load=waving), before)
+    assert verdict.kind == "none"
+    assert verdict_of(swinger(), of_swinger(10, load=waving), []).kind != "none"
+
+
+@pytest.mark.slow
+def test_a_robot_on_its_feet_whose_servo_has_become_weak():
+    before = of_swinger(0, load=waving)
+    weak = of_swinger(10, load=waving, gain=(1.0, 0.8))
+    verdict = verdict_of(swinger(), weak, before)
+    (found,) = verdict.effects
+    assert (found.name, found.place) == ("servo_gain", "right")
+    assert found.parameters["factor"].value == pytest.approx(0.8, abs=0.03)
+
+
+def test_an_unreadable_reference_is_refused():
+    trace = moved(0, duration_s=1.0)
+    backwards = replace(trace, time_s=trace.time_s[::-1].copy())
+    plant = swinger()
+    with pytest.raises(BadRecordingError, match="reference"):
+        standing_of(plant, [backwards], channels_of(plant, [trace]))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_each_half_of_a_reference_is_judged_by_the_other(count):
+    plant = swinger()
+    traces = [moved(seed, duration_s=1.5) for seed in range(count)]
+    wells = well_of(plant, traces, channels_of(plant, traces))
+    first, second = ({t.name.split("[")[0] for t in well.traces} for well in wells)
+    assert first | second == {f"swing {seed}" for seed in range(count)}
+    assert count == 1 or not first & second
+    times = [well.traces[0].time_s for well in wells]
+    assert count > 1 or times[0][-1] < times[1][0]
+
+
+def test_what_explains_the_reference_too_gains_nothing():
+    """A servo that was weak before, found again as weak as it always was."""
+    plant = swinger()
+    before, after = ([moved(k, gain=(0.8, 1.0), duration_s=1.5)] for k in (0, 5))
+    channels = channels_of(plant, [*before, *after])
+    select = Predictor(plant, after, channels, standing=Standing.known((), 8))
+    well = Predictor(plant, before, channels, standing=Standing.known((), 8))
+    for predictor in (select, well):
+        predictor.calibrate()
+    model = (Placed("servo_gain", "left", (0.8,)),)
+    plain, wise = (
+        Search(select, select, well=wells).judged([model])[0].selected
+        for wells in ((), (well,))
+    )
+    nothing = 0.5 * float(np.sum(select.residuals([()]) ** 2))
+    assert plain < 0.9 * nothing
+    assert wise > nothing - 0.2 * (nothing - plain)
+
+
+def test_with_a_fixed_base_effects_are_part_of_the_plant_already():
+    plant, traces = arm(), [measured(0)]
+    assert well_of(plant, traces, channels_of(plant, traces)) == []
+
+
+def test_no_window_starts_at_the_edge_of_a_recording():
+    """Speeds there are not well known; what is left over is not scored."""
+    trace, plant = moved(0, duration_s=0.7), swinger()
+    edge, first, second, scrap = runs_of(plant, trace)
+    assert [run.trace.ticks for run in (edge, first, second, scrap)] == [5, 30, 30, 5]
+    predictor = Predictor(plant, [trace])
+    scored = predictor.scored.reshape(trace.ticks, -1).any(axis=1)
+    expected = np.ones(trace.ticks, bool)
+    expected[[*range(6), 35, *range(65, 70)]] = False
+    np.testing.assert_array_equal(scored, expected)
+
+
+def test_measured_speeds_of_the_base_count_half():
+    trace, plant = moved(0, duration_s=1.0), swinger()
+    told = with_speeds(trace, (1.0, 0.0, -1.0), (0.0, 2.0, 0.0))
+    plain, mixed = (runs_of(plant, one)[1].base[7:] for one in (trace, told))
+    expected = (plain + np.array([1.0, 0.0, -1.0, 0.0, 2.0, 0.0])) / 2
+    np.testing.assert_allclose(mixed, expected, atol=1e-6)

@@ -1,0 +1,275 @@
+import re
+from dataclasses import replace
+from string import Formatter
+
+import numpy as np
+import pytest
+
+from diagnosis.verdict.verdict import (
+    Amount,
+    ChannelFit,
+    EffectAt,
+    Estimate,
+    Fit,
+    Found,
+    When,
+)
+from experiments.diagnosis_report.figures import CLOSE_UP_S, close_up
+from experiments.diagnosis_report.held_out_series import (
+    ChannelSeries,
+    ReportSeries,
+    by_error,
+    rms,
+)
+from experiments.diagnosis_report.numbers import (
+    amount_text,
+    error_unit,
+    errors_text,
+    estimate_text,
+    percent,
+)
+from experiments.diagnosis_report.place_words import (
+    at_words,
+    channel_words,
+    place_words,
+)
+from experiments.diagnosis_report.text import finding, findings
+from experiments.diagnosis_report.words import WORDS, effect_words
+from groundwalk.errors import BadValueError, UnknownNameError
+
+# Effects with their parameters, as the diagnosis' file format has them.
+PARAMETERS = {
+    "viscous_friction": ("coefficient",),
+    "coulomb_friction": ("torque",),
+    "stribeck_friction": ("coulomb_torque", "extra_torque", "speed"),
+    "load_friction": ("share",),
+    "backlash": ("gap",),
+    "joint_elasticity": ("stiffness", "damping"),
+    "command_latency": ("delay",),
+    "sensor_delay": ("delay",),
+    "encoder_offset": ("offset",),
+    "gyro_bias": ("x", "y", "z"),
+    "torque_limit": ("torque",),
+    "speed_limit": ("speed",),
+    "servo_gain": ("factor",),
+    "servo_damping": ("factor",),
+    "armature": ("inertia",),
+    "payload_mass": ("mass",),
+    "com_offset": ("x", "y", "z"),
+    "joint_spring": ("stiffness", "rest"),
+    "end_stop": ("angle", "side"),
+    "servo_fade": ("rate",),
+    "contact_friction": ("coefficient",),
+    "contact_compliance": ("stiffness",),
+    "ground_slope": ("pitch", "roll"),
+    "uneven_ground": ("height",),
+    "external_force": ("x", "y", "z", "start", "duration"),
+    "drag": ("coefficient",),
+}
+BODIES = {"payload_mass", "com_offset", "external_force", "drag"}
+ELSEWHERE = {
+    "command_latency", "sensor_delay", "gyro_bias", "contact_friction",
+    "contact_compliance", "ground_slope", "uneven_ground",
+}  # fmt: skip
+UNSAID = {"end_stop": {"side"}, "external_force": {"start", "duration"}}
+
+
+def test_every_effect_has_words_and_no_other():
+    assert WORDS.keys() == PARAMETERS.keys()
+    assert len(WORDS) == 26
+    for words in WORDS.values():
+        assert re.fullmatch(r"[A-Z].*\.", words.meaning)
+        assert len(words.label) < 40
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+def test_findings_tell_the_place_and_every_parameter(name):
+    told = {field for _, field, _, _ in Formatter().parse(WORDS[name].finding) if field}
+    place = set() if name in ELSEWHERE else {"body" if name in BODIES else "joint"}
+    wanted = {*PARAMETERS[name], *place} - UNSAID.get(name, set())
+    assert told - {"lacking", "usual"} == wanted
+
+
+@pytest.mark.parametrize("name", PARAMETERS)
+@pytest.mark.parametrize("changed", [False, True])
+def test_findings_leave_nothing_open(name, changed):
+    parameters = {key: Estimate(0.2, 0.1, 0.3, "N") for key in PARAMETERS[name]}
+    text = finding(Found(name, "LTibia", parameters, 0.9), changed)
+    assert "{" not in text
+    assert "unknown amount" not in text
+    assert "sim" not in text or not changed
+    without = finding(Found(name, "LTibia", {}, 0.9), changed)
+    assert "an unknown amount" in without
+
+
+def test_unknown_effects_have_no_words():
+    assert effect_words("backlash").label == "play (backlash)"
+    with pytest.raises(UnknownNameError, match="did you mean 'backlash'"):
+        effect_words("backlsh")
+
+
+@pytest.mark.parametrize(
+    ("place", "kind", "words"),
+    [
+        ("LKneePitch", "joint", "the left knee (LKneePitch)"),
+        ("RAnkleRoll", "joint", "the right ankle roll (RAnkleRoll)"),
+        ("LHipYawPitch", "joint", "the left hip yaw pitch (LHipYawPitch)"),
+        ("LTibia", "body", "the left tibia (LTibia)"),
+        ("shoulder_pan", "joint", "the joint shoulder_pan"),
+        ("torso", "body", "the body torso"),
+        ("Lift", "joint", "the joint Lift"),
+        ("commands", "", "commands"),
+    ],
+)
+def test_places_in_words(place, kind, words):
+    assert place_words(place, kind) == words
+
+
+def test_effects_and_channels_in_words():
+    assert at_words(EffectAt("drag", "torso")) == "drag at the body torso"
+    assert at_words(EffectAt("command_latency", "commands")) == "late commands"
+    knee = "the torque of the right knee (RKneePitch)"
+    assert channel_words("torque.RKneePitch") == knee
+    assert channel_words("gyroscope.x") == "gyroscope x"
+
+
+@pytest.mark.parametrize(
+    ("estimate", "text"),
+    [
+        (Estimate(0.0304, 0.0271, 0.0338, "rad"), "0.030 rad (0.027 to 0.034)"),
+        (Estimate(3.041, 3.031, 3.053, "rad"), "3.041 rad (3.031 to 3.053)"),
+        (Estimate(0.0183, 0.0175, 0.0190, "s"), "18.3 ms (17.5 to 19.0)"),
+        (Estimate(12.31, 12.28, 12.34, "s"), "12.31 s (12.28 to 12.34)"),
+        (Estimate(203.5, 180.2, 231.9, "N s/m"), "204 N s/m (180 to 232)"),
+        (Estimate(0.0121, 0.0112, 0.0133, "kg m^2"), "0.0121 kg m² (0.0112 to 0.0133)"),
+        (Estimate(0.8, 0.76, 0.85, "1"), "0.80 (0.76 to 0.85)"),
+        (Estimate(0.0021, 0.0018, 0.0024, "1/s"), "0.21 % per second (0.18 to 0.24)"),
+        (Estimate(-0.0004, -0.5, 0.4, "N"), "0.0 N (-0.5 to 0.4)"),
+        (Estimate(-1.0, -1.0, -1.0, "1"), "-1"),
+        (Estimate(0.0, 0.0, 0.0, "rad"), "0 rad"),
+    ],
+)
+def test_estimates_have_the_digits_that_are_known(estimate, text):
+    assert estimate_text(estimate) == text
+
+
+def test_errors_that_stand_together_have_the_same_decimals():
+    assert errors_text([5.13, 1.17, 0.9]) == ["5.1", "1.2", "0.9"]
+    assert errors_text([None, 12.2, 14.0]) == ["\N{EN DASH}", "12", "14"]
+    assert errors_text([1234.0, 0.5, 0.0]) == ["1234", "0", "0"]
+    assert errors_text([None]) == ["\N{EN DASH}"]
+    assert error_unit("rad", 0.005) == (1e3, "mrad")
+    assert error_unit("rad", 0.5) == (1.0, "rad")
+    assert error_unit("N m", 0.005) == (1.0, "N m")
+
+
+def test_amounts_and_parts_of_a_hundred():
+    assert amount_text(Amount(0.00421, "rad")) == "0.0042 rad"
+    assert amount_text(Amount(0.0006, "s")) == "0.60 ms"
+    assert amount_text(Amount(0.0, "1")) == "0"
+    texts = [percent(part) for part in (0.0, 0.001, 0.5, 0.97, 0.998, 1.0)]
+    assert texts == ["0 %", "under 1 %", "50 %", "97 %", "over 99 %", "100 %"]
+
+
+def one_second(real, sim):
+    time_s = np.arange(1000) * 0.01
+    return close_up(time_s, real, sim)
+
+
+def test_the_close_up_is_where_the_error_is():
+    real, off = np.zeros(1000), np.zeros(1000)
+    off[600:700] = 0.1
+    wave = np.sin(0.3 * np.arange(1000))
+    rows = one_second(wave, wave + off)
+    assert rows.start <= 649 <= rows.stop - 1
+    assert rows.stop - rows.start == pytest.approx(100 * CLOSE_UP_S, abs=1)
+    assert one_second(real, real).start == 0
+    gap = np.where(off > 0, np.nan, real)
+    assert one_second(gap, real).start == 0
+
+
+def test_of_two_errors_the_one_beside_less_motion_is_shown():
+    motion = np.concatenate([np.linspace(0, 5, 500), 5 + 0.01 * np.arange(500) / 500])
+    off = np.full(1000, 0.02)
+    rows = one_second(motion, motion + off)
+    assert rows.start >= 400
+
+
+def channels(**errors):
+    flat = np.zeros(5)
+    return {
+        name: ChannelSeries(flat, flat + error, flat) for name, error in errors.items()
+    }
+
+
+def test_the_worst_channel_is_that_of_most_noise_floors():
+    series = ReportSeries("a", np.arange(5.0), channels(a=0.5, b=-0.1, c=9.0))
+    floors = {"a": 0.1, "b": 0.001}
+    fits = {
+        name: ChannelFit(nominal=1.0, corrected=1.0, floor=floor, unit="rad")
+        for name, floor in floors.items()
+    }
+    fit = Fit(nominal=1.0, corrected=1.0, floor=1.0, channels=fits)
+    assert by_error(series, fit) == ["b", "a"]
+    assert by_error(series, None) == ["c", "a", "b"]
+
+
+def test_rms_leaves_out_what_is_missing():
+    assert rms(np.array([3.0, np.nan, -4.0])) == pytest.approx(np.sqrt(12.5))
+    assert rms(np.array([np.nan])) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("time_s", "of"),
+    [
+        (np.arange(5.0), {}),
+        (np.arange(4.0), channels(a=1.0)),
+        (np.arange(1.0), channels(a=1.0)),
+    ],
+)
+def test_series_that_do_not_fit_together_are_refused(time_s, of):
+    assert ReportSeries("a", np.arange(5.0), channels(a=1.0)).name == "a"
+    with pytest.raises(BadValueError, match="series 'a'"):
+        ReportSeries("a", time_s, of)
+
+
+def friction(place, torque):
+    value = Estimate(torque, torque * 0.9, torque * 1.1, "N m")
+    return Found("coulomb_friction", place, {"torque": value}, 0.9)
+
+
+def test_one_effect_at_many_places_is_told_once():
+    at_three = [friction("A", 0.5), friction("B", 0.2), friction("C", 0.3)]
+    assert findings(at_three) == [
+        "dry friction at 3 places, torque from about 0.2 N m at the joint B to about "
+        "0.5 N m at the joint A"
+    ]
+    assert [clause.count("has dry friction") for clause in findings(at_three[:2])] == [
+        1,
+        1,
+    ]
+
+
+def test_effects_without_values_are_told_one_by_one():
+    bare = [Found("coulomb_friction", place, {}, 0.9) for place in "ABC"]
+    assert ["unknown amount" in told for told in findings(bare)] == [True] * 3
+
+
+def test_what_comes_and_goes_is_told_one_by_one():
+    fading = replace(friction("C", 0.3), when=When("drift", 1.0, 2.0))
+    told = findings([friction("A", 0.5), friction("B", 0.2), fading])
+    assert len(told) == 3
+    assert told[2].endswith("growing from 1 to 2 s")
+
+
+def test_what_the_data_do_not_show_is_not_given_as_a_number():
+    """A push across an axis that only slides, all the time."""
+    shown, not_shown = Estimate(3.4, 3.1, 3.6, "N"), Estimate(2.0, -598.0, 598.0, "N")
+    force = {"x": shown, "y": not_shown, "z": not_shown}
+    push = Found("external_force", "carriage", force, 0.8)
+    assert finding(push) == (
+        "the body carriage was pushed with about 3.4 N (3.1 to 3.6) in x, an unknown "
+        "amount in y and an unknown amount in z"
+    )
+    shove = replace(push, when=When("burst", 3.1, 3.35))
+    assert finding(shove).endswith("in z, from 3.1 to 3.35 s")

@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+from rrd_files import scene, walk_columns
+
+from terrain import make
+from worlds.scenes import colours
+from worlds.scenes.picture import SceneCamera
+
+BLUE = (20, 60, 230)
+SIZE_PX = (90, 80)
+
+
+def blueish(picture):
+    red, _, blue = np.moveaxis(picture.astype(int), -1, 0)
+    return blue > red + 60
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return scene(ground=make("flat", 0))
+
+
+def test_a_robot_stands_on_its_ground_below_the_sky(walk):
+    picture = SceneCamera(walk, BLUE, SIZE_PX).picture(0)
+    assert picture.shape == (80, 90, 3)
+    assert picture.dtype == np.uint8
+    assert (picture[0, :20] == colours.SKY).all()
+    red, green, _ = picture[-1, 0].astype(int)
+    assert green > red + 10
+    assert 20 < blueish(picture).sum() < 1000
+
+
+def test_the_camera_goes_with_the_robot(walk):
+    camera = SceneCamera(walk, BLUE, SIZE_PX)
+    middles = []
+    for tick in (0, walk.recording.ticks - 1):
+        _, columns = np.nonzero(blueish(camera.picture(tick)))
+        middles.append(columns.mean())
+    np.testing.assert_allclose(middles, 45, atol=15)
+
+
+def test_the_same_tick_gives_the_same_picture(walk):
+    first, second = (SceneCamera(walk, BLUE, SIZE_PX).picture(9) for _ in range(2))
+    np.testing.assert_array_equal(first, second)
+
+
+def test_balance_is_drawn_when_asked(walk):
+    def has(colour, **wish):
+        picture = SceneCamera(walk, BLUE, (300, 260), **wish).picture(20)
+        return (picture == colour).all(axis=-1).any()
+
+    for colour in (colours.FORCE, colours.SUPPORT_POLYGON):
+        assert has(colour, with_balance=True)
+        assert not has(colour)
+
+
+def test_of_a_tick_with_a_missing_value_the_rest_is_drawn():
+    columns = walk_columns()
+    columns["position.LKneePitch"][5] = np.nan
+    columns["base.position.x"][9] = np.nan
+    camera = SceneCamera(scene(columns=columns), BLUE, SIZE_PX)
+    part, whole = (blueish(camera.picture(tick)).sum() for tick in (5, 6))
+    assert 0 < part < whole
+    assert (camera.picture(9) == colours.SKY).all()

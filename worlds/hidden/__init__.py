@@ -1,0 +1,1 @@
+"""Physics that a world can have and its nominal model lacks."""

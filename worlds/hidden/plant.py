@@ -1,0 +1,213 @@
+"""Robots whose worlds can hide physics: what is nominally known of each."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import robots
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError, UnknownNameError
+from robots.description import Description
+from robots.mjcf import ROOT_JOINT, mujoco_spec
+from robots.model_urdf import model_urdf
+from worlds.recordings.metadata import ServoGains
+
+if TYPE_CHECKING:
+    import mujoco
+
+_SO101 = "so_arm_description/urdf/so101.urdf"
+_SO101_HELD = "gripper"
+SO101_TORQUE_NM = 2.9
+"""Of each servo, at most; the file that a diagnosis gets says so, too."""
+SO101_ROTOR_KG_M2 = 0.003
+"""Rotor behind the gear, lumped into each link. Without it the wrist's inertia is
+4e-5 kg m^2, which no servo of 17 N m/rad and 0.6 N m s/rad notices."""
+
+PENDULUM = """<mujoco model="pendulum">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="link">
+      <joint name="swing" type="hinge" axis="0 1 0" range="-3 3"
+        actuatorfrcrange="-4 4"/>
+      <inertial pos="0 0 -0.3" mass="0.5" diaginertia="0.002 0.002 0.001"/>
+      <geom type="capsule" size="0.01" fromto="0 0 0 0 0 -0.3" mass="0"
+        contype="0" conaffinity="0"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+"""Half a kilogram 0.3 m below a hinge."""
+
+
+@dataclass(frozen=True, eq=False)
+class HiddenPlant:
+    """The nominal robot; arrays are in the order of `joints`.
+
+    Attributes:
+      name: "pendulum", "so101" or a robot's name.
+      file: name and text of its model file; None where `name` says it all.
+      make_spec: a new MuJoCo specification without actuators and ground.
+      joints: that have servos.
+      links: the body that each joint moves.
+      kp_nm_rad, kd_nm_s_rad, max_torque_nm, back_emf_nm_s_rad: the servos,
+        torque = clip(kp (command - position) - kd v, +-max) - back_emf v.
+      range_rad: (j, 2) of each joint.
+      speed_rad_s: (j,) that commands may reach.
+      floating: whether the base is free.
+      description: of a robot that has one.
+    """
+
+    name: str
+    file: tuple[str, str] | None
+    make_spec: Callable[[], "mujoco.MjSpec"]
+    joints: tuple[str, ...]
+    links: tuple[str, ...]
+    kp_nm_rad: FloatArray
+    kd_nm_s_rad: FloatArray
+    max_torque_nm: FloatArray
+    back_emf_nm_s_rad: FloatArray
+    range_rad: FloatArray
+    speed_rad_s: FloatArray
+    floating: bool = False
+    description: Description | None = None
+
+    @property
+    def servo(self) -> dict[str, ServoGains]:
+        """As recordings state it; damping within and beside the limit in one."""
+        damping = self.kd_nm_s_rad + self.back_emf_nm_s_rad
+        rows = zip(self.kp_nm_rad, damping, self.max_torque_nm, strict=True)
+        gains = [ServoGains(*map(float, row)) for row in rows]
+        return dict(zip(self.joints, gains, strict=True))
+
+    def joint(self, name: str) -> int:
+        """Column of a joint.
+
+        Raises:
+          UnknownNameError: the robot has none of that name.
+        """
+        if name not in self.joints:
+            raise UnknownNameError(f"joint of {self.name}", name, self.joints)
+        return self.joints.index(name)
+
+    def with_gains(self, stiffness: float, damping: float = 1.0) -> "HiddenPlant":
+        """The same robot with other servo gains, which are known.
+
+        Args:
+          stiffness: factor of all kp.
+          damping: factor of all kd; back-EMF is the motor's and stays.
+        """
+        return replace(
+            self,
+            kp_nm_rad=self.kp_nm_rad * stiffness,
+            kd_nm_s_rad=self.kd_nm_s_rad * damping,
+        )
+
+
+def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
+    """A robot by name: "pendulum", "so101", or one that `groundwalk list` knows.
+
+    Raises:
+      GroundwalkError: there is no such robot, or its base cannot float.
+    """
+    if name in ("pendulum", "so101"):
+        if floating:
+            raise BadValueError(f"{name} stands on a fixed base")
+        return _pendulum() if name == "pendulum" else _so101()
+    return described_hidden_plant(robots.get(name), floating)
+
+
+def _pendulum() -> HiddenPlant:
+    import mujoco
+
+    return HiddenPlant(
+        name="pendulum",
+        file=("nominal.xml", PENDULUM),
+        make_spec=lambda: mujoco.MjSpec.from_string(PENDULUM),
+        joints=("swing",),
+        links=("link",),
+        kp_nm_rad=np.array([8.0]),
+        kd_nm_s_rad=np.array([0.2]),
+        max_torque_nm=np.array([4.0]),
+        back_emf_nm_s_rad=np.zeros(1),
+        range_rad=np.array([[-3.0, 3.0]]),
+        speed_rad_s=np.array([6.0]),
+    )
+
+
+def _so101() -> HiddenPlant:
+    """The arm of example-robot-data; the gripper is part of the wrist."""
+    import mujoco
+
+    text = so101_urdf()
+    model = mujoco.MjModel.from_xml_string(text)
+    joints = tuple(model.joint(i).name for i in range(model.njnt))
+    j = len(joints)
+    return HiddenPlant(
+        name="so101",
+        file=("nominal.urdf", text),
+        make_spec=lambda: mujoco.MjSpec.from_string(text),
+        joints=joints,
+        links=tuple(model.body(int(i)).name for i in model.jnt_bodyid),
+        kp_nm_rad=np.full(j, 17.0),
+        kd_nm_s_rad=np.full(j, 0.6),
+        max_torque_nm=np.full(j, SO101_TORQUE_NM),
+        back_emf_nm_s_rad=np.zeros(j),
+        range_rad=model.jnt_range.copy(),
+        speed_rad_s=np.full(j, 4.0),
+    )
+
+
+def so101_urdf() -> str:
+    """The arm without meshes and gripper joint, with the rotors in its links.
+
+    Raises:
+      BadValueError: the files of example-robot-data are not installed.
+    """
+    import mujoco
+
+    try:
+        files = distribution("example-robot-data").files or []
+        path = next(Path(str(f.locate())) for f in files if str(f).endswith(_SO101))
+        text = path.read_text()
+    except (PackageNotFoundError, StopIteration, OSError):
+        raise BadValueError(
+            "the files of example-robot-data are missing; groundwalk doctor tells more"
+        ) from None
+    text = re.sub(r"<(visual|collision)\b.*?</\1>", "", text, flags=re.DOTALL)
+    spec = mujoco.MjSpec.from_string(text)
+    spec.delete(spec.joint(_SO101_HELD))
+    return model_urdf(spec.compile(), "so101", SO101_ROTOR_KG_M2, SO101_TORQUE_NM)
+
+
+def described_hidden_plant(description: Description, floating: bool) -> HiddenPlant:
+    """The nominal robot of a description."""
+
+    def make() -> "mujoco.MjSpec":
+        spec = mujoco_spec(description)
+        for actuator in list(spec.actuators):
+            spec.delete(actuator)
+        if not floating:
+            spec.delete(spec.joint(ROOT_JOINT))
+        return spec
+
+    motors = [link.motor for link in description.links]
+    return HiddenPlant(
+        name=description.name,
+        file=None,
+        make_spec=make,
+        joints=description.joints,
+        links=tuple(joint.link.name for joint in description.links),
+        kp_nm_rad=np.array([motor.kp_nm_rad for motor in motors]),
+        kd_nm_s_rad=np.zeros(len(motors)),
+        max_torque_nm=np.array([motor.stall_torque_nm for motor in motors]),
+        back_emf_nm_s_rad=np.array([motor.kd_nm_s_rad for motor in motors]),
+        range_rad=description.joint_range_rad,
+        speed_rad_s=0.7 * description.no_load_speed_rad_s,
+        floating=floating,
+        description=description,
+    )

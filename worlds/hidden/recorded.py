@@ -1,0 +1,154 @@
+"""What sensors make of a run with hidden physics: a recording."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from worlds.hidden.effects import Hidden
+from worlds.hidden.plant import HiddenPlant
+from worlds.hidden.run import Run
+from worlds.recordings.columns import vector_columns
+from worlds.recordings.metadata import RecordingMetadata
+from worlds.recordings.recording import Recording
+
+
+@dataclass(frozen=True)
+class HiddenSensors:
+    """Standard deviations and quanta.
+
+    Attributes:
+      quantum_rad: resolution of the encoders; 12 bits a turn.
+      encoder_rad: their noise, before they round.
+      gyroscope_rad_s: noise of each axis.
+      accelerometer_m_s2: noise of each axis.
+      foot_force_n: noise of each foot's sum.
+      place_m: of the base, as cameras see it.
+      turn_rad: of the base, likewise.
+      linear_m_s: of the base's velocity.
+      angular_rad_s: of the base's turning rate.
+    """
+
+    quantum_rad: float = 2 * math.pi / 4096
+    encoder_rad: float = 0.0004
+    gyroscope_rad_s: float = 0.004
+    accelerometer_m_s2: float = 0.06
+    foot_force_n: float = 0.4
+    place_m: float = 0.0002
+    turn_rad: float = 0.0005
+    linear_m_s: float = 0.005
+    angular_rad_s: float = 0.005
+
+    def __post_init__(self) -> None:
+        """Refuse negative spreads."""
+        for name, value in vars(self).items():
+            if not (math.isfinite(value) and value >= 0):
+                raise BadValueError(f"{name} is {value}; it must not be negative")
+
+
+def hidden_recording(
+    plant: HiddenPlant,
+    run: Run,
+    effects: Sequence[Hidden],
+    sensors: HiddenSensors,
+    rng: np.random.Generator,
+    metadata: RecordingMetadata,
+) -> Recording:
+    """What is written down: encoders, their differences, and what the base carries.
+
+    Velocities are differences of the encoders' numbers, as cheap servos give them.
+
+    Args:
+      plant: the robot.
+      run: what really happened.
+      effects: what is hidden; the gyroscope's bias is one.
+      sensors: how good the sensors are.
+      rng: draws the noise.
+      metadata: of the recording.
+    """
+    first = run.clock.first
+    measured = run.encoder_rad + sensors.encoder_rad * rng.standard_normal(
+        run.encoder_rad.shape
+    )
+    if sensors.quantum_rad > 0:
+        measured = np.round(measured / sensors.quantum_rad) * sensors.quantum_rad
+    speeds = np.zeros_like(measured)
+    speeds[1:] = np.diff(measured, axis=0) / np.diff(run.clock.time_s)[:, None]
+    columns = {"time": run.clock.time_s}
+    for quantity, table in (
+        ("position", measured),
+        ("velocity", speeds),
+        ("command", run.command_rad),
+    ):
+        for name, values in zip(plant.joints, table.T, strict=True):
+            columns[f"{quantity}.{name}"] = values
+    if plant.description is not None:
+        columns |= _inertial(run, effects, sensors, rng)
+    if plant.floating:
+        columns |= _base(run, sensors, rng)
+    return Recording({name: v[first:] for name, v in columns.items()}, metadata)
+
+
+def _vector(name: str, table: FloatArray) -> dict[str, FloatArray]:
+    return dict(zip(vector_columns(name), table.T, strict=True))
+
+
+def _inertial(
+    run: Run,
+    effects: Sequence[Hidden],
+    sensors: HiddenSensors,
+    rng: np.random.Generator,
+) -> dict[str, FloatArray]:
+    bias = np.zeros(3)
+    for effect in (e for e in effects if e.name == "gyro_bias"):
+        bias += [effect[axis] for axis in "xyz"]
+    rate, felt = run.sense["gyroscope_rad_s"], run.sense["accelerometer_m_s2"]
+    noise = rng.standard_normal((2, *rate.shape))
+    return _vector(
+        "gyroscope", rate + bias + sensors.gyroscope_rad_s * noise[0]
+    ) | _vector("accelerometer", felt + sensors.accelerometer_m_s2 * noise[1])
+
+
+def _base(
+    run: Run, sensors: HiddenSensors, rng: np.random.Generator
+) -> dict[str, FloatArray]:
+    sense, rows = run.sense, len(run.command_rad)
+
+    def noisy(name: str, spread: float) -> FloatArray:
+        return np.asarray(sense[name] + spread * rng.standard_normal((rows, 3)))
+
+    feet = sense["foot_force_n"].reshape(rows, 2, 4).sum(axis=2)
+    feet = np.maximum(feet + sensors.foot_force_n * rng.standard_normal((rows, 2)), 0)
+    place = noisy("position_m", sensors.place_m)
+    turn = _turned(sense["orientation"], sensors.turn_rad, rng)
+    linear = noisy("linear_m_s", sensors.linear_m_s)
+    angular = noisy("angular_rad_s", sensors.angular_rad_s)
+    return (
+        _vector("foot_force", feet)
+        | _vector("base.position", place)
+        | _vector("base.orientation", turn)
+        | _vector("base.linear_velocity", linear)
+        | _vector("base.angular_velocity", angular)
+    )
+
+
+def _turned(
+    orientation: FloatArray, spread_rad: float, rng: np.random.Generator
+) -> FloatArray:
+    """Quaternions (rows, 4), each turned by a small random angle."""
+    x, y, z = (spread_rad / 2 * rng.standard_normal((len(orientation), 3))).T
+    a, b, c, d = orientation.T
+    # orientation times the quaternion 1 + (x, y, z), which is a small turn
+    turned = np.stack(
+        [
+            a - b * x - c * y - d * z,
+            b + a * x + c * z - d * y,
+            c + a * y + d * x - b * z,
+            d + a * z + b * y - c * x,
+        ],
+        axis=1,
+    )
+    return np.asarray(turned / np.linalg.norm(turned, axis=1, keepdims=True))

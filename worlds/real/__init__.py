@@ -1,0 +1,1 @@
+"""The uneven world: PyBullet."""

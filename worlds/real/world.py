@@ -1,0 +1,131 @@
+"""The "real" world: PyBullet on uneven ground, in several processes."""
+
+import contextlib
+import multiprocessing
+import os
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import GroundwalkError
+from robots.description import Description
+from terrain import Heightfield
+from worlds.observation import Observation, Truth
+from worlds.real.hidden_robot import check_hidden
+from worlds.real.worker import serve, state_columns
+from worlds.rollouts import RolloutWorld, Schedule
+from worlds.sim.start_height import Standing
+from worlds.world import TICK_S, WorldOptions
+
+_PATIENCE_S = 5.0
+
+
+class RealWorld(RolloutWorld):
+    """n robots in PyBullet, each with a client of its own, spread over processes.
+
+    The motors are the sim's (`ServoTwin`), unless the options hide physics. Robot i's
+    rollout has the same bits whatever n is and however many processes run.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        grounds: Sequence[Heightfield],
+        seeds: Sequence[np.random.SeedSequence],
+        options: WorldOptions,
+    ) -> None:
+        """Start the processes and load every robot's ground."""
+        check_hidden(description, options)
+        super().__init__(description, grounds, seeds, options)
+        workers = min(options.threads or os.cpu_count() or 1, self.n)
+        self._shares = np.array_split(np.arange(self.n), workers)
+        context = multiprocessing.get_context("spawn")
+        self._connections = []
+        self._processes = []
+        for _ in self._shares:
+            here, there = context.Pipe()
+            process = context.Process(target=serve, args=(there,), daemon=True)
+            process.start()
+            there.close()
+            self._connections.append(here)
+            self._processes.append(process)
+        # Not as arguments: `start` hangs if a process ends before it has read them.
+        self._send(
+            [
+                (description, [self._grounds[i] for i in share], options)
+                for share in self._shares
+            ]
+        )
+        self._columns = state_columns(len(description.joints))
+        self._standing = Standing(description)
+
+    def close(self) -> None:
+        """End the processes."""
+        for connection in self._connections:
+            with contextlib.suppress(OSError):
+                connection.send(("stop",))
+            connection.close()
+        for process in self._processes:
+            process.join(_PATIENCE_S)
+            if process.is_alive():
+                process.kill()
+        self._connections, self._processes = [], []
+
+    def _start(self, pose_rad: FloatArray) -> None:
+        heights_m = self._standing.heights_m(pose_rad, self._grounds)
+        self._exchange(
+            [("start", pose_rad[share], heights_m[share]) for share in self._shares]
+        )
+
+    def _advance(self, schedule: Schedule) -> None:
+        self._exchange(
+            [
+                (
+                    "step",
+                    self.active[share],
+                    [(targets[share], steps) for targets, steps in schedule],
+                )
+                for share in self._shares
+            ]
+        )
+
+    def _exchange(self, messages: list[tuple[object, ...]]) -> None:
+        """Send each process its message, and keep the rows that they answer."""
+        self._send(messages)
+        with self._closed_if_one_ended():
+            self._rows = np.concatenate([c.recv() for c in self._connections])
+
+    def _send(self, messages: list[tuple[object, ...]]) -> None:
+        with self._closed_if_one_ended():
+            for connection, message in zip(self._connections, messages, strict=True):
+                connection.send(message)
+
+    @contextlib.contextmanager
+    def _closed_if_one_ended(self) -> Iterator[None]:
+        try:
+            yield
+        except (EOFError, OSError) as error:
+            self.close()
+            raise GroundwalkError(
+                "a process of the real world ended while it was computing; "
+                "run it again with one process to see why"
+            ) from error
+
+    def _read(self) -> tuple[Truth, Observation]:
+        part = {name: self._rows[:, at].copy() for name, at in self._columns.items()}
+        truth = Truth(
+            base_position_m=part["base_pose"][:, :3],
+            base_orientation=part["base_pose"][:, 3:],
+            base_linear_velocity_m_s=part["base_velocity"][:, :3],
+            base_angular_velocity_rad_s=part["base_velocity"][:, 3:],
+        )
+        observation = Observation(
+            time_s=self._ticks * TICK_S,
+            position_rad=part["position_rad"],
+            velocity_rad_s=part["velocity_rad_s"],
+            gyroscope_rad_s=part["gyroscope_rad_s"],
+            accelerometer_m_s2=part["accelerometer_m_s2"],
+            foot_force_n=part["foot_force_n"],
+        )
+        return truth, observation

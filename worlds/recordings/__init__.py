@@ -1,0 +1,1 @@
+"""Rollouts written down: columns, metadata, files."""

@@ -1,0 +1,1 @@
+"""Scenes and searches as files for Rerun's viewer."""

@@ -1,0 +1,135 @@
+"""A scene's balance in Rerun: mass, pressure, ZMP and support on the ground.
+
+| entity | what |
+|---|---|
+| `balance/centre_of_mass` | a point, and its whole way as a line (`.../track`) |
+| `balance/below` | the centre of mass, seen from above, at the lowest sole's height |
+| `balance/pressure` | the centre of pressure that the force sensors measure |
+| `balance/zmp` | the ZMP that follows from the motion |
+| `balance/polygon` | the support polygon: the hull of the soles that carry |
+| `balance/sideways/...` | y over time [m] of the centre of mass, pressure and ZMP |
+| `contact/support` | which feet carry, as measured: left, right, both or none |
+| `fall` | where the robot fell: a ring on the ground, and when |
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray, IntArray
+from worlds.rerun_files.columns import ColumnLog
+from worlds.scenes import colours
+from worlds.scenes.balance import Balance, balance, loaded_feet
+from worlds.scenes.curves import MEASURED_SUPPORT, SIDEWAYS, Trace
+from worlds.scenes.fall_ring import fall_ring
+from worlds.scenes.scene import Scene
+from worlds.world import FALLS
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+_LIFT_M = 0.002
+"""Above the ground, to be seen."""
+_POINT_M, _LINE_M = 0.008, 0.003
+
+
+def write_balance(log: ColumnLog, scene: Scene) -> None:
+    """Write a scene's balance and its fall."""
+    found = balance(scene)
+    _write_points(log, found, scene.recording.has("base.position"))
+    if found.polygons_m is not None:
+        _write_polygons(log, found.polygons_m)
+    _write_support(log, scene)
+    _write_fall(log, scene, found)
+
+
+def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
+    import rerun as rr
+
+    points = {
+        "centre_of_mass": (found.centre_of_mass_m, colours.MASS),
+        "below": (found.below_m, colours.MASS),
+        "pressure": (found.pressure_m, colours.FORCE),
+        "zmp": (found.zmp_m, colours.ZMP),
+    }
+    for name, (place_m, colour) in points.items():
+        if place_m is not None:
+            look = rr.Points3D.from_fields(
+                radii=_POINT_M, colors=colour, labels=[name], show_labels=False
+            )
+            log.log(f"balance/{name}", look)
+            lift_m = np.array([0.0, 0.0, 0.0 if name == "centre_of_mass" else _LIFT_M])
+            # Of a tick without the point nothing is shown, not the last one.
+            known = np.isfinite(place_m[:, 0])
+            columns = rr.Points3D.columns(positions=(place_m + lift_m)[known])
+            rows = np.arange(len(known))
+            log.send_rows(f"balance/{name}", rows, columns.partition(known.astype(int)))
+            if is_placed and name != "below":
+                trace = [name.replace("_", " ")], place_m[:, 1], [colour]
+                log.trace(Trace(f"{SIDEWAYS}/{name}", *trace))
+    _write_track(log, found)
+
+
+def _write_track(log: ColumnLog, found: Balance) -> None:
+    """The whole way of the centre of mass."""
+    import rerun as rr
+
+    is_known = np.isfinite(found.centre_of_mass_m).all(axis=1)
+    track = rr.LineStrips3D(
+        [found.centre_of_mass_m[is_known]], radii=_LINE_M / 2, colors=colours.MASS
+    )
+    log.log("balance/centre_of_mass/track", track)
+
+
+def _write_polygons(log: ColumnLog, polygons_m: list[FloatArray]) -> None:
+    import rerun as rr
+
+    look = rr.LineStrips3D.from_fields(radii=_LINE_M, colors=colours.SUPPORT_POLYGON)
+    log.log("balance/polygon", look)
+    lift_m = np.array([0.0, 0.0, _LIFT_M])
+    strips = [np.vstack([corners, corners[:1]]) + lift_m for corners in polygons_m]
+    rows = np.arange(len(strips))
+    log.send_rows("balance/polygon", rows, rr.LineStrips3D.columns(strips=strips))
+
+
+def _write_support(log: ColumnLog, scene: Scene) -> None:
+    import rerun as rr
+
+    rows, legs = measured_support(scene)
+    if legs:
+        log.log(MEASURED_SUPPORT, support_look())
+        log.send_rows(MEASURED_SUPPORT, rows, rr.StateChange.columns(state=legs))
+
+
+def support_look() -> "rr.StateConfiguration":
+    """The colours of the lanes that say which leg carries."""
+    import rerun as rr
+
+    lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE, "none": colours.FALL}
+    return rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
+
+
+def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
+    """Rows at which the feet that carry change, and to which."""
+    loaded = loaded_feet(scene)
+    if loaded is None:
+        return np.empty(0, np.intp), []
+    code = loaded["left"] + 2 * loaded["right"]
+    rows = np.flatnonzero(np.diff(code, prepend=-1) != 0)
+    return rows, [("none", "left", "right", "both")[k] for k in code[rows]]
+
+
+def _write_fall(log: ColumnLog, scene: Scene, found: Balance) -> None:
+    """Where the robot fell; on the ground from the start, so that it is expected."""
+    import rerun as rr
+
+    end = scene.recording.metadata.end
+    place_m = found.below_m[-1]
+    if end not in FALLS or not np.isfinite(place_m).all():
+        return
+    strip_m = fall_ring(place_m, scene.ground)
+    text = f"{end} at {scene.recording.time_s[-1]:.2f} s"
+    look = rr.LineStrips3D(
+        [strip_m], radii=1.5 * _LINE_M, colors=colours.FALL, labels=[text]
+    )
+    log.log("fall", look)

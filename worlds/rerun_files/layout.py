@@ -1,0 +1,169 @@
+"""How Rerun's viewer lays out a file: where robots, curves and feet are to be seen."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from worlds.recordings.columns import SUPPORT
+from worlds.scenes.balance import loaded_feet
+from worlds.scenes.curves import MEASURED_SUPPORT, Curve, Plot, plots
+from worlds.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    import rerun.blueprint as rrb
+
+MOST_ABREAST = 2
+"""As many scenes stand side by side with all their curves; of more, tabs hold these."""
+
+_ON_GROUND = ("below", "pressure", "zmp", "polygon")
+_PAGE_COLUMNS = 2
+_ROBOT_COLUMNS = 4
+
+
+def blueprint(
+    scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
+) -> "rrb.Blueprint":
+    """Everything at once: scenes from left to right, each above its traces.
+
+    Args:
+      scenes: what the file shows, each below its own name.
+      pages: curves by the name of their page; if there are any, they stand below the
+        scenes, of which only the robots are shown then.
+    """
+    import rerun.blueprint as rrb
+
+    tabs: list[rrb.Grid | rrb.Vertical] = [_page(*page) for page in pages.items()]
+    if not pages and len(scenes) > MOST_ABREAST:
+        tabs = [_scene_tab(scene) for scene in scenes]
+    if tabs:
+        abreast = min(len(scenes), _ROBOT_COLUMNS)
+        robots = map(_robot_view, scenes)
+        rows = [rrb.Grid(*robots, grid_columns=abreast)] if scenes else []
+        rows.append(rrb.Tabs(*tabs))
+    else:
+        rows = [rrb.Horizontal(*map(_scene_views, scenes))]
+    return rrb.Blueprint(
+        rrb.Vertical(*rows) if len(rows) > 1 else rows[0],
+        rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
+        collapse_panels=True,
+    )
+
+
+def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
+    """Curves side by side; what the colours mean is said in the first row."""
+    import rerun.blueprint as rrb
+
+    views = [
+        rrb.TimeSeriesView(
+            name="/".join(trace.path.split("/")[-2:]),
+            origin=f"/{trace.path}",
+            plot_legend=rrb.PlotLegend(visible=index < _PAGE_COLUMNS),
+        )
+        for index, (_, trace) in enumerate(curves)
+    ]
+    return rrb.Grid(*views, grid_columns=_PAGE_COLUMNS, name=name)
+
+
+def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
+    """The robot, followed from its front right."""
+    import rerun.blueprint as rrb
+
+    at = f"/{scene.name}"
+    size = scene.description.scale.length
+    follow = rrb.EyeControls3D(
+        position=(0.7 * size, -0.75 * size, 0.5 * size),
+        look_target=(0.0, 0.0, 0.1 * size),
+        tracking_entity=f"{at}/robot/{scene.description.root.name}",
+    )
+    return rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
+
+
+def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
+    """The soles and what lies on the ground, followed from above; ahead is up."""
+    import rerun.blueprint as rrb
+
+    at = f"/{scene.name}"
+    robot = scene.description
+    feet = [robot.links[foot.joint].link.name for foot in robot.feet]
+    follow = rrb.EyeControls3D(
+        position=(-0.02, 0.0, 0.55 * robot.scale.length),
+        look_target=(0.0, 0.0, 0.0),
+        tracking_entity=f"{at}/balance/below",
+    )
+    return rrb.Spatial3DView(
+        name="from above",
+        origin=at,
+        contents=[
+            f"{at}/ground",
+            *(f"{at}/balance/{part}" for part in _ON_GROUND),
+            f"{at}/fall",
+            *(f"{at}/robot/{foot}/rim" for foot in feet),
+        ],
+        eye_controls=follow,
+    )
+
+
+def _scene_views(scene: Scene) -> "rrb.Vertical":
+    """The robot above what it did and felt."""
+    import rerun.blueprint as rrb
+
+    rows, shares = _traces(scene)
+    above = rrb.Horizontal(
+        _robot_view(scene), _balance_view(scene), column_shares=[3, 2]
+    )
+    return rrb.Vertical(above, *rows, row_shares=[12, *shares])
+
+
+def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
+    """What a scene did and felt, beside the ground from above."""
+    import rerun.blueprint as rrb
+
+    rows, shares = _traces(scene)
+    views = [_balance_view(scene)]
+    if rows:
+        views.append(rrb.Vertical(*rows, row_shares=shares))
+    return rrb.Horizontal(*views, column_shares=[1, 3][: len(views)], name=scene.name)
+
+
+def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]":
+    """Rows of plots and the lanes of the legs, and how high each shall be."""
+    import rerun.blueprint as rrb
+
+    at = f"/{scene.name}"
+    rows: list[rrb.Horizontal | rrb.View] = [
+        rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
+    ]
+    shares = [4] * len(rows)
+    lanes = [SUPPORT] if SUPPORT in scene.recording.columns else []
+    lanes += [MEASURED_SUPPORT] if loaded_feet(scene) else []
+    if lanes:
+        contents = [f"{at}/{lane}" for lane in lanes]
+        view = rrb.StateTimelineView(
+            name="support: planned and felt",
+            origin=at,
+            contents=contents,
+            time_view=_window(),
+        )
+        rows.append(view)
+        shares.append(3)
+    return rows, shares
+
+
+def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
+    import rerun.blueprint as rrb
+
+    return rrb.TimeSeriesView(
+        name=plot.name,
+        contents=[f"{at}/{path}" for path in plot.paths],
+        axis_x=_window(),
+        plot_legend=rrb.PlotLegend(visible=plot.has_key),
+    )
+
+
+def _window() -> "rrb.TimeAxis":
+    """A few seconds around the time cursor: a whole course would be a blur."""
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+    start = rrb.TimeRangeBoundary.cursor_relative(seconds=-2.0)
+    end = rrb.TimeRangeBoundary.cursor_relative(seconds=1.0)
+    return rrb.TimeAxis(view_range=rr.TimeRange(start, end))

@@ -1,0 +1,203 @@
+"""A search as a Rerun file: what each generation tried, and what it came to.
+
+Its one timeline is `generation`. What is drawn over it shows the whole search; bars,
+page and robot show the generation under the cursor.
+
+| entity | what |
+|---|---|
+| `search/reward/{best,middle}` | reward of the best and of the middle gait tried |
+| `search/reward/{mean,tried}` | of the mean gait, and points: of every gait tried |
+| `search/rewards` | bars: how many gaits got how much |
+| `search/falls` | how many of the tried gaits fell [%] |
+| `search/parameters/<name>/{mean,spread}` | mean gait, and one deviation around it |
+| `search/parameters/<name>/best` | of the best gait, where the history has it |
+| `search/gait` | page: parameters of the best gait and of the mean |
+| `search/walk/...` | the best gait walks, see `worlds.rerun_files.search_walk` |
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.files import write_bytes
+from worlds.rerun_files.search_history import SearchHistory
+from worlds.rerun_files.search_page import search_page
+from worlds.rerun_files.search_walk import walk_view, write_walks
+from worlds.scenes import colours
+
+if TYPE_CHECKING:
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+TIMELINE = "generation"
+_APPLICATION = "groundwalk-search"
+"""Not that of walks: the viewer has one layout for each application."""
+
+_BINS = 30
+_PARAMETER_COLUMNS = 4
+_MEAN, _BEST, _TRIED = colours.accent(0), colours.accent(1), colours.NEITHER_SIDE
+
+
+def write_search(path: Path, history: SearchHistory, identity: str) -> None:
+    """Write a search into one Rerun file, the file at once.
+
+    Args:
+      path: the `.rrd` file.
+      history: at least one generation.
+      identity: to the viewer, files of one identity are one recording.
+    """
+    import rerun as rr
+
+    stream = rr.RecordingStream(_APPLICATION, recording_id=identity)
+    file = stream.memory_recording()
+    stream.send_blueprint(_layout(history))
+    stream.send_recording_name(path.stem)
+    _write_rewards(stream, history)
+    _write_parameters(stream, history)
+    if history.walks:
+        index = rr.TimeColumn(TIMELINE, sequence=np.arange(len(history.walks)))
+        write_walks(stream, history.walks, index, _BEST)
+    for generation in range(len(history.rewards)):
+        _write_generation(stream, history, generation)
+    write_bytes(path, file.drain_as_bytes())
+
+
+def _write_rewards(stream: "rr.RecordingStream", history: SearchHistory) -> None:
+    import rerun as rr
+
+    tried = _tried(history)
+    count = tried.shape[1]
+    look = rr.SeriesPoints(
+        colors=[_TRIED] * count, names=["tried"] * count, marker_sizes=[1.5] * count
+    )
+    _send(stream, "reward/tried", tried, look)
+    for name, values, colour in (
+        ("best", np.nanmax(tried, axis=1), _BEST),
+        ("middle", np.nanmedian(tried, axis=1), colours.AXES[1]),
+        ("mean gait", history.mean_reward, _MEAN),
+    ):
+        _send(stream, f"reward/{name.split()[0]}", values, _line(name, colour))
+    counts = np.array([len(rewards) for rewards in history.rewards])
+    share = 100 * history.falls / counts
+    _send(stream, "falls", share, _line("fell [%]", colours.FALL))
+
+
+def _write_parameters(stream: "rr.RecordingStream", history: SearchHistory) -> None:
+    import rerun as rr
+
+    band = [colours.pale(_MEAN)] * 2
+    for name, mean in history.mean.items():
+        around = history.spread.get(name)
+        if around is not None:
+            edges = np.stack([mean - around, mean + around], axis=1)
+            look = rr.SeriesLines(names=["mean - sd", "mean + sd"], colors=band)
+            _send(stream, f"parameters/{name}/spread", edges, look)
+        _send(stream, f"parameters/{name}/mean", mean, _line("mean", _MEAN))
+        if name in history.best:
+            best = history.best[name]
+            _send(stream, f"parameters/{name}/best", best, _line("best", _BEST))
+
+
+def _write_generation(
+    stream: "rr.RecordingStream", history: SearchHistory, generation: int
+) -> None:
+    """What is shown of one generation at a time."""
+    import rerun as rr
+
+    tried = _tried(history)
+    edges = np.linspace(np.nanmin(tried), np.nanmax(tried) + 1e-9, _BINS + 1)
+    bars = rr.BarChart(
+        np.histogram(history.rewards[generation], edges)[0],
+        abscissa=(edges[:-1] + edges[1:]) / 2,
+        widths=np.diff(edges).astype(np.float32),
+        color=_MEAN,
+    )
+    stream.set_time(TIMELINE, sequence=generation)
+    stream.log("search/rewards", bars, strict=True)
+    page = rr.TextDocument(search_page(history, generation), media_type="text/markdown")
+    stream.log("search/gait", page, strict=True)
+
+
+def _tried(history: SearchHistory) -> FloatArray:
+    """(generations, gaits) rewards from the best on, NaN where fewer were tried."""
+    tried = np.full((len(history.rewards), max(map(len, history.rewards))), np.nan)
+    for row, rewards in zip(tried, history.rewards, strict=True):
+        row[: len(rewards)] = np.sort(rewards)[::-1]
+    return tried
+
+
+def _send(
+    stream: "rr.RecordingStream", path: str, values: FloatArray, look: Any
+) -> None:
+    """Send (generations,) or (generations, lines) values and what they look like."""
+    import rerun as rr
+
+    stream.log(f"search/{path}", look, static=True, strict=True)
+    index = rr.TimeColumn(TIMELINE, sequence=np.arange(len(values)))
+    columns = rr.Scalars.columns(scalars=values)
+    stream.send_columns(f"search/{path}", [index], columns, strict=True)
+
+
+def _line(name: str, colour: colours.Colour) -> "rr.SeriesLines":
+    import rerun as rr
+
+    return rr.SeriesLines(names=[name], colors=[colour])
+
+
+def _layout(history: SearchHistory) -> "rrb.Blueprint":
+    """The walk beside the generation's gaits, the whole search below, in tabs.
+
+    Without walks, everything at once.
+    """
+    import rerun.blueprint as rrb
+
+    page = rrb.TextDocumentView(name="gaits of this generation", origin="search/gait")
+    parameters = [_parameter_view(history, name) for name in history.mean]
+    grid = rrb.Grid(*parameters, grid_columns=_PARAMETER_COLUMNS, name="parameters")
+    if history.walks:
+        robot = walk_view(history.walks, "best gait of this generation")
+        above = rrb.Horizontal(robot, page, column_shares=[5, 2])
+        tabs = [_reward_views(history, abreast=True), *([grid] if parameters else [])]
+        rows = [above, rrb.Tabs(*tabs)]
+        shares = [5, 3]
+    else:
+        above = rrb.Horizontal(
+            _reward_views(history, abreast=False), page, column_shares=[2, 1]
+        )
+        rows = [above, *([grid] if parameters else [])]
+        shares = [1] * len(rows)
+    return rrb.Blueprint(
+        rrb.Vertical(*rows, row_shares=shares),
+        rrb.TimePanel(timeline=TIMELINE, state="collapsed", fps=1.0, loop_mode="All"),
+        collapse_panels=True,
+    )
+
+
+def _reward_views(
+    history: SearchHistory, abreast: bool
+) -> "rrb.Horizontal | rrb.Vertical":
+    """Rewards, all abreast or above the two others: by gait, and falls."""
+    import rerun.blueprint as rrb
+
+    unit = history.units.get("reward", "")
+    rewards = rrb.TimeSeriesView(name=f"reward [{unit}]", origin="search/reward")
+    others = (
+        rrb.BarChartView(name=f"gaits by reward [{unit}]", origin="search/rewards"),
+        rrb.TimeSeriesView(name="tried gaits that fell [%]", origin="search/falls"),
+    )
+    if abreast:
+        shares = [2, 1, 1]
+        return rrb.Horizontal(rewards, *others, column_shares=shares, name="rewards")
+    return rrb.Vertical(rewards, rrb.Horizontal(*others), row_shares=[3, 2])
+
+
+def _parameter_view(history: SearchHistory, name: str) -> "rrb.TimeSeriesView":
+    import rerun.blueprint as rrb
+
+    return rrb.TimeSeriesView(
+        name=f"{name} [{history.units[name]}]" if name in history.units else name,
+        origin=f"search/parameters/{name}",
+        plot_legend=rrb.PlotLegend(visible=False),
+    )

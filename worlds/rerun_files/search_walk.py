@@ -1,0 +1,233 @@
+"""The best gait of each generation in Rerun: a robot in several poses along its walk.
+
+| entity | what |
+|---|---|
+| `search/walk/robot/<link>` | mesh, in several poses, from start to end of the walk |
+| `search/walk/robot/<foot>/sole` | the sole's plate, in the same poses |
+| `search/walk/track` | the way of the centre of mass |
+| `search/walk/fall` | where the robot fell: a ring on the ground; else nothing |
+| `search/walk/ground` | what the walks went over, and a little beside it |
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray, IntArray
+from robots.description import Link
+from terrain import Heightfield
+from worlds.rerun_files.capsule_mesh import capsule_mesh
+from worlds.rerun_files.link_meshes import LinkMesh, link_mesh
+from worlds.rerun_files.search_history import SearchWalk
+from worlds.scenes import colours
+from worlds.scenes.balance import balance
+from worlds.scenes.fall_ring import fall_ring
+from worlds.scenes.forward_kinematics import LinkPoses
+from worlds.scenes.shapes import Mesh, ground_mesh, sole_mesh
+
+if TYPE_CHECKING:
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+AT = "search/walk"
+POSES = 7
+"""Of a walk, at even times, its first and its last one among them."""
+
+_BESIDE_M = 0.35
+"""Ground beyond the places that a joint gets to."""
+
+_TRACK_M, _RING_M = 0.003, 0.0045
+
+
+def write_walks(
+    stream: "rr.RecordingStream",
+    walks: Sequence[SearchWalk],
+    index: "rr.TimeColumn",
+    colour: colours.Colour,
+) -> None:
+    """Write the walks of one robot.
+
+    Args:
+      stream: of a recording.
+      walks: at least one, all with ground or none; the grounds' grids are alike.
+      index: where they are on a timeline, one entry for each walk.
+      colour: of the robot.
+    """
+    import rerun as rr
+
+    stream.log(AT, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
+    log = _WalkLog(stream, index)
+    _write_robot(log, walks, colour)
+    _write_tracks(log, walks)
+    _write_ground(log, walks)
+
+
+class _WalkLog:
+    """Writes what each walk has one of."""
+
+    def __init__(self, stream: "rr.RecordingStream", index: "rr.TimeColumn") -> None:
+        self._stream, self._index = stream, index
+
+    def log(self, path: str, what: "rr.AsComponents") -> None:
+        """Log what is the same in all walks."""
+        self._stream.log(f"{AT}/{path}", what, static=True, strict=True)
+
+    def send(self, path: str, columns: Any) -> None:
+        """Send an archetype's columns, a row for each walk."""
+        self._stream.send_columns(f"{AT}/{path}", [self._index], columns, strict=True)
+
+
+def stills(ticks: int) -> IntArray:
+    """Rows of a recording, at most `POSES`, evenly from the first to the last one."""
+    return np.unique(np.rint(np.linspace(0, ticks - 1, POSES)).astype(np.intp))
+
+
+def _write_robot(
+    log: _WalkLog, walks: Sequence[SearchWalk], colour: colours.Colour
+) -> None:
+    import rerun as rr
+
+    robot = walks[0].scene.description
+    poses = _still_poses(walks)
+    for link in (robot.root, *(joint.link for joint in robot.links)):
+        mesh = _look(link, colour)
+        if mesh is not None:
+            log.log(f"robot/{link.name}", rr.Mesh3D(**mesh._asdict()))
+            log.send(f"robot/{link.name}", poses[link.name])
+    for foot in robot.feet:
+        link = robot.links[foot.joint].link
+        sole = sole_mesh(foot, colour)
+        log.log(f"robot/{link.name}/sole", rr.Mesh3D(**sole._asdict()))
+        log.send(f"robot/{link.name}/sole", poses[link.name])
+
+
+def _look(link: Link, colour: colours.Colour) -> LinkMesh | Mesh | None:
+    mesh = link_mesh(link, colours.pale(colour))
+    if mesh is None and link.shapes:
+        return capsule_mesh(link.shapes, colour)
+    return mesh
+
+
+def _still_poses(walks: Sequence[SearchWalk]) -> dict[str, Any]:
+    """By link: columns of its poses, several in the row of each walk."""
+    import rerun as rr
+
+    rows = [stills(walk.scene.recording.ticks) for walk in walks]
+    whole = [walk.scene.link_poses() for walk in walks]
+    columns = {}
+    for name in whole[0]:
+        parts = [
+            LinkPoses(poses[name].position_m[row], poses[name].orientation[row])
+            for poses, row in zip(whole, rows, strict=True)
+        ]
+        orientation = np.vstack([part.orientation for part in parts])
+        columns[name] = rr.InstancePoses3D.columns(
+            translations=np.vstack([part.position_m for part in parts]),
+            quaternions=np.roll(orientation, -1, axis=1),
+        ).partition([len(row) for row in rows])
+    return columns
+
+
+def _write_tracks(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
+    """Ways of the centre of mass, and rings where robots fell."""
+    import rerun as rr
+
+    found = [balance(walk.scene) for walk in walks]
+    tracks_m = [one.centre_of_mass_m for one in found]
+    look = rr.LineStrips3D.from_fields(radii=_TRACK_M, colors=colours.MASS)
+    log.log("track", look)
+    log.send("track", rr.LineStrips3D.columns(strips=tracks_m))
+    fell = np.array([walk.fell for walk in walks])
+    if not fell.any():
+        return
+    rings_m, texts = [], []
+    for walk, one in zip(walks, found, strict=True):
+        if walk.fell:
+            rings_m.append(fall_ring(one.below_m[-1], walk.scene.ground))
+            end = walk.scene.recording.metadata.end
+            texts.append(f"{end} at {walk.time_s:.2f} s")
+    look = rr.LineStrips3D.from_fields(radii=_RING_M, colors=colours.FALL)
+    log.log("fall", look)
+    columns = rr.LineStrips3D.columns(strips=rings_m, labels=texts)
+    # A walk without a fall takes the last one's ring away.
+    log.send("fall", columns.partition(fell.astype(int)))
+
+
+def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
+    """Every walk's own ground, or the one that all of them have."""
+    import rerun as rr
+
+    around_m = _reached(walks) + np.array([[-_BESIDE_M], [_BESIDE_M]])
+    grounds = [
+        _cropped(walk.scene.ground, around_m)
+        for walk in walks
+        if walk.scene.ground is not None
+    ]
+    if len(grounds) < len(walks):
+        return
+    meshes = [ground_mesh(ground) for ground in grounds]
+    heights_m = [ground.heights_m for ground in grounds]
+    if all(np.array_equal(heights_m[0], other_m) for other_m in heights_m):
+        log.log("ground", rr.Mesh3D(**meshes[0]._asdict()))
+        return
+    look = rr.Mesh3D.from_fields(
+        triangle_indices=meshes[0].triangle_indices,
+        vertex_colors=meshes[0].vertex_colors,
+    )
+    log.log("ground", look)
+    columns = rr.Mesh3D.columns(
+        vertex_positions=np.vstack([mesh.vertex_positions for mesh in meshes]),
+        vertex_normals=np.vstack([mesh.vertex_normals for mesh in meshes]),
+    )
+    log.send("ground", columns.partition([height_m.size for height_m in heights_m]))
+
+
+def _reached(walks: Sequence[SearchWalk]) -> FloatArray:
+    """(2, 2) least and largest x and y of all joints in all walks [m]."""
+    places_m = [
+        pose.position_m[:, :2]
+        for walk in walks
+        for pose in walk.scene.link_poses().values()
+    ]
+    low_m = np.min([place_m.min(axis=0) for place_m in places_m], axis=0)
+    high_m = np.max([place_m.max(axis=0) for place_m in places_m], axis=0)
+    return np.stack([low_m, high_m])
+
+
+def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
+    """The part of a ground that holds a rectangle, as far as the ground goes.
+
+    Args:
+      ground: the whole.
+      around_m: (2, 2) least and largest x and y.
+    """
+    size = np.array(ground.heights_m.shape[::-1])
+    cells = (around_m - ground.origin_m) / ground.spacing_m
+    # At least one cell, even where nobody was on the ground.
+    first = np.clip(np.floor(cells[0]).astype(np.intp), 0, size - 2)
+    last = np.clip(np.ceil(cells[1]).astype(np.intp), first + 1, size - 1)
+    (column, row), (right, left) = first.tolist(), last.tolist()
+    x_m, y_m = (ground.origin_m + ground.spacing_m * first).tolist()
+    heights_m = ground.heights_m[row : left + 1, column : right + 1]
+    return Heightfield(heights_m, (x_m, y_m), ground.spacing_m)
+
+
+def walk_view(walks: Sequence[SearchWalk], name: str) -> "rrb.Spatial3DView":
+    """All of the walks, from their right and a little ahead.
+
+    Args:
+      walks: at least one.
+      name: the view's title.
+    """
+    import rerun.blueprint as rrb
+
+    low_m, high_m = _reached(walks)
+    size_m = walks[0].scene.description.scale.length
+    middle_m = np.array([*((low_m + high_m) / 2), 0.15 * size_m])
+    far_m = max(high_m[0] - low_m[0], size_m)
+    eye_m = np.array([0.1, -0.45, 0.2]) * far_m + np.array([0.0, -0.35, 0.15]) * size_m
+    eye = rrb.EyeControls3D(position=middle_m + eye_m, look_target=middle_m)
+    return rrb.Spatial3DView(
+        name=name, origin=AT, eye_controls=eye, line_grid=rrb.LineGrid3D(visible=False)
+    )

@@ -1,0 +1,1 @@
+"""Recordings with what it takes to draw them: robot, ground, balance, curves."""

@@ -1,0 +1,199 @@
+"""What balance is about: where the robot's mass is, what carries it, and the ZMP.
+
+Three points on the ground tell how a walk stands:
+
+- the centre of pressure, *measured*: the mean of the force sensors' places, weighted
+  by their forces. It cannot leave the soles.
+- the zero-moment point, *from the motion*: where the ground's force must act for links
+  of these masses to have moved as they did (Vukobratovic and Borovac 2004). It needs
+  the base's pose, and no force sensor. Where both soles are flat on level ground it is
+  the centre of pressure; outside of the support polygon no force can act, and
+  the robot tips about its edge.
+- the centre of mass, seen from above.
+
+All are in the world frame; a base that was not recorded stays at the origin, upright.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial import ConvexHull
+
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
+from robots.description import Description
+from worlds.scenes.forward_kinematics import LinkPoses
+from worlds.scenes.scene import SIDES, Scene
+
+LOADED_PART = 0.05
+"""A foot carries the robot if it feels more than this part of its weight."""
+
+SMOOTHING_TICKS = 2.0
+"""Standard deviation of the bell curve that smooths positions and momenta: 20 ms."""
+
+LEAST_WEIGHT_PART = 0.2
+"""With less than this part of its weight on the ground the ZMP says nothing."""
+
+
+class Balance(NamedTuple):
+    """Where things are, tick by tick; rows are NaN where that is not known."""
+
+    centre_of_mass_m: FloatArray
+    """(ticks, 3)."""
+    below_m: FloatArray
+    """(ticks, 3) the centre of mass at the height of the lowest sole."""
+    pressure_m: FloatArray | None
+    """(ticks, 3) the measured centre of pressure; None without force sensors."""
+    zmp_m: FloatArray | None
+    """(ticks, 3) the ZMP from the motion; None where the base was not recorded."""
+    polygons_m: list[FloatArray] | None
+    """(corners, 3) each, none in the air: support polygons; None without sensors."""
+
+
+def balance(scene: Scene) -> Balance:
+    """A scene's balance at all ticks."""
+    poses = scene.link_poses()
+    soles_m = {side: _sole(scene, side, poses) for side in SIDES}
+    lowest_m = np.min([sole[..., 2].min(axis=1) for sole in soles_m.values()], axis=0)
+    mass_kg, places_m = _centres(scene.description, poses)
+    centre_m = np.average(places_m, axis=0, weights=mass_kg)
+    below_m = np.column_stack([centre_m[:, :2], lowest_m])
+    loaded = loaded_feet(scene)
+    has_base = scene.recording.has("base.position")
+    return Balance(
+        centre_of_mass_m=centre_m,
+        below_m=below_m,
+        pressure_m=_pressure(scene, poses),
+        zmp_m=_zmp(scene, poses, lowest_m) if has_base else None,
+        polygons_m=None if loaded is None else _polygons(soles_m, loaded),
+    )
+
+
+def loaded_feet(scene: Scene) -> dict[str, BoolArray] | None:
+    """(ticks,) by side whether a foot carries the robot; None without force sensors."""
+    least_n = LOADED_PART * scene.description.mass_kg * GRAVITY_M_S2
+    forces_n = {side: scene.foot_force_n(side) for side in SIDES}
+    known = {side: force for side, force in forces_n.items() if force is not None}
+    if len(known) < len(SIDES):
+        return None
+    return {side: force > least_n for side, force in known.items()}
+
+
+def _pressure(scene: Scene, poses: dict[str, LinkPoses]) -> FloatArray | None:
+    """sum(F_i p_i) / sum(F_i) over the sensors i of both feet."""
+    moment: FloatArray | float = 0.0
+    force: FloatArray | float = 0.0
+    for side in SIDES:
+        sensors = scene.sensor_forces_n(side)
+        if sensors is None:
+            return None
+        points_m, forces_n = sensors
+        pressing_n = np.maximum(forces_n, 0.0)[..., np.newaxis]
+        moment = moment + (pressing_n * _on_foot(scene, side, poses, points_m)).sum(1)
+        force = force + pressing_n.sum(axis=1)
+    least_n = LOADED_PART * scene.description.mass_kg * GRAVITY_M_S2
+    return np.asarray(moment) / np.where(np.asarray(force) > least_n, force, np.nan)
+
+
+def _polygons(
+    soles_m: dict[str, FloatArray], loaded: dict[str, BoolArray]
+) -> list[FloatArray]:
+    """The convex hull, seen from above, of the soles that carry the robot."""
+    polygons = []
+    for tick in range(len(soles_m[SIDES[0]])):
+        soles = [soles_m[side][tick] for side in SIDES if loaded[side][tick]]
+        corners = np.vstack(soles) if soles else np.empty((0, 3))
+        if len(corners) and np.isfinite(corners).all():
+            corners = corners[ConvexHull(corners[:, :2]).vertices]
+        else:
+            corners = np.empty((0, 3))
+        polygons.append(corners)
+    return polygons
+
+
+def _sole(scene: Scene, side: str, poses: dict[str, LinkPoses]) -> FloatArray:
+    """(ticks, corners, 3) of a sole's outline."""
+    foot = scene.description.feet[SIDES.index(side)]
+    height_m = np.full((len(foot.outline_m), 1), foot.sole_height_m)
+    return _on_foot(scene, side, poses, np.hstack([foot.outline_m, height_m]))
+
+
+def _on_foot(
+    scene: Scene, side: str, poses: dict[str, LinkPoses], points_m: FloatArray
+) -> FloatArray:
+    """(ticks, points, 3) of points given in the foot's frame."""
+    robot = scene.description
+    foot = robot.feet[SIDES.index(side)]
+    pose = poses[robot.links[foot.joint].link.name]
+    return pose.points(points_m)
+
+
+def _centres(
+    robot: Description, poses: dict[str, LinkPoses]
+) -> tuple[FloatArray, FloatArray]:
+    """(links,) masses and (links, ticks, 3) centres of mass."""
+    links = [robot.root, *(joint.link for joint in robot.links)]
+    places_m = []
+    for link in links:
+        pose = poses[link.name]
+        places_m.append(pose.points(link.inertial.com_m[np.newaxis])[:, 0])
+    return np.array([link.inertial.mass_kg for link in links]), np.array(places_m)
+
+
+def _zmp(scene: Scene, poses: dict[str, LinkPoses], height_m: FloatArray) -> FloatArray:
+    """Where the ground's force acts if the links move as they were seen to.
+
+    With momentum P and angular momentum L about the world's origin, the ground gives
+    the force F = dP/dt + M g e_z and the moment N = dL/dt + M c x g e_z about the
+    origin. Its moment about the ZMP p has no level part: (N - p x F)_xy = 0, so
+    p_x = (p_z F_x - N_y) / F_z and p_y = (p_z F_y + N_x) / F_z.
+    """
+    robot, time_s = scene.description, scene.recording.time_s
+    if time_s.size < 2:
+        return np.full((time_s.size, 3), np.nan)
+    mass_kg, places_m = _centres(robot, poses)
+    weight = np.array([0.0, 0.0, mass_kg.sum() * GRAVITY_M_S2])
+    centre_m = np.average(places_m, axis=0, weights=mass_kg)
+    momentum, angular = _momenta(robot, poses, places_m, time_s)
+    force = _rate(momentum, time_s) + weight
+    moment = _rate(angular, time_s) + np.cross(centre_m, weight)
+    pressing = np.where(
+        force[:, 2] > LEAST_WEIGHT_PART * weight[2], force[:, 2], np.nan
+    )
+    x_m = (height_m * force[:, 0] - moment[:, 1]) / pressing
+    y_m = (height_m * force[:, 1] + moment[:, 0]) / pressing
+    return np.stack([x_m, y_m, height_m], axis=1)
+
+
+def _momenta(
+    robot: Description,
+    poses: dict[str, LinkPoses],
+    places_m: FloatArray,
+    time_s: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """(ticks, 3) momentum, and angular momentum about the world's origin."""
+    momentum = angular = np.zeros((time_s.size, 3))
+    # With rotors lumped in, as both engines have them.
+    moved = [(joint.link.name, joint.moved_inertial) for joint in robot.links]
+    links = [(robot.root.name, robot.root.inertial), *moved]
+    for (name, inertial), place_m in zip(links, places_m, strict=True):
+        axes = poses[name].axes()
+        own = inertial.mass_kg * _rate(place_m, time_s)
+        momentum = momentum + own
+        # dR/dt R^T is the matrix of w x.
+        spin = _rate(axes.reshape(-1, 9), time_s).reshape(-1, 3, 3) @ axes.mT
+        turning = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
+        inertia = axes @ inertial.inertia_kg_m2 @ axes.mT
+        angular = angular + np.cross(place_m, own)
+        angular = angular + np.einsum("tij,tj->ti", inertia, turning)
+    return momentum, angular
+
+
+def _rate(values: FloatArray, time_s: FloatArray) -> FloatArray:
+    """d/dt of (ticks, k) values, smoothed; NaN where the bell curve leaves the data."""
+    smooth = gaussian_filter1d(values, SMOOTHING_TICKS, axis=0, truncate=3.0)
+    rate = np.gradient(smooth, time_s, axis=0)
+    margin = int(3.0 * SMOOTHING_TICKS)
+    rate[:margin] = rate[-margin:] = np.nan
+    return np.asarray(rate)

@@ -1,0 +1,214 @@
+"""Pictures of round shapes on ground, computed by NumPy: no display, no driver.
+
+Every pixel is a ray from the eye. Where a ray meets a capsule is the root of a
+quadratic equation, so that what is round is round at any size; the ground is met by
+a few steps of a fixed-point iteration, which suits ground that is nearly level. Light
+comes from one sun, with shadows, and from the sky.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from terrain import Heightfield
+from worlds.scenes.camera_rounds import Rounds, axis_part, distances
+from worlds.scenes.camera_shadow import SUN, in_sun
+from worlds.scenes.colours import SKY
+from worlds.scenes.shapes import chessboard
+
+Image = npt.NDArray[np.uint8]
+"""(height, width, 3) red, green, blue."""
+
+SHADE, SUNLIGHT = 0.62, 0.50
+"""How bright is what only the sky lights, and what the sun adds to it."""
+
+SHINE, SHINE_POWER = 50.0, 40
+HAZE_M = (1.6, 5.0)
+"""How far behind its target the camera sees the ground begin to fade, and end."""
+
+_GROUND_STEPS = 3
+_SEEN_THROUGH = 1e-3
+"""Marks count as nearer by this factor than they are."""
+
+_PER_PIXEL = 2
+"""Rays along each side of a pixel: edges are smooth."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a picture is taken from, and how large it is.
+
+    Attributes:
+      eye_m, target_m: where the camera is, and the middle of what it looks at.
+      size_px: width and height.
+      view_rad: from the lower to the upper edge of the picture.
+    """
+
+    eye_m: tuple[float, float, float]
+    target_m: tuple[float, float, float]
+    size_px: tuple[int, int]
+    view_rad: float = 0.5
+
+    def __post_init__(self) -> None:
+        """Refuse cameras that see nothing."""
+        if min(self.size_px) < 1:
+            raise BadValueError(f"size_px is {self.size_px}; both must be positive")
+        if not 0 < self.view_rad < np.pi:
+            raise BadValueError(f"view_rad is {self.view_rad}; between 0 and pi")
+        ahead = np.subtract(self.target_m, self.eye_m)
+        if not np.hypot(ahead[0], ahead[1]) > 1e-6:
+            raise BadValueError("a camera must not look straight up or down")
+
+    def axes(self) -> FloatArray:
+        """(3, 3) unit vectors to the right, down and ahead."""
+        ahead = np.subtract(self.target_m, self.eye_m)
+        ahead /= np.linalg.norm(ahead)
+        right = np.cross(ahead, (0.0, 0.0, 1.0))
+        right /= np.linalg.norm(right)
+        return np.stack([right, np.cross(ahead, right), ahead])
+
+    def picture(self, rounds: Rounds, ground: Heightfield | None) -> Image:
+        """What the camera sees; where there is nothing, it is the sky.
+
+        Args:
+          rounds: capsules and spheres.
+          ground: what they stand on, if anything.
+        """
+        return _Picture(self, rounds, ground).image()
+
+
+class _Picture:
+    """One picture while it is computed: for every ray what it meets first."""
+
+    def __init__(
+        self, camera: Camera, rounds: Rounds, ground: Heightfield | None
+    ) -> None:
+        width, height = (_PER_PIXEL * side for side in camera.size_px)
+        self._focal = 0.5 * height / np.tan(camera.view_rad / 2)
+        self._axes, self._eye = camera.axes(), np.array(camera.eye_m)
+        self._far_m = float(np.linalg.norm(np.subtract(camera.target_m, self._eye)))
+        across = (np.arange(width) + 0.5 - width / 2) / self._focal
+        down = (np.arange(height) + 0.5 - height / 2) / self._focal
+        rays = across[:, np.newaxis] * self._axes[0] + self._axes[2]
+        rays = rays + down[:, np.newaxis, np.newaxis] * self._axes[1]
+        self._rays = rays / np.linalg.norm(rays, axis=-1, keepdims=True)
+        self._depth = np.full((height, width), np.inf)
+        self._owner = np.full((height, width), -1, np.intp)
+        self._rounds, self._ground = rounds, ground
+
+    def image(self) -> Image:
+        for i in range(len(self._rounds.radius_m)):
+            self._meet(i)
+        image = np.empty((*self._depth.shape, 3))
+        image[:] = SKY
+        if self._ground is not None:
+            self._paint_ground(image, self._ground)
+        self._paint_rounds(image)
+        height, width, _ = image.shape
+        cells = image.reshape(
+            height // _PER_PIXEL, _PER_PIXEL, width // _PER_PIXEL, _PER_PIXEL, 3
+        )
+        mean = np.rint(cells.mean(axis=(1, 3)))
+        return np.asarray(np.clip(mean, 0, 255), np.uint8)
+
+    def _meet(self, i: int) -> None:
+        """Note the rays that meet a shape before any other so far."""
+        start, end = self._rounds.start_m[i], self._rounds.end_m[i]
+        radius = float(self._rounds.radius_m[i])
+        window = self._window(np.stack([start, end]), radius)
+        if window is None:
+            return
+        depth = distances(self._eye, self._rays[window], start, end, radius)
+        if self._rounds.glows[i]:
+            depth *= _SEEN_THROUGH
+        nearer = depth < self._depth[window]
+        self._depth[window][nearer] = depth[nearer]
+        self._owner[window][nearer] = i
+
+    def _window(
+        self, ends_m: FloatArray, radius_m: float
+    ) -> tuple[slice, slice] | None:
+        """The part of the picture in which a shape can be."""
+        x, y, ahead = self._axes @ (ends_m - self._eye).T
+        nearest_m = ahead.min() - radius_m
+        if not nearest_m > 0.01:  # behind the camera, or not known at this tick
+            return None
+        height, width = self._depth.shape
+        reach = self._focal * radius_m / nearest_m * 1.3 + 1
+        column = self._focal * x / ahead + width / 2
+        row = self._focal * y / ahead + height / 2
+        left, right = _inside(column, reach, width)
+        top, bottom = _inside(row, reach, height)
+        if left >= right or top >= bottom:
+            return None
+        return slice(top, bottom), slice(left, right)
+
+    def _paint_ground(self, image: FloatArray, ground: Heightfield) -> None:
+        rays = self._rays
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depth = (ground.heights_m.mean() - self._eye[2]) / rays[..., 2]
+        hit = (rays[..., 2] < 0) & (depth < self._far_m + HAZE_M[1])
+        rays, depth = rays[hit], depth[hit]
+        for _ in range(1 if ground.is_flat else _GROUND_STEPS):
+            x, y = (self._eye + depth[:, np.newaxis] * rays).T[:2]
+            height_m = ground.height_at(x, y)
+            depth = (height_m - self._eye[2]) / rays[:, 2]
+        place_m = self._eye + depth[:, np.newaxis] * rays
+        seen = ground.contains(*place_m.T[:2]) & (depth < self._depth[hit])
+        rows, columns = (index[seen] for index in np.nonzero(hit))
+        place_m, depth = place_m[seen], depth[seen]
+        normal = _normals(ground, place_m)
+        light = self._light(place_m, normal)
+        near, far = (self._far_m + part for part in HAZE_M)
+        haze = np.clip((depth - near) / (far - near), 0, 1)[:, np.newaxis]
+        colour = light[:, np.newaxis] * chessboard(place_m)
+        image[rows, columns] = (1 - haze) * colour + haze * np.array(SKY)
+        self._owner[rows, columns] = -1
+
+    def _paint_rounds(self, image: FloatArray) -> None:
+        """Light what is round, as it was met."""
+        rows, columns = np.nonzero(self._owner >= 0)
+        owner = self._owner[rows, columns]
+        rays = self._rays[rows, columns]
+        place_m = self._eye + self._depth[rows, columns, np.newaxis] * rays
+        start, end = self._rounds.start_m[owner], self._rounds.end_m[owner]
+        normal = place_m - (start + axis_part(place_m, start, end) * (end - start))
+        normal /= self._rounds.radius_m[owner, np.newaxis]
+        light = self._light(place_m, normal)
+        half = SUN - rays
+        half /= np.linalg.norm(half, axis=1, keepdims=True)
+        shine = np.clip(np.sum(normal * half, axis=1), 0, 1) ** SHINE_POWER
+        shine *= SHINE * (light > SHADE)
+        colour = self._rounds.colour[owner]
+        glows = self._rounds.glows[owner, np.newaxis]
+        lit = light[:, np.newaxis] * colour + shine[:, np.newaxis]
+        image[rows, columns] = np.where(glows, colour, lit)
+
+    def _light(self, place_m: FloatArray, normal: FloatArray) -> FloatArray:
+        """(n,) how bright, about 1 in full sun."""
+        toward_sun = np.clip(normal @ SUN, 0, 1)
+        sky = SHADE * (0.8 + 0.2 * normal[:, 2])
+        sun = in_sun(self._rounds, place_m + 0.002 * normal)
+        return np.asarray(sky + SUNLIGHT * toward_sun * sun)
+
+
+def _inside(places: FloatArray, reach: float, size: int) -> tuple[int, int]:
+    """The pixels from the first to the last place, with a margin, within a picture."""
+    first = np.clip(np.floor(places.min() - reach), 0, size)
+    return int(first), int(np.clip(np.ceil(places.max() + reach), 0, size))
+
+
+def _normals(ground: Heightfield, place_m: FloatArray) -> FloatArray:
+    """(n, 3) upward unit vectors, from heights half a cell ahead and to the left."""
+    x, y, z = place_m.T
+    normal = np.tile([0.0, 0.0, 1.0], (len(place_m), 1))
+    if not ground.is_flat:
+        step = ground.spacing_m / 2
+        normal[:, 0] = z - ground.height_at(x + step, y)
+        normal[:, 1] = z - ground.height_at(x, y + step)
+        normal[:, 2] = step
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    return normal

@@ -1,0 +1,111 @@
+"""What a scene has to plot over time, and which plots show it."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray, IntArray
+from worlds.recordings.columns import JOINT_QUANTITIES, SUPPORT, VECTORS
+from worlds.scenes import colours
+from worlds.scenes.scene import SIDES, Scene
+
+_IMU = ("gyroscope", "accelerometer")
+MEASURED_SUPPORT = "contact/support"
+SIDEWAYS = "balance/sideways"
+"""Below this path lie the y of the centre of mass and of the points on the ground."""
+_SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
+
+
+class Trace(NamedTuple):
+    """Lines over time, as recorded."""
+
+    path: str
+    """Where it belongs in its scene."""
+    names: Sequence[str]
+    """One for each line."""
+    values: FloatArray
+    """(ticks,) or (ticks, lines); NaN where a value is missing."""
+    lines: Sequence[colours.Colour] | None
+    """One for each line; None for any colour."""
+
+
+Curve = tuple[FloatArray, Trace]
+"""Times (ticks,) [s], and lines over them at a path of the file."""
+
+
+class Plot(NamedTuple):
+    """Traces that are shown together."""
+
+    name: str
+    paths: Sequence[str]
+    has_key: bool
+
+
+def traces(scene: Scene) -> Iterator[Trace]:
+    """Every joint's quantities, the force on each foot, and the inertial sensors."""
+    recording = scene.recording
+    legs = {
+        joint: colours.SIDES[side]
+        for side in SIDES
+        for joint in scene.pitch_joints(side)
+    }
+    for quantity in JOINT_QUANTITIES:
+        for joint in recording.joints_with(quantity):
+            line = legs.get(joint)
+            if line and quantity == "command":
+                line = colours.pale(line)
+            yield Trace(
+                f"joints/{joint}/{quantity}",
+                [f"{joint} {quantity}"],
+                recording.columns[f"{quantity}.{joint}"],
+                line and [line],
+            )
+    for side in SIDES:
+        force_n = scene.foot_force_n(side)
+        if force_n is not None:
+            yield Trace(f"contact/{side}", [side], force_n, [colours.SIDES[side]])
+    for name in _IMU:
+        if recording.has(name):
+            values = recording.vector(name)
+            yield Trace(f"imu/{name}", VECTORS[name], values, colours.AXES)
+
+
+def plots(scene: Scene) -> list[list[Plot]]:
+    """Rows of plots: each pitch joint of both legs, then what the sensors felt.
+
+    What was not recorded has no plot.
+    """
+    joints = [
+        Plot(
+            f"{left}, {right} [rad]",
+            [
+                f"joints/{joint}/{quantity}"
+                for joint in (left, right)
+                for quantity in ("position", "command")
+            ],
+            has_key=False,
+        )
+        for left, right in zip(*map(scene.pitch_joints, SIDES), strict=False)
+    ]
+    sensors = [
+        Plot("foot forces [N]", [f"contact/{side}" for side in SIDES], has_key=True),
+        Plot("gyroscope [rad/s]", ["imu/gyroscope"], has_key=True),
+        Plot("balance: y [m]", [f"{SIDEWAYS}/**"], has_key=True),
+    ]
+    recorded = {trace.path for trace in traces(scene)}
+    if scene.recording.has("base.position"):
+        recorded.add(f"{SIDEWAYS}/**")
+    rows = [
+        [plot for plot in row if not recorded.isdisjoint(plot.paths)]
+        for row in (joints, sensors)
+    ]
+    return [row for row in rows if row]
+
+
+def support_changes(scene: Scene) -> tuple[IntArray, list[str]]:
+    """Rows at which the supporting leg changes, and to which: left, right or both."""
+    support = scene.recording.columns.get(SUPPORT, np.empty(0))
+    known = np.flatnonzero(~np.isnan(support))
+    changes = known[np.diff(support[known], prepend=np.nan) != 0]
+    return changes, [_SUPPORT_NAMES[int(leg)] for leg in support[changes]]

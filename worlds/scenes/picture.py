@@ -1,0 +1,174 @@
+"""Scenes as pictures: the robot, its ground and its balance, seen by a camera."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from groundwalk.arrays import FloatArray
+from worlds.scenes import colours
+from worlds.scenes.balance import Balance, balance
+from worlds.scenes.camera import Camera, Image
+from worlds.scenes.camera_rounds import Rounds
+from worlds.scenes.scene import SIDES, Scene
+from worlds.scenes.shapes import shape_colours, sole_rim
+
+_EYE_M = (1.25, -1.55, 0.62)
+"""From the point that is looked at: ahead of the robot, on its right, and above."""
+
+_MIDDLE_M = 0.27
+"""Height of that point over the lowest sole of a NAO that walks."""
+
+_VIEW_RAD = 0.34
+_STEADY_S = 0.3
+"""The camera goes as smoothly as the mean over this time."""
+
+_SOLE_M, _LINE_M, _POINT_M, _ARROW_M = 0.006, 0.0025, 0.009, 0.005
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """Capsules that a link carries, in its own frame."""
+
+    link: str
+    start_m: FloatArray
+    end_m: FloatArray
+    radius_m: FloatArray
+    colour: FloatArray
+
+
+class SceneCamera:
+    """A camera that goes beside a scene's robot, and sees it as large as any other."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        accent: colours.Colour,
+        size_px: tuple[int, int],
+        with_balance: bool = False,
+    ) -> None:
+        """Choose where to look from at every tick.
+
+        Args:
+          scene: whose recording has all joints.
+          accent: the colour of this robot.
+          size_px: width and height of the pictures.
+          with_balance: draw the forces at the feet, the support polygon, the ZMP, the
+            centre of mass and its way, too.
+        """
+        self._scene, self._size_px = scene, size_px
+        self._poses = scene.link_poses()
+        self._parts = _parts(scene, accent)
+        found = balance(scene)
+        self._balance = found if with_balance else None
+        self._size = scene.description.scale.length
+        middle_m = found.below_m + np.array([0.0, 0.0, _MIDDLE_M * self._size])
+        self._target_m = _steadied(middle_m, scene.recording.time_s)
+
+    def picture(self, tick: int) -> Image:
+        """What is seen at a tick; a robot of which a value is missing is left out."""
+        target_m = self._target_m[tick]
+        eye_m = target_m + np.array(_EYE_M) * self._size
+        camera = Camera(tuple(eye_m), tuple(target_m), self._size_px, _VIEW_RAD)
+        groups = [self._placed(part, tick) for part in self._parts]
+        if self._balance is not None:
+            groups += self._marks(self._balance, tick)
+        rounds = Rounds(
+            *(np.concatenate(column) for column in zip(*groups, strict=True))
+        )
+        return camera.picture(rounds, self._scene.ground)
+
+    def _placed(self, part: _Parts, tick: int) -> Rounds:
+        pose = self._poses[part.link].at(tick)
+        start_m, end_m = (pose.points(ends)[0] for ends in (part.start_m, part.end_m))
+        dull = np.zeros(len(start_m), bool)
+        return Rounds(start_m, end_m, part.radius_m, part.colour, dull)
+
+    def _marks(self, found: Balance, tick: int) -> list[Rounds]:
+        """Forces, and what lies on the ground, in colours that glow."""
+        way_m = found.centre_of_mass_m[: tick + 1 : 3]
+        marks = [_line(way_m, _LINE_M, colours.MASS)]
+        points = (
+            (found.centre_of_mass_m, colours.MASS),
+            (found.pressure_m, colours.FORCE),
+            (found.zmp_m, colours.ZMP),
+        )
+        for place_m, colour in points:
+            if place_m is not None:
+                marks.append(
+                    _glowing(place_m[[tick]], place_m[[tick]], _POINT_M, colour)
+                )
+        if found.polygons_m is not None and len(found.polygons_m[tick]):
+            corners = found.polygons_m[tick]
+            rim_m = np.vstack([corners, corners[:1]])
+            marks.append(_line(rim_m, _LINE_M, colours.SUPPORT_POLYGON))
+        for side in SIDES:
+            marks += self._forces(side, tick)
+        return marks
+
+    def _forces(self, side: str, tick: int) -> list[Rounds]:
+        sensors = self._scene.sensor_forces_n(side)
+        if sensors is None:
+            return []
+        points_m, forces_n = sensors
+        robot = self._scene.description
+        foot = robot.feet[SIDES.index(side)]
+        pose = self._poses[robot.links[foot.joint].link.name]
+        pressing = forces_n[tick] > 0
+        start_m = points_m[pressing]
+        length_m = self._scene.arrow_m_per_n * forces_n[tick, pressing]
+        end_m = start_m + length_m[:, np.newaxis] * (0.0, 0.0, 1.0)
+        start_m, end_m = (pose.at(tick).points(ends)[0] for ends in (start_m, end_m))
+        return [_glowing(start_m, end_m, _ARROW_M, colours.FORCE)]
+
+
+def _parts(scene: Scene, accent: colours.Colour) -> list[_Parts]:
+    """The shapes of all links, and the rims of the soles."""
+    robot = scene.description
+    parts = [
+        _Parts(
+            link.name,
+            np.array([shape.start_m for shape in link.shapes]),
+            np.array([shape.end_m for shape in link.shapes]),
+            np.array([shape.radius_m for shape in link.shapes]),
+            shape_colours(link.shapes, accent).astype(float),
+        )
+        for link in (robot.root, *(joint.link for joint in robot.links))
+        if link.shapes
+    ]
+    for foot in robot.feet:
+        rim_m = sole_rim(foot) + np.array([0.0, 0.0, _SOLE_M])
+        # Once around, and from side to side.
+        start_m = np.vstack([rim_m[:-1], rim_m[1:]])
+        end_m = np.vstack([rim_m[1:], rim_m[-2::-1]])
+        colour = np.tile(np.array(accent, float), (len(start_m), 1))
+        radius_m = np.full(len(start_m), _SOLE_M)
+        name = robot.links[foot.joint].link.name
+        parts.append(_Parts(name, start_m, end_m, radius_m, colour))
+    return parts
+
+
+def _glowing(
+    start_m: FloatArray, end_m: FloatArray, radius_m: float, colour: colours.Colour
+) -> Rounds:
+    count = len(start_m)
+    painted = np.tile(np.array(colour, float), (count, 1))
+    radii_m = np.full(count, radius_m)
+    return Rounds(start_m, end_m, radii_m, painted, np.ones(count, bool))
+
+
+def _line(points_m: FloatArray, radius_m: float, colour: colours.Colour) -> Rounds:
+    return _glowing(points_m[:-1], points_m[1:], radius_m, colour)
+
+
+def _steadied(place_m: FloatArray, time_s: FloatArray) -> FloatArray:
+    """(ticks, 3) places without what is faster than the camera; gaps are bridged."""
+    known = np.flatnonzero(np.isfinite(place_m).all(axis=1))
+    if not known.size:
+        return np.zeros_like(place_m)
+    rows = np.arange(len(place_m))
+    whole_m = np.stack([np.interp(rows, known, axis[known]) for axis in place_m.T], 1)
+    if time_s.size < 2:
+        return whole_m
+    ticks = _STEADY_S / float(np.median(np.diff(time_s)))
+    return np.asarray(gaussian_filter1d(whole_m, ticks, axis=0, mode="nearest"))

@@ -1,0 +1,194 @@
+"""A recording with what it takes to look at it: the robot and its ground."""
+
+import hashlib
+import itertools
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadRecordingError, BadValueError
+from robots.description import Description
+from terrain import Heightfield
+from worlds.recordings.columns import ORIENTATION, nearest
+from worlds.recordings.recording import Recording
+from worlds.scenes.forward_kinematics import LinkPoses, link_poses
+
+SIDES = ("left", "right")
+_NAO_ARROW_M_PER_N = 0.005
+_NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)*", re.ASCII)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One rollout to be shown.
+
+    Attributes:
+      name: what stands in front of all its entity paths, such as "sim" or "start/real".
+      recording: what happened.
+      description: the robot; all joints of the recording must be its own.
+      ground: what it walked on, if anything.
+    """
+
+    name: str
+    recording: Recording
+    description: Description
+    ground: Heightfield | None = None
+
+    def __post_init__(self) -> None:
+        """Check the name, and that the recording is one of this robot.
+
+        Raises:
+          BadValueError: the name is no path of letters, digits, `_`, `-` and `.`.
+          BadRecordingError: the recording has a joint that the robot has not.
+        """
+        if not _NAME.fullmatch(self.name):
+            raise BadValueError(
+                f"scene name {self.name!r}: it must be made of letters, digits, '_', "
+                "'-' and '.', its parts with '/' between them, such as 'start/sim'"
+            )
+        known = self.description.joints
+        for joint in self.recording.joints:
+            if joint not in known:
+                raise BadRecordingError(
+                    f"{self.name}: the recording has the joint {joint!r}, which robot "
+                    f"{self.description.name} has not{nearest(joint, known)}"
+                )
+
+    @property
+    def arrow_m_per_n(self) -> float:
+        """Length of a force's arrow: the robot's weight is as long as its legs."""
+        scale = self.description.scale
+        return _NAO_ARROW_M_PER_N * scale.length / scale.weight
+
+    def link_poses(self) -> dict[str, LinkPoses]:
+        """Pose of every link, by name, NaN where a value is missing.
+
+        A base that was not recorded stays at the world's origin, upright. A joint that
+        was not recorded stays at zero.
+        """
+        recorded, joints = self.recording.joints, self.description.joints
+        position_rad = np.zeros((self.recording.ticks, len(joints)))
+        columns = [joints.index(joint) for joint in recorded]
+        position_rad[:, columns] = self.recording.positions(recorded)
+        base = LinkPoses(
+            self._vector("base.position", (0.0, 0.0, 0.0)),
+            self._vector(ORIENTATION, (1.0, 0.0, 0.0, 0.0)),
+        )
+        return link_poses(self.description, position_rad, base)
+
+    def foot_force_n(self, side: str) -> FloatArray | None:
+        """(ticks,) force on a foot [N], of its sensors together; None if not recorded.
+
+        Args:
+          side: one of SIDES.
+        """
+        if self.recording.has("foot_force"):
+            return self.recording.columns[f"foot_force.{side}"]
+        if self.recording.has(f"foot_force.{side}"):
+            return np.asarray(self.recording.vector(f"foot_force.{side}").sum(axis=1))
+        return None
+
+    def sensor_forces_n(self, side: str) -> tuple[FloatArray, FloatArray] | None:
+        """Where a foot's forces act and how large they are; None if not recorded.
+
+        Args:
+          side: one of SIDES.
+
+        Returns:
+          (k, 3) points of the sole in the foot's frame [m] and (ticks, k) forces [N]:
+          the four sensors or, where only their sum was recorded, the middle of them.
+        """
+        foot = self.description.feet[SIDES.index(side)]
+        points_xy_m = foot.sensors_m
+        if self.recording.has(f"foot_force.{side}"):
+            forces_n = self.recording.vector(f"foot_force.{side}")
+        else:
+            total_n = self.foot_force_n(side)
+            if total_n is None:
+                return None
+            forces_n = total_n[:, np.newaxis]
+            points_xy_m = points_xy_m.mean(axis=0, keepdims=True)
+        height_m = np.full((len(points_xy_m), 1), foot.sole_height_m)
+        return np.hstack([points_xy_m, height_m]), forces_n
+
+    def pitch_joints(self, side: str) -> tuple[str, ...]:
+        """The recorded joints of a leg that turn about the y axis, from the hip down.
+
+        Args:
+          side: one of SIDES.
+        """
+        links = self.description.links
+        index = self.description.feet[SIDES.index(side)].joint
+        names: list[str] = []
+        while index >= 0:
+            joint = links[index]
+            if abs(joint.axis[1]) > 0.9 and joint.name in self.recording.joints:
+                names.insert(0, joint.name)
+            index = joint.parent
+        return tuple(names)
+
+    @property
+    def title(self) -> str:
+        """The name and, where it is known, how the rollout ended."""
+        end = self.recording.metadata.end
+        if not end:
+            return self.name
+        return f"{self.name}: {end} at {self.recording.time_s[-1]:.2f} s"
+
+    @property
+    def properties(self) -> dict[str, str]:
+        """What is known of where the recording comes from, as text."""
+        about = self.recording.metadata
+        known = {
+            "robot": about.robot,
+            "base": about.base,
+            "source": about.source,
+            "world": about.world,
+            "end": about.end,
+            "gait": about.gait and json.dumps(about.gait),
+            "terrain": about.terrain and json.dumps(about.terrain),
+        }
+        return {name: text for name, text in known.items() if text}
+
+    def _vector(self, name: str, otherwise: Sequence[float]) -> FloatArray:
+        """(ticks, k) a vector of the recording, or a constant."""
+        if self.recording.has(name):
+            return self.recording.vector(name)
+        return np.tile(otherwise, (self.recording.ticks, 1))
+
+
+def check_beside(scenes: Sequence[Scene]) -> None:
+    """Check that scenes can stand side by side.
+
+    Raises:
+      BadValueError: there is none, or one's name is another's or the start of it.
+    """
+    if not scenes:
+        raise BadValueError("no scenes; at least one recording is needed")
+    paths = sorted(f"{scene.name}/" for scene in scenes)
+    for path, after in itertools.pairwise(paths):
+        if after.startswith(path):
+            raise BadValueError(
+                f"scenes {path[:-1]!r} and {after[:-1]!r}: a name must not be another "
+                "one's, nor the start of its path"
+            )
+
+
+def content_id(scenes: Sequence[Scene]) -> str:
+    """32 hexadecimal digits that belong to these recordings, names and grounds."""
+    content = hashlib.sha256()
+    for scene in scenes:
+        content.update(f"{scene.name}\n{scene.description.name}\n".encode())
+        content.update(scene.recording.metadata.to_json().encode())
+        for name, values in scene.recording.columns.items():
+            content.update(f"\n{name}\n".encode() + values.tobytes())
+        if scene.ground is not None:
+            content.update(
+                f"\n{scene.ground.origin_m} {scene.ground.spacing_m}\n".encode()
+            )
+            content.update(scene.ground.heights_m.tobytes())
+    return content.hexdigest()[:32]

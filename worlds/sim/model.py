@@ -1,0 +1,115 @@
+"""A robot on its ground as a compiled MuJoCo model."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.description import Description
+from robots.mjcf import ROOT_JOINT, mujoco_spec
+from robots.sole import contact_shares
+from terrain import Heightfield
+from worlds.sim.quiet_mujoco import quiet_mujoco
+from worlds.soft_ground import FootSpring, soften_mujoco
+from worlds.world import WorldOptions
+
+if TYPE_CHECKING:
+    import mujoco
+
+ROOT_QPOS, ROOT_QVEL = 7, 6
+_BASE_THICKNESS_M = 1.0
+
+
+def mujoco_model(
+    description: Description, options: WorldOptions, ground: Heightfield | None
+) -> "mujoco.MjModel":
+    """The robot on a ground, or without any.
+
+    Args:
+      description: the robot.
+      options: time step, friction, softness, fixed base.
+      ground: what it stands on; None for nothing.
+    """
+    grounds = [] if ground is None else [ground]
+    model = world_spec(description, options, grounds).compile()
+    if options.sinkage_m:
+        spring = FootSpring.sinking(description, options.sinkage_m)
+        soften_mujoco(model, description, spring)
+    return model
+
+
+def world_spec(
+    description: Description, options: WorldOptions, grounds: Sequence[Heightfield]
+) -> "mujoco.MjSpec":
+    """The robot on all of some grounds, before it is compiled.
+
+    Args:
+      description: the robot.
+      options: time step, friction, fixed base.
+      grounds: what it stands on; the geoms are `ground_name` of their numbers.
+    """
+    import mujoco
+
+    quiet_mujoco()  # worlds tell what blew up
+    spec = mujoco_spec(description)
+    spec.option.timestep = options.timestep_s
+    # A diverged robot shall show its NaN, not start again in silence.
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    spec.compiler.discardvisual = True
+    if options.fixed_base:
+        spec.delete(spec.joint(ROOT_JOINT))
+    for sole in [geom for geom in spec.geoms if geom.contype == 1]:
+        sole.friction = [options.friction, *sole.friction[1:]]
+        # The sole's friction counts, not the larger of sole's and ground's.
+        sole.priority = 1
+    for number, ground in enumerate(grounds):
+        add_ground(spec, ground, ground_name(number))
+    return spec
+
+
+def ground_name(number: int) -> str:
+    """Name of a ground's geom, by the ground's number."""
+    return f"ground_{number}" if number else "ground"
+
+
+def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
+    """Add a heightfield to a specification, a plane where it is flat."""
+    import mujoco
+
+    if ground.is_flat:
+        spec.worldbody.add_geom(
+            name=name,
+            type=mujoco.mjtGeom.mjGEOM_PLANE,
+            size=[0, 0, 1],
+            pos=[0, 0, float(ground.heights_m[0, 0])],
+            contype=0,
+            conaffinity=1,
+        )
+        return
+    heights = ground.heights_m
+    low, span = float(heights.min()), float(np.ptp(heights))
+    (x0, x1), (y0, y1) = ground.x_range_m, ground.y_range_m
+    spec.add_hfield(
+        name=name,
+        nrow=heights.shape[0],
+        ncol=heights.shape[1],
+        size=[(x1 - x0) / 2, (y1 - y0) / 2, span, _BASE_THICKNESS_M],
+        userdata=((heights - low) / span).ravel().tolist(),
+    )
+    spec.worldbody.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_HFIELD,
+        hfieldname=name,
+        pos=[(x0 + x1) / 2, (y0 + y1) / 2, low],
+        contype=0,
+        conaffinity=1,
+    )
+
+
+def touch_shares(description: Description) -> FloatArray:
+    """(touch sensors, 8): how the contact points' forces reach the foot sensors."""
+    left, right = (contact_shares(foot) for foot in description.feet)
+    shares = np.zeros((len(left) + len(right), 8))
+    shares[: len(left), :4], shares[len(left) :, 4:] = left, right
+    return shares

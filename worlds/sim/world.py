@@ -1,0 +1,132 @@
+"""The deterministic world: MuJoCo, many robots in one batch."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+from robots.description import Description
+from terrain import Heightfield
+from worlds.observation import Observation, Truth
+from worlds.rollouts import RolloutWorld, Schedule
+from worlds.sim.model import (
+    ROOT_QPOS,
+    ROOT_QVEL,
+    mujoco_model,
+    touch_shares,
+)
+from worlds.sim.start_height import Standing
+from worlds.world import TICK_S, WorldOptions
+
+if TYPE_CHECKING:
+    from mujoco.batch import Batch
+
+
+class SimWorld(RolloutWorld):
+    """n robots in `mujoco.batch.Batch`, each on its own ground.
+
+    Robot i's rollout has the same bits whatever n is and however many threads run.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        grounds: Sequence[Heightfield],
+        seeds: Sequence[np.random.SeedSequence],
+        options: WorldOptions,
+    ) -> None:
+        """Compile a model for each distinct ground, and make the batch."""
+        if options.hidden:
+            raise BadValueError("a sim has no hidden physics; see the real world")
+        super().__init__(description, grounds, seeds, options)
+        self._batch = self._made_batch()
+        self._qpos = self._batch.bind("qpos")
+        self._qvel = self._batch.bind("qvel")
+        self._ctrl = self._batch.bind("ctrl")
+        self._sensors = self._batch.bind("sensordata")
+        self._shares = touch_shares(description)
+        self._joints = slice(0 if options.fixed_base else ROOT_QPOS, None)
+        self._speeds = slice(0 if options.fixed_base else ROOT_QVEL, None)
+        self._standing = Standing(description)
+
+    def close(self) -> None:
+        """Nothing to give back."""
+
+    def _made_batch(self) -> "Batch":
+        """The simulations, each robot's with its own ground."""
+        from mujoco.batch import Batch
+
+        models = {
+            id(ground): mujoco_model(
+                self.description,
+                self.options,
+                None if self.options.fixed_base else ground,
+            )
+            for ground in self._grounds
+        }
+        per_robot = [models[id(ground)] for ground in self._grounds]
+        batch = Batch(per_robot[0], self.n, self.options.threads)
+        if len(models) > 1:
+            batch.set_models(per_robot)
+        return batch
+
+    def _start(self, pose_rad: FloatArray) -> None:
+        self._batch.reset()
+        self._qpos[:, self._joints] = pose_rad
+        self._start_height_m = self._standing.heights_m(pose_rad, self._grounds)
+        if not self.options.fixed_base:
+            self._qpos[:, 2] = self._start_height_m
+        self._ctrl[:] = pose_rad
+        self._batch.forward()
+
+    def _advance(self, schedule: Schedule) -> None:
+        for targets, steps in schedule:
+            self._ctrl[:] = targets
+            self._run(steps)
+
+    def _run(self, steps: int) -> None:
+        """Physics of the active robots; what blows up becomes NaN."""
+        from mujoco.batch import SimulationError
+
+        try:
+            self._batch.step(ids=self.active, nstep=steps)
+        except SimulationError as error:
+            self._qpos[error.ids] = np.nan
+
+    def _read(self) -> tuple[Truth, Observation]:
+        """Positions and velocities of now; forces and acceleration of the last step."""
+        touch = len(self._shares)
+        truth = self._read_truth()
+        observation = Observation(
+            time_s=self._ticks * TICK_S,
+            position_rad=self._qpos[:, self._joints].copy(),
+            velocity_rad_s=self._qvel[:, self._speeds].copy(),
+            gyroscope_rad_s=truth.base_angular_velocity_rad_s.copy(),
+            accelerometer_m_s2=self._sensors[:, touch + 3 : touch + 6].copy(),
+            foot_force_n=np.maximum(self._foot_forces(), 0.0),
+        )
+        return truth, observation
+
+    def _read_truth(self) -> Truth:
+        if self.options.fixed_base:
+            zeros = np.zeros((self.n, 3))
+            position = zeros.copy()
+            position[:, 2] = self._start_height_m
+            upright = np.tile([1.0, 0.0, 0.0, 0.0], (self.n, 1))
+            return Truth(position, upright, zeros, zeros)
+        return Truth(
+            base_position_m=self._qpos[:, :3].copy(),
+            base_orientation=self._qpos[:, 3:7].copy(),
+            base_linear_velocity_m_s=self._qvel[:, :3].copy(),
+            base_angular_velocity_rad_s=self._qvel[:, 3:6].copy(),
+        )
+
+    def _foot_forces(self) -> FloatArray:
+        """(n, 8) shares of the touch forces, summed in one order for every n."""
+        touch = self._sensors[:, : len(self._shares)]
+        forces = np.zeros((self.n, self._shares.shape[1]))
+        for k, shares in enumerate(self._shares):
+            forces += touch[:, k, None] * shares
+        return forces
