@@ -19,7 +19,7 @@ from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
 from diagnosis.baselines.sysid import fitted
 from diagnosis.baselines.sysid_models import Unknown, unknowns
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import channels_of
@@ -77,7 +77,7 @@ def _recording() -> tuple[Plant, list[Trace]]:
 
 def _model(plant: Plant, joint: str) -> Model:
     return tuple(
-        Placed(
+        PlacedEffect(
             name,
             joint,
             tuple(one.typical for one in effect(name).parameters(plant, joint)),
@@ -93,7 +93,7 @@ def _of(free: list[Unknown], joint: str) -> list[Unknown]:
 def _check_found(predictor: Predictor, model: Model, free: list[Unknown]) -> None:
     """Both find the hidden friction, or they have not done the same work."""
     fit = fit_all(predictor, [model])[0]
-    ours = next(p.values[0] for p in fit.model if p.effect == EFFECTS[0])
+    ours = next(p.values[0] for p in fit.model if p.name == EFFECTS[0])
     counts, _ = fitted(predictor.plant, predictor.traces, free)
     pairs = zip(free, counts, strict=True)
     theirs = next(one.value(count) for one, count in pairs if one.effect == EFFECTS[0])

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import EffectAt, Estimate, Found
@@ -17,10 +17,10 @@ _LARGEST = 1e12
 
 def found_effect(
     plant: Plant,
-    placed: Placed,
+    placed: PlacedEffect,
     spans: Sequence[tuple[float, float]],
     probability: float,
-    confusable_with: Sequence[Placed] = (),
+    confusable_with: Sequence[PlacedEffect] = (),
 ) -> Found:
     """An effect with its values and their 80 % intervals, within the bounds.
 
@@ -31,7 +31,7 @@ def found_effect(
       probability: that it is right.
       confusable_with: what else would explain the same.
     """
-    kind = effect(placed.effect)
+    kind = effect(placed.name)
     estimates = {}
     for parameter, value, span in zip(
         kind.parameters(plant, placed.place), placed.values, spans, strict=True
@@ -45,10 +45,10 @@ def found_effect(
             value, min(low, value), max(high, value), parameter.unit
         )
     return Found(
-        placed.effect,
+        placed.name,
         placed.place,
         estimates,
         float(np.clip(probability, 0.0, 1.0)),
-        tuple(EffectAt(other.effect, other.place) for other in confusable_with),
+        tuple(EffectAt(other.name, other.place) for other in confusable_with),
         native=kind.native,
     )

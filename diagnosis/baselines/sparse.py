@@ -8,7 +8,7 @@ import numpy as np
 from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.baselines.sparse_columns import Column, torque_columns
 from diagnosis.baselines.sparse_torques import Torques
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
@@ -105,7 +105,7 @@ def _placed(
     kept: IntArray,
     size: FloatArray,
     error: FloatArray,
-) -> list[tuple[Placed, list[tuple[float, float]], float]]:
+) -> list[tuple[PlacedEffect, list[tuple[float, float]], float]]:
     """Effects with values, spans and how much they explain, the largest first.
 
     An effect's columns each are one of its parameters. Sizes with the wrong sign
@@ -129,5 +129,5 @@ def _placed(
             spans.append((amount - NORMAL_80 * width, amount + NORMAL_80 * width))
         if name and parameters[0].low <= values[0] <= parameters[0].high:
             part = float(np.hypot.reduce([one[2] for one in found.values()]))
-            ranked.append((Placed(name, place, tuple(values)), spans, part))
+            ranked.append((PlacedEffect(name, place, tuple(values)), spans, part))
     return sorted(ranked, key=lambda one: -one[2])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnosis.baselines.sparse_torques import Torques, inverse_nm
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import variants_of
@@ -128,13 +128,13 @@ def _model_columns(
     for number, parameter in enumerate(parameters):
         size = parameter.typical or 0.1 * parameter.high
         values = tuple(size if i == number else 0.0 for i in range(len(parameters)))
-        model = _changed(plant, Placed(name, place, values))
+        model = _changed(plant, PlacedEffect(name, place, values))
         other = inverse_nm(plant, model, torques.motion.position_rad, torques.motion)
         change = (other - torques.nominal_nm) / size
         yield Column(name, place, number, _weighted(torques, change))
 
 
-def _changed(plant: Plant, placed: Placed) -> "mujoco.MjModel":
+def _changed(plant: Plant, placed: PlacedEffect) -> "mujoco.MjModel":
     import mujoco
 
     model = copy.copy(plant.model)

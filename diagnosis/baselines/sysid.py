@@ -20,7 +20,7 @@ from diagnosis.baselines.sysid_models import (
     sequence_of,
     unknowns,
 )
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import channels_of
 from diagnosis.residuals.predictor import WARM_UP_S
@@ -77,7 +77,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         )
     best = int(np.argmax(size))
     one = free[best]
-    placed = Placed(one.effect, one.place, (one.value(change[best]),))
+    placed = PlacedEffect(one.effect, one.place, (one.value(change[best]),))
     spread = half[best] * NORMAL_80 / _NORMAL_95
     span = (one.value(change[best] - spread), one.value(change[best] + spread))
     found = found_effect(plant, placed, [span], size[best] / size.sum())

@@ -6,7 +6,7 @@ from dataclasses import replace
 from diagnosis.audit.result import Audit
 from diagnosis.conclude.confidence import confusable, gap, probability, twins
 from diagnosis.conclude.estimates import estimates
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
@@ -84,7 +84,7 @@ def effects_of(
     values = estimates(both, refitted)
     found = [
         Found(
-            name=placed.effect,
+            name=placed.name,
             place=placed.place,
             parameters=own,
             probability=probability(searched, placed),
@@ -92,7 +92,7 @@ def effects_of(
                 confusable(searched, placed) + twins(both.plant, placed)
             ),
             when=_when(both, placed),
-            native=effect(placed.effect).native,
+            native=effect(placed.name).native,
         )
         for placed, own in zip(refitted.model, values, strict=True)
     ]
@@ -103,12 +103,12 @@ def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
     return tuple(dict.fromkeys(effects))
 
 
-def _when(both: Predictor, placed: Placed) -> When:
+def _when(both: Predictor, placed: PlacedEffect) -> When:
     first_s = min(trace.time_s[0] for trace in both.traces)
     last_s = max(trace.time_s[-1] for trace in both.traces)
-    if placed.effect == "servo_fade":
+    if placed.name == "servo_fade":
         return When("drift", float(first_s), float(last_s))
-    if placed.effect == "external_force":
+    if placed.name == "external_force":
         start_s, duration_s = placed.values[3:]
         if start_s > first_s or start_s + duration_s < last_s:
             return When("burst", start_s, start_s + duration_s)

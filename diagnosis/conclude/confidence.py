@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import grown_from
 from diagnosis.plant.plant import Plant
 from diagnosis.search.result import Found
@@ -22,7 +22,7 @@ MOST = 0.98
 """However large the gap: what no effect of the library is can look like one."""
 
 
-def confusable(found: Found, placed: Placed) -> tuple[EffectAt, ...]:
+def confusable(found: Found, placed: PlacedEffect) -> tuple[EffectAt, ...]:
     """Effects that would do as well in the stead of one of the winner's."""
     winner = found.winner
     assert winner is not None
@@ -32,15 +32,15 @@ def confusable(found: Found, placed: Placed) -> tuple[EffectAt, ...]:
         own = [other for other in judged.model if other.key not in rest]
         other = len(own) == 1 and own[0].key != placed.key
         if other and found.worse(judged) <= TIED_NATS:
-            others[own[0].key] = EffectAt(own[0].effect, own[0].place)
+            others[own[0].key] = EffectAt(own[0].name, own[0].place)
     return tuple(others.values())
 
 
-def twins(plant: Plant, placed: Placed) -> tuple[EffectAt, ...]:
+def twins(plant: Plant, placed: PlacedEffect) -> tuple[EffectAt, ...]:
     """Effects that nothing in any recording of this plant tells from one."""
-    if placed.effect == "command_latency" and plant.base == "fixed":
+    if placed.name == "command_latency" and plant.base == "fixed":
         return (EffectAt("sensor_delay", "encoders"),)
-    if placed.effect == "viscous_friction" and placed.place in plant.joints:
+    if placed.name == "viscous_friction" and placed.place in plant.joints:
         column = plant.joints.index(placed.place)
         if plant.servo.back_emf_nm_s_rad[column] > 0:
             return (EffectAt("servo_damping", placed.place),)
@@ -58,13 +58,13 @@ def alternatives(found: Found, kind: VerdictKind) -> tuple[tuple[EffectAt, ...],
     tied = [one for one in found.best[found.chosen] if found.worse(one) <= TIED_NATS]
     every = {one.keys: one.model for one in (winner, *tied)}
     answers = tuple(
-        tuple(EffectAt(placed.effect, placed.place) for placed in model)
+        tuple(EffectAt(placed.name, placed.place) for placed in model)
         for model in every.values()
     )
     return answers if kind == "not_identifiable" else answers[1:]
 
 
-def gap(found: Found, placed: Placed) -> float:
+def gap(found: Found, placed: PlacedEffect) -> float:
     """How much worse the best model without an effect of the winner is [nats].
 
     Infinite if none was tried.
@@ -79,7 +79,7 @@ def gap(found: Found, placed: Placed) -> float:
     return max(min(without, default=np.inf), 0.0)
 
 
-def probability(found: Found, placed: Placed) -> float:
+def probability(found: Found, placed: PlacedEffect) -> float:
     """That an effect of the winner is right, from the gap to models without it."""
     odds = SLOPE * np.log1p(gap(found, placed) / EVEN_NATS)
     return float(MOST / (1 + np.exp(-odds)))

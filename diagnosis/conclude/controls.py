@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, grown_from
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import Fit, fit_all
@@ -54,7 +54,7 @@ class Controls:
         )
 
 
-def _main(predictor: Predictor, model: Model) -> tuple[Placed, Model]:
+def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
     """The effect without which most is left, and the others without it."""
     if len(model) == 1:
         return model[0], ()
@@ -64,28 +64,28 @@ def _main(predictor: Predictor, model: Model) -> tuple[Placed, Model]:
     return model[worst], fits[worst].model
 
 
-def _elsewhere(predictor: Predictor, main: Placed) -> list[Placed]:
+def _elsewhere(predictor: Predictor, main: PlacedEffect) -> list[PlacedEffect]:
     return [
-        Placed(main.effect, place, main.values)
-        for place in EFFECTS[main.effect].places(predictor.plant, predictor.traces)
+        PlacedEffect(main.name, place, main.values)
+        for place in EFFECTS[main.name].places(predictor.plant, predictor.traces)
         if place != main.place
     ]
 
 
 def _by_lot(
     predictor: Predictor,
-    main: Placed,
+    main: PlacedEffect,
     rest: Model,
     alike: Collection[str],
     rng: np.random.Generator,
-) -> list[Placed]:
+) -> list[PlacedEffect]:
     """One of the effects that can be there, of typical size; none if there is none.
 
     With as many values as the main one, if there are such.
     """
     plant, traces = predictor.plant, predictor.traces
     others = [
-        Placed(
+        PlacedEffect(
             name,
             main.place,
             tuple(p.typical for p in kind.parameters(plant, main.place)),
@@ -104,11 +104,13 @@ def _by_lot(
     return [choice[int(rng.integers(len(choice)))]] if choice else []
 
 
-def _contains(one: Placed, other: Placed) -> bool:
+def _contains(one: PlacedEffect, other: PlacedEffect) -> bool:
     return one.key in (grown.key for grown in grown_from(other))
 
 
-def _best(predictor: Predictor, rest: Model, options: list[Placed]) -> Model | None:
+def _best(
+    predictor: Predictor, rest: Model, options: list[PlacedEffect]
+) -> Model | None:
     """With the option that fits best, of those that first look best."""
     taken = {placed.key for placed in rest}
     models = [(*rest, one) for one in options if one.key not in taken]

@@ -28,7 +28,7 @@ def smallest_detectable(
     for signature in found:
         placed = signature.placed
         power = 0.5 * float(signature.change @ signature.change)
-        if placed.effect in THRESHOLDS or power <= 0:
+        if placed.name in THRESHOLDS or power <= 0:
             continue
         first = Coordinates(predictor.plant, (placed,)).parameters[0]
         if not np.isfinite(first.neutral):

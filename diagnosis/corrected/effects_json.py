@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from diagnosis.effects._ground import has_ground_contact
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.ground_slope import GroundSlope
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Base, Plant
@@ -49,7 +49,7 @@ class Correction:
         """What a model changes of a plant."""
         parts = [
             EffectValues(
-                placed.effect,
+                placed.name,
                 placed.place,
                 dict(zip(_parameters(plant, placed), placed.values, strict=True)),
             )
@@ -89,7 +89,7 @@ class Correction:
         parts = (*self.native, *self.per_tick)
         return tuple(self._placed(plant, part) for part in parts)
 
-    def _placed(self, plant: Plant, part: EffectValues) -> Placed:
+    def _placed(self, plant: Plant, part: EffectValues) -> PlacedEffect:
         floats = plant.base == "floating"
         if part.name == GroundSlope.name and floats and self.base == "fixed":
             raise BadModelError(
@@ -97,7 +97,7 @@ class Correction:
                 "cannot have it"
             )
         _check_place(plant, part)
-        placed = Placed(part.name, part.place, tuple(part.parameters.values()))
+        placed = PlacedEffect(part.name, part.place, tuple(part.parameters.values()))
         names = _parameters(plant, placed)
         if sorted(names) != sorted(part.parameters):
             raise BadModelError(
@@ -105,7 +105,7 @@ class Correction:
                 f"it needs {', '.join(names)}"
             )
         values = tuple(part.parameters[name] for name in names)
-        return Placed(part.name, part.place, values)
+        return PlacedEffect(part.name, part.place, values)
 
 
 def load_correction(source: str | Path, plant: Plant) -> Model:
@@ -167,8 +167,8 @@ def _sorted(
     )
 
 
-def _parameters(plant: Plant, placed: Placed) -> list[str]:
-    one = effect(placed.effect)
+def _parameters(plant: Plant, placed: PlacedEffect) -> list[str]:
+    one = effect(placed.name)
     return [parameter.name for parameter in one.parameters(plant, placed.place)]
 
 

@@ -46,7 +46,7 @@ def corrected_mjcf(
       servo: of the recordings; the plant's own where None.
       step_s: of the physics, for which contacts and friction are set.
     """
-    native = tuple(placed for placed in model if effect(placed.effect).native)
+    native = tuple(placed for placed in model if effect(placed.name).native)
     variants = variants_of(plant, [native])
     spec = plant.spec.copy()
     spec.option.timestep = step_s

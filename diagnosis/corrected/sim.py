@@ -55,17 +55,17 @@ def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
     """
     variants = Variants(plant, n)
     for placed in model:
-        if placed.effect == UnevenGround.name:
+        if placed.name == UnevenGround.name:
             raise BadModelError(
                 "uneven_ground says how high bumps are, not where: give the sim a "
                 "terrain with bumps instead"
             )
         values = np.array(placed.values)
         for row in range(n):
-            if placed.effect == GroundSlope.name:
+            if placed.name == GroundSlope.name:
                 tilt_gravity(variants, row, values)
             else:
-                effect(placed.effect).apply(variants, row, placed.place, values)
+                effect(placed.name).apply(variants, row, placed.place, values)
     return variants
 
 

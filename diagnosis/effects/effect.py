@@ -41,17 +41,17 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedEffect:
     """An effect at a place, with values of its parameters in their order."""
 
-    effect: str
+    name: str
     place: str
     values: tuple[float, ...]
 
     @property
     def key(self) -> str:
         """Effect and place, for example `backlash@LKneePitch`."""
-        return f"{self.effect}@{self.place}"
+        return f"{self.name}@{self.place}"
 
 
 class Effect(ABC):
@@ -79,7 +79,7 @@ class Effect(ABC):
         Effects are applied one after another; each adds to what is there.
         """
 
-    def grown_from(self, other: Placed) -> tuple[Placed, ...]:
+    def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
         """Where to begin if another effect at the same place was found to help.
 
         Effects that contain a simpler one say so; a fit that begins anywhere else may

@@ -11,7 +11,7 @@ from diagnosis.effects.contact_compliance import ContactCompliance
 from diagnosis.effects.contact_friction import ContactFriction
 from diagnosis.effects.coulomb_friction import CoulombFriction
 from diagnosis.effects.drag import Drag
-from diagnosis.effects.effect import Effect, Placed
+from diagnosis.effects.effect import Effect, PlacedEffect
 from diagnosis.effects.encoder_offset import EncoderOffset
 from diagnosis.effects.end_stop import EndStop
 from diagnosis.effects.external_force import ExternalForce
@@ -77,7 +77,7 @@ def effect(name: str) -> Effect:
     return EFFECTS[name]
 
 
-def grown_from(placed: Placed) -> tuple[Placed, ...]:
+def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
     """Effects at the same place that contain this one: where to begin with each."""
     return tuple(one for kind in EFFECTS.values() for one in kind.grown_from(placed))
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from diagnosis.effects._places import JointEffect
 from diagnosis.effects._sizes import torque_nm
-from diagnosis.effects.effect import Parameter, Placed
+from diagnosis.effects.effect import Parameter, PlacedEffect
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -49,12 +49,14 @@ class StribeckFriction(JointEffect):
             joints.stribeck_speed_rad_s[at] += share * speed_rad_s
             joints.stribeck_nm[at] = total_nm
 
-    def grown_from(self, other: Placed) -> tuple[Placed, ...]:
+    def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
         """With Coulomb friction it shares all but what happens near standstill."""
-        if other.effect != "coulomb_friction":
+        if other.name != "coulomb_friction":
             return ()
         (torque_nm,) = other.values
         return tuple(
-            Placed(self.name, other.place, (torque_nm, 0.5 * torque_nm, speed_rad_s))
+            PlacedEffect(
+                self.name, other.place, (torque_nm, 0.5 * torque_nm, speed_rad_s)
+            )
             for speed_rad_s in GROWN_SPEEDS_RAD_S
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.traces.windows import Run
@@ -33,7 +33,7 @@ class Limb:
     first: bool
     elsewhere: frozenset[str]
 
-    def felt(self, model: tuple[Placed, ...]) -> tuple[Placed, ...]:
+    def felt(self, model: tuple[PlacedEffect, ...]) -> tuple[PlacedEffect, ...]:
         """The effects that change anything here: not those at other limbs."""
         return tuple(one for one in model if one.place not in self.elsewhere)
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
@@ -24,7 +24,7 @@ from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import is_left_over, runs_of, window_s
 from groundwalk.arrays import BoolArray, FloatArray
 
-Model = tuple[Placed, ...]
+Model = tuple[PlacedEffect, ...]
 """The plant with these effects; empty for the plant as it is."""
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
@@ -196,7 +196,7 @@ class Predictor:
         Models with a spring between motor and link take half the step: what it stores
         and gives back is lost in a step that its motor swings in.
         """
-        stiff = [any(placed.effect in STIFF for placed in one) for one in models]
+        stiff = [any(placed.name in STIFF for placed in one) for one in models]
         predicted = np.empty((len(models), *self._correction.shape))
         for is_stiff, step_s, correction in (
             (False, self.step_s, self._correction),
@@ -268,5 +268,5 @@ def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
     for row, model in enumerate(models):
         for placed in model:
             values = np.array(placed.values)
-            effect(placed.effect).apply(variants, row, placed.place, values)
+            effect(placed.name).apply(variants, row, placed.place, values)
     return variants

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.traces.windows import FLOATING_WINDOW_S, Run
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
@@ -90,14 +90,14 @@ class Standing:
       rows: of the blocks that these were learned from.
     """
 
-    model: tuple[Placed, ...]
+    model: tuple[PlacedEffect, ...]
     scale: FloatArray
     power: FloatArray
     axes: FloatArray
     rows: float
 
     @classmethod
-    def known(cls, model: tuple[Placed, ...], channels: int) -> "Standing":
+    def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "Standing":
         """Nothing but effects."""
         none = np.zeros((WAVES * channels, 0))
         return cls(model, np.ones(channels), np.zeros(0), none, 1.0)
@@ -105,7 +105,7 @@ class Standing:
     @classmethod
     def of(
         cls,
-        model: tuple[Placed, ...],
+        model: tuple[PlacedEffect, ...],
         residual: FloatArray,
         scored: BoolArray,
         blocks: Sequence[Block],

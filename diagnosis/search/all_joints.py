@@ -8,7 +8,7 @@ Here whole kinds are added, each at all joints where it explains something.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS
 from diagnosis.residuals.predictor import Model
 from diagnosis.search.fitting import fit_all
@@ -123,13 +123,13 @@ def _by_kind(guesses: Sequence[Guess], least: float, model: Model) -> list[Model
     explains more of the slow ones.
     """
     known = {placed.key for placed in model}
-    together: dict[str, tuple[float, list[Placed]]] = {}
+    together: dict[str, tuple[float, list[PlacedEffect]]] = {}
     for guess in guesses:
         (placed,) = guess.model
         if guess.gain < least or placed.key in known:
             continue
-        gain, every = together.get(placed.effect, (0.0, []))
-        together[placed.effect] = gain + guess.gain, [*every, placed]
+        gain, every = together.get(placed.name, (0.0, []))
+        together[placed.name] = gain + guess.gain, [*every, placed]
     kinds = [(gain, tuple(placed)) for gain, placed in together.values()]
     most = sorted(kinds, key=lambda kind: -kind[0])[:TRIED]
     rest = [kind for kind in kinds if kind not in most]

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, grown_from
 from diagnosis.residuals.predictor import STIFF, Model, Predictor
 from diagnosis.search.result import Judged, Rules, keys_of
@@ -94,14 +94,14 @@ class Starts:
             for first, some in zip(firsts, np.split(energies, ends[:-1]), strict=True)
         ]
 
-    def _sizes(self, placed: Placed) -> list[Placed]:
+    def _sizes(self, placed: PlacedEffect) -> list[PlacedEffect]:
         """An effect in several sizes. What limits may do so far off its guess."""
-        if placed.effect in LIMITS:
+        if placed.name in LIMITS:
             limits = [k * placed.values[0] for k in LIMITED]
-            if placed.effect == "torque_limit":
+            if placed.name == "torque_limit":
                 limits += self._weaker(placed.place)
             return [replace(placed, values=(limit,)) for limit in limits]
-        if placed.effect in STIFF:
+        if placed.name in STIFF:
             stiffness, *rest = placed.values
             return [replace(placed, values=(k * stiffness, *rest)) for k in STIFFER]
         return [stretched(self._fit.plant, placed, k) for k in STRETCHES]
@@ -120,13 +120,13 @@ class Starts:
         short = [
             guess.model for guess in ranked[: self._rules.singles - self._rules.others]
         ]
-        named = {model[0].effect for model in short}
+        named = {model[0].name for model in short}
         for guess in ranked[len(short) :]:
             if len(short) == most:
                 break
-            if guess.model[0].effect not in named:
+            if guess.model[0].name not in named:
                 short.append(guess.model)
-                named.add(guess.model[0].effect)
+                named.add(guess.model[0].name)
         return short
 
     def _leading(self, best: Sequence[Judged]) -> list[Judged]:
@@ -217,12 +217,14 @@ class Starts:
         plant, traces = self._fit.plant, self._fit.traces
         return [
             tuple(
-                Placed(other.effect, place, other.values) if other is placed else other
+                PlacedEffect(other.name, place, other.values)
+                if other is placed
+                else other
                 for other in judged.model
             )
             for placed in judged.model
-            if EFFECTS[placed.effect].place_kind == "body"
-            for place in EFFECTS[placed.effect].places(plant, traces)
+            if EFFECTS[placed.name].place_kind == "body"
+            for place in EFFECTS[placed.name].places(plant, traces)
             if place in plant.neighbours(placed.place)
         ]
 

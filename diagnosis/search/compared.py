@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Model
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.result import Found, Judged, keys_of
@@ -69,7 +69,7 @@ def crossed(found: Found) -> list[Model]:
     """The best model with one effect exchanged for one of a model that comes close."""
     winner, every = found.winner, found.best[found.chosen]
     assert winner is not None
-    others: dict[str, Placed] = {
+    others: dict[str, PlacedEffect] = {
         placed.key: placed
         for one in reversed(every)
         if found.worse(one) <= CLOSE_NATS

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from diagnosis.effects.effect import Parameter, Placed
+from diagnosis.effects.effect import Parameter, PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
@@ -66,7 +66,7 @@ class Coordinates:
         self.parameters: list[Parameter] = [
             parameter
             for placed in model
-            for parameter in effect(placed.effect).parameters(plant, placed.place)
+            for parameter in effect(placed.name).parameters(plant, placed.place)
         ]
 
     def of(self, model: Model) -> FloatArray:
@@ -88,7 +88,7 @@ class Coordinates:
         placed, first = [], 0
         for old in self.model:
             last = first + len(old.values)
-            placed.append(Placed(old.effect, old.place, tuple(values[first:last])))
+            placed.append(PlacedEffect(old.name, old.place, tuple(values[first:last])))
             first = last
         return tuple(placed)
 

@@ -24,7 +24,7 @@ def _groups(model: Model) -> list[list[int]]:
     number = 0
     for placed in model:
         for k in range(len(placed.values)):
-            groups.setdefault((placed.effect, k), []).append(number)
+            groups.setdefault((placed.name, k), []).append(number)
             number += 1
     return list(groups.values())
 

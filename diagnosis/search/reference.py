@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from diagnosis.audit.audit import audit
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Predictor
@@ -53,7 +53,7 @@ def standing_of(
     if refused:
         raise BadRecordingError(f"the reference: {refused[0]}")
     traces = shortened(traces, MOST_S)
-    model: tuple[Placed, ...] = ()
+    model: tuple[PlacedEffect, ...] = ()
     if plant.base == "fixed":
         model = _explained(plant, traces, channels, rules, threads)
     return _learned(plant, traces, channels, model, threads)
@@ -63,7 +63,7 @@ def _learned(
     plant: Plant,
     traces: Sequence[Trace],
     channels: Channels,
-    model: tuple[Placed, ...],
+    model: tuple[PlacedEffect, ...],
     threads: int,
 ) -> Standing:
     """What a model leaves of some traces."""
@@ -126,7 +126,7 @@ def _halves(traces: Sequence[Trace]) -> tuple[list[Trace], list[Trace]]:
 
 def said_of(standing: Standing) -> tuple[str, ...]:
     """What a verdict has to say of it, in plain words."""
-    known = ", ".join(f"{one.effect} at {one.place}" for one in standing.model)
+    known = ", ".join(f"{one.name} at {one.place}" for one in standing.model)
     given = f" ({known})" if known else ""
     return (
         f"what the reference recordings show as well{given} is taken as given: only "
@@ -140,7 +140,7 @@ def _explained(
     channels: Channels,
     rules: Rules | None,
     threads: int,
-) -> tuple[Placed, ...]:
+) -> tuple[PlacedEffect, ...]:
     """The effects that a search finds."""
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select

@@ -173,7 +173,7 @@ def plausibility(judged: Judged, scale: float) -> float:
         is exact, residuals are larger than the noise and tell less.
     """
     return judged.evidence / scale + sum(
-        RARE_NATS.get(placed.effect, 0.0) + VALUE_NATS * len(placed.values)
+        RARE_NATS.get(placed.name, 0.0) + VALUE_NATS * len(placed.values)
         for placed in judged.model
     )
 

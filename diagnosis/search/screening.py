@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.trial_values import THRESHOLDS, VECTORS
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
@@ -164,8 +164,8 @@ class Screen:
         alone = []
         for row, signature in enumerate(self._found):
             placed = signature.placed
-            if placed.effect in VECTORS:
-                rest = placed.values[VECTORS[placed.effect] :]
+            if placed.name in VECTORS:
+                rest = placed.values[VECTORS[placed.name] :]
                 vectors.setdefault((placed.key, rest), []).append(row)
             elif self._products[row, row] > 0:
                 alone.append([row])
@@ -203,29 +203,29 @@ class Screen:
             first += len(group)
         return Guess(tuple(model), gain)
 
-    def _placed(self, group: list[int], stretch: FloatArray) -> Placed:
+    def _placed(self, group: list[int], stretch: FloatArray) -> PlacedEffect:
         first = self._found[group[0]].placed
-        if first.effect not in VECTORS:
+        if first.name not in VECTORS:
             return stretched(self._predictor.plant, first, float(stretch[0]))
-        parts = VECTORS[first.effect]
+        parts = VECTORS[first.name]
         every = np.array([self._found[row].placed.values[:parts] for row in group])
         values = (*map(float, stretch @ every), *first.values[parts:])
-        return Placed(first.effect, first.place, values)
+        return PlacedEffect(first.name, first.place, values)
 
 
-def stretched(plant: Plant, placed: Placed, stretch: float) -> Placed:
+def stretched(plant: Plant, placed: PlacedEffect, stretch: float) -> PlacedEffect:
     """The effect that many times as large: its first value, or its components.
 
     What acts above a threshold only is left as it is.
     """
     parameters = Coordinates(plant, (placed,)).parameters
-    if placed.effect in THRESHOLDS:
+    if placed.name in THRESHOLDS:
         return placed
     values = list(placed.values)
-    for i in range(VECTORS.get(placed.effect, 1)):
+    for i in range(VECTORS.get(placed.name, 1)):
         one = parameters[i]
         value = one.neutral + stretch * (values[i] - one.neutral)
         if not np.isfinite(one.neutral):
             value = values[i] / max(stretch, 1e-3)
         values[i] = min(max(value, one.low), one.high)
-    return Placed(placed.effect, placed.place, tuple(values))
+    return PlacedEffect(placed.name, placed.place, tuple(values))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.effect import Effect, Placed
+from diagnosis.effects.effect import Effect, PlacedEffect
 from diagnosis.effects.library import EFFECTS
 from diagnosis.effects.trial_values import Interval, trial_values
 from diagnosis.plant.plant import Plant
@@ -37,7 +37,7 @@ class Signature:
       two_sided: whether the effect may be there with the other sign.
     """
 
-    placed: Placed
+    placed: PlacedEffect
     change: FloatArray
     rows: IntArray
     two_sided: bool
@@ -97,13 +97,13 @@ def _trials(
         if kind.place_kind == "joint" and name not in ALONE:
             for level in range(max(map(len, options.values()))):
                 model = tuple(
-                    Placed(name, place, values[level])
+                    PlacedEffect(name, place, values[level])
                     for place, values in options.items()
                 )
                 trials.append((model, True))
         else:
             trials += [
-                ((Placed(name, place, each),), False)
+                ((PlacedEffect(name, place, each),), False)
                 for place, values in options.items()
                 for each in values
             ]
@@ -131,7 +131,7 @@ def _values(
     return trial_values(kind.name, parameters, column, usage, intervals)
 
 
-def _two_sided(predictor: Predictor, placed: Placed) -> bool:
+def _two_sided(predictor: Predictor, placed: PlacedEffect) -> bool:
     """Whether the effect may be there with the other sign."""
     first = Coordinates(predictor.plant, (placed,)).parameters[0]
     return first.low < first.neutral < first.high

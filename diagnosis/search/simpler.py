@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.search.compared import fairly
 from diagnosis.search.result import Found
 from diagnosis.search.search import Search
@@ -59,9 +59,9 @@ def needed(search: Search, found: Found) -> Found:
     return found
 
 
-def _without_peak(placed: Placed) -> Placed:
+def _without_peak(placed: PlacedEffect) -> PlacedEffect:
     """Dry friction as it is at speed and at rest, in the mean."""
-    if placed.effect != "stribeck_friction":
+    if placed.name != "stribeck_friction":
         return placed
     coulomb_nm, extra_nm, _ = placed.values
-    return Placed("coulomb_friction", placed.place, (coulomb_nm + extra_nm / 2,))
+    return PlacedEffect("coulomb_friction", placed.place, (coulomb_nm + extra_nm / 2,))

@@ -7,7 +7,7 @@ from joint_rigs import smooth_command, ticks
 
 import robots
 from diagnosis.corrected.sim import CorrectedSim
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from robots import biped
 from walk_engine import WalkEngine, gaits
 from worlds import WorldOptions
@@ -18,7 +18,7 @@ CROUCH = WalkEngine(biped(NAO), [gaits.get("start")], 0.01).start_pose()[0]
 
 
 def model_of(*effects):
-    return tuple(Placed(name, place, values) for name, place, *values in effects)
+    return tuple(PlacedEffect(name, place, values) for name, place, *values in effects)
 
 
 def sim(grounds, *effects, nominal=False, noise=None, latency_s=0.0, fixed=False):

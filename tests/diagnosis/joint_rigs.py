@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import replay
@@ -88,7 +88,7 @@ def run_from(trace, position_rad=0.0, velocity_rad_s=0.0):
 
 def replayed(plant, run, *effects, step_s=1e-3):
     """Positions (T, j) and velocities of a run; effects are (name, place, *values)."""
-    model = tuple(Placed(name, place, values) for name, place, *values in effects)
+    model = tuple(PlacedEffect(name, place, values) for name, place, *values in effects)
     (result,) = replay([run], variants_of(plant, [model]), step_s)
     return result.position_rad[0], result.velocity_rad_s[0]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.search.fitting import Coordinates, Fit
 from diagnosis.search.result import Found, Judged
 
@@ -19,7 +19,7 @@ VALUES = {
 def placed(key):
     """Of "effect@place"."""
     name, place = key.split("@")
-    return Placed(name, place, VALUES[name])
+    return PlacedEffect(name, place, VALUES[name])
 
 
 def judged(plant, selected, *keys):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from joint_rigs import ARM, plant_of, run_from, ticks, trace_of
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
 
@@ -33,7 +33,7 @@ def recorded(plant, *effects, duration_s=4.0, seed=0, noise_rad=NOISE_RAD, tick_
 
     It starts at rest. The start that a replay takes is that of the noisy positions.
     """
-    model = tuple(Placed(name, place, values) for name, place, *values in effects)
+    model = tuple(PlacedEffect(name, place, values) for name, place, *values in effects)
     time_s = ticks(duration_s, tick_s)
     trace = trace_of(plant, time_s, command_rad=arm_command(time_s, seed))
     run = run_from(trace)

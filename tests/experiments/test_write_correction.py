@@ -9,7 +9,7 @@ import pytest
 import robots
 import terrain
 from diagnosis.corrected.sim import CorrectedSim
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.load import load_plant
 from experiments.diagnose import write_correction
 from experiments.runs.folder import RunFolder
@@ -17,8 +17,8 @@ from experiments.walking.sims import make_sim
 from worlds import WorldOptions
 from worlds.sim.world import SimWorld
 
-WEAK = Placed("servo_gain", "LKneePitch", (0.5,))
-PLAY = Placed("backlash", "LKneePitch", (0.03,))
+WEAK = PlacedEffect("servo_gain", "LKneePitch", (0.5,))
+PLAY = PlacedEffect("backlash", "LKneePitch", (0.03,))
 
 
 def found(effects):

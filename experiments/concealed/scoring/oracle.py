@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.corrected.effects_json import EffectValues
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import channels_of
@@ -141,13 +141,13 @@ def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -
     return gain
 
 
-def _true(plant: Plant, true: EffectValues) -> Placed:
+def _true(plant: Plant, true: EffectValues) -> PlacedEffect:
     """The hidden effect in the diagnosis' words, within its bounds."""
     values = [
         min(max(true.parameters.get(p.name, p.typical), p.low), p.high)
         for p in effect(true.name).parameters(plant, true.place)
     ]
-    return Placed(true.name, true.place, tuple(values))
+    return PlacedEffect(true.name, true.place, tuple(values))
 
 
 def _answered(plant: Plant, traces: Sequence[Trace], found: Sequence[Found]) -> Model:
@@ -162,15 +162,15 @@ def _answered(plant: Plant, traces: Sequence[Trace], found: Sequence[Found]) -> 
             min(max(given.get(p.name, p.typical), p.low), p.high)
             for p in known.parameters(plant, each.place)
         ]
-        model.append(Placed(each.name, each.place, tuple(values)))
+        model.append(PlacedEffect(each.name, each.place, tuple(values)))
     return tuple(model)
 
 
-def _neutral(plant: Plant, placed: Placed) -> dict[str, float | None]:
-    parameters = effect(placed.effect).parameters(plant, placed.place)
+def _neutral(plant: Plant, placed: PlacedEffect) -> dict[str, float | None]:
+    parameters = effect(placed.name).parameters(plant, placed.place)
     values = {
         p.name: float(p.neutral) if np.isfinite(p.neutral) else None for p in parameters
     }
-    if placed.effect == "end_stop" and placed.values[1] < 0:
+    if placed.name == "end_stop" and placed.values[1] < 0:
         values["angle"] = parameters[0].low  # of the other side
     return values

@@ -12,7 +12,7 @@ import pytest
 
 from diagnosis.baselines import BASELINES, bic, sparse, sysid
 from diagnosis.baselines.sparse import sequential_threshold
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
@@ -102,7 +102,7 @@ def test_bic_names_dry_friction_with_its_value_only_where_it_is(plant, dry, clea
 def test_bic_charges_each_parameter_half_the_logarithm_of_the_samples(plant, clean):
     predictor = Predictor(plant, clean)
     one, three = (
-        fit_all(predictor, [(Placed(*placed),)], steps=1)[0]
+        fit_all(predictor, [(PlacedEffect(*placed),)], steps=1)[0]
         for placed in (
             ("viscous_friction", "swing", (0.01,)),
             ("stribeck_friction", "swing", (0.01, 0.01, 0.1)),

@@ -5,11 +5,11 @@ import pytest
 from made_up_traces import arm, recorded
 
 from diagnosis.conclude.controls import Controls
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, 4e-4))
-TRUTH = Placed("servo_gain", "elbow", (0.8,))
+TRUTH = PlacedEffect("servo_gain", "elbow", (0.8,))
 PLANT = arm()
 
 
@@ -36,13 +36,13 @@ def test_the_same_effect_elsewhere_does_its_best_and_is_worse(predictor):
     (placed,) = found.wrong_place
     assert placed.key == "servo_gain@shoulder"
     assert placed.values != TRUTH.values
-    unfitted = Placed("servo_gain", "shoulder", TRUTH.values)
+    unfitted = PlacedEffect("servo_gain", "shoulder", TRUTH.values)
     assert energy(predictor, (placed,)) < energy(predictor, (unfitted,))
     assert energy(predictor, (placed,)) > 20 * energy(predictor, (TRUTH,))
 
 
 def test_of_a_pair_the_main_effect_is_replaced(predictor):
-    friction = Placed("viscous_friction", "shoulder", (0.01,))
+    friction = PlacedEffect("viscous_friction", "shoulder", (0.01,))
     for pair in ((TRUTH, friction), (friction, TRUTH)):
         found = controls(predictor, *pair)
         assert [one.key for one in found.without] == [friction.key]
@@ -51,15 +51,15 @@ def test_of_a_pair_the_main_effect_is_replaced(predictor):
         kept, other = found.wrong_effect
         assert kept.key == friction.key
         assert other.place == "elbow"
-        assert other.effect != "servo_gain"
+        assert other.name != "servo_gain"
 
 
 def test_what_has_one_place_has_no_wrong_one(predictor):
-    latency = Placed("command_latency", "commands", (0.01,))
+    latency = PlacedEffect("command_latency", "commands", (0.01,))
     found = controls(predictor, latency)
     assert found.wrong_place is None
     assert found.wrong_effect is None
-    both_shoulders = Placed("servo_gain", "shoulder", (1.01,))
+    both_shoulders = PlacedEffect("servo_gain", "shoulder", (1.01,))
     assert controls(predictor, TRUTH, both_shoulders).wrong_place is None
 
 
@@ -82,8 +82,8 @@ def test_another_effect_is_drawn_by_lot(predictor):
 
 
 def test_what_contains_an_effect_is_no_other_effect(predictor):
-    dry = Placed("coulomb_friction", "elbow", (0.1,))
-    worn = Placed("stribeck_friction", "elbow", (0.1, 0.05, 0.1))
+    dry = PlacedEffect("coulomb_friction", "elbow", (0.1,))
+    worn = PlacedEffect("stribeck_friction", "elbow", (0.1, 0.05, 0.1))
     for one, other in ((dry, worn), (worn, dry)):
         for seed in range(12):
             found = controls(predictor, one, seed=seed)

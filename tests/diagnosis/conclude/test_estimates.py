@@ -8,7 +8,7 @@ from made_up_traces import arm
 from scipy.stats import binom
 
 from diagnosis.conclude.estimates import Z_80, estimates, standard_errors
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.search.fitting import Coordinates, Fit
 
 BLOCKS, ROWS = 60, 25
@@ -24,8 +24,10 @@ def toy(seed, common):
       seed: of the noise.
       common: part of the noise's variance that a block has in common.
     """
-    spring = Placed("joint_spring", "shoulder", (0.0, 0.0))
-    coordinates = Coordinates(PLANT, (Placed("encoder_offset", "elbow", (0,)), spring))
+    spring = PlacedEffect("joint_spring", "shoulder", (0.0, 0.0))
+    coordinates = Coordinates(
+        PLANT, (PlacedEffect("encoder_offset", "elbow", (0,)), spring)
+    )
     t = np.arange(BLOCKS * ROWS) / ROWS
     slow = np.sin(0.9 * t), np.sin(0.31 * t + 1), np.cos(0.17 * t)
     jacobian = 0.1 * np.stack(slow, axis=1)
@@ -78,9 +80,9 @@ def test_what_sims_disagree_by_is_not_known_better():
     coordinates = Coordinates(
         PLANT,
         (
-            Placed("viscous_friction", "elbow", (0.3,)),
-            Placed("servo_gain", "shoulder", (0.8,)),
-            Placed("armature", "elbow", (0.0,)),
+            PlacedEffect("viscous_friction", "elbow", (0.3,)),
+            PlacedEffect("servo_gain", "shoulder", (0.8,)),
+            PlacedEffect("armature", "elbow", (0.0,)),
         ),
     )
     exact = Fit(coordinates.model, 0 * fit.residual, 1e6 * fit.jacobian, coordinates)

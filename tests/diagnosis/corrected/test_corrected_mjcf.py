@@ -8,7 +8,7 @@ import pytest
 from joint_rigs import run_from, smooth_command, ticks, trace_of
 
 from diagnosis.corrected.mjcf import corrected_mjcf
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import replay
@@ -69,7 +69,7 @@ def simulated(text, plant, run):
 
 
 def check_same(plant, effects, servo=None, atol=1e-9):
-    model = tuple(Placed(name, place, values) for name, place, *values in effects)
+    model = tuple(PlacedEffect(name, place, values) for name, place, *values in effects)
     run = commanded_run(plant, servo)
     found = simulated(corrected_mjcf(plant, model, servo), plant, run)
     corrected, nominal = replay([run], variants_of(plant, [model, ()]))[0].position_rad
@@ -101,7 +101,7 @@ def test_late_commands(delay_s):
 
 def test_what_mujoco_lacks_is_left_out():
     plant = load_plant("nao", "fixed")
-    play = Placed("backlash", "LKneePitch", (0.03,))
+    play = PlacedEffect("backlash", "LKneePitch", (0.03,))
     assert corrected_mjcf(plant, (play,)) == corrected_mjcf(plant, ())
 
 
@@ -124,6 +124,6 @@ def test_meshes_are_found_from_anywhere(tmp_path, monkeypatch):
       <joint name="hinge"/><geom type="mesh" mesh="link"/></body></worldbody>
       <actuator><position joint="hinge" kp="5"/></actuator></mujoco>""")
     plant = load_plant(path, "fixed")
-    text = corrected_mjcf(plant, (Placed("armature", "hinge", (0.1,)),))
+    text = corrected_mjcf(plant, (PlacedEffect("armature", "hinge", (0.1,)),))
     monkeypatch.chdir("/")
     assert mujoco.MjModel.from_xml_string(text).dof_armature[0] == 0.1

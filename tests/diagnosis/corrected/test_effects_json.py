@@ -5,16 +5,16 @@ import json
 import pytest
 
 from diagnosis.corrected.effects_json import Correction, load_correction
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.verdict.verdict import Estimate, Found, Verdict
 from groundwalk.errors import BadModelError, GroundwalkError, UnknownNameError
 
 KNEE = "LKneePitch"
-PLAY = Placed("backlash", KNEE, (0.03,))
-WEAK = Placed("servo_gain", KNEE, (0.7,))
-SPRING = Placed("joint_spring", "RAnkleRoll", (1.5, -0.2))
-HUNG = Placed("ground_slope", "world", (0.1, 0.0))
+PLAY = PlacedEffect("backlash", KNEE, (0.03,))
+WEAK = PlacedEffect("servo_gain", KNEE, (0.7,))
+SPRING = PlacedEffect("joint_spring", "RAnkleRoll", (1.5, -0.2))
+HUNG = PlacedEffect("ground_slope", "world", (0.1, 0.0))
 
 
 @pytest.fixture(scope="module")
@@ -137,14 +137,14 @@ def test_how_a_base_was_mounted_is_nothing_for_a_robot_that_walks(
 
 
 def test_feet_in_the_air_have_no_contact(tmp_path, held, walking):
-    path = written(tmp_path, walking, Placed("contact_friction", "feet", (0.5,)))
+    path = written(tmp_path, walking, PlacedEffect("contact_friction", "feet", (0.5,)))
     assert load_correction(path, walking)
     with pytest.raises(BadModelError, match="contact_friction needs a robot that"):
         load_correction(path, held)
 
 
 def test_a_body_that_is_welded_away_is_no_place(tmp_path, held, walking):
-    path = written(tmp_path, walking, Placed("payload_mass", "torso", (0.1,)))
+    path = written(tmp_path, walking, PlacedEffect("payload_mass", "torso", (0.1,)))
     assert load_correction(path, walking)
     with pytest.raises(UnknownNameError, match="unknown body of nao 'torso'"):
         load_correction(path, held)

@@ -8,7 +8,7 @@ import pytest
 from joint_rigs import servo_of
 from swinger_rig import KD, KP, swinger
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
@@ -34,7 +34,9 @@ def stood(height_m=STAND_M, roll_rad=0.0, plant=None, force_n=None):
 
 def last(run, *heights_m, plant=None):
     """(n, 13) base at the end, for each height of the bumps."""
-    models = [(Placed("uneven_ground", "world", (height,)),) for height in heights_m]
+    models = [
+        (PlacedEffect("uneven_ground", "world", (height,)),) for height in heights_m
+    ]
     variants = variants_of(plant or swinger(), models)
     return replay([run], variants)[0].base[:, -1]
 
@@ -63,7 +65,8 @@ def test_what_the_start_is_not_known_by_is_no_bump():
 def test_without_bumps_nothing_changes():
     plain = replay([stood()], variants_of(swinger(), [()]))[0].base
     zero = replay(
-        [stood()], variants_of(swinger(), [(Placed("uneven_ground", "world", (0.0,)),)])
+        [stood()],
+        variants_of(swinger(), [(PlacedEffect("uneven_ground", "world", (0.0,)),)]),
     )[0].base
     np.testing.assert_array_equal(plain, zero)
 

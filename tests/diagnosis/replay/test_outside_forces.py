@@ -18,7 +18,7 @@ from joint_rigs import (
     trace_of,
 )
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
 
@@ -67,7 +67,7 @@ def test_pushes_add_and_a_whole_run_may_be_pushed():
 def test_each_variant_and_run_has_its_own_pushes():
     plant, run = sled()
     later = run_from(trace_of(plant, 0.3 + TIME_S))
-    push = Placed("external_force", "sled", (4.0, 0, 0, 0.3, 0.1))
+    push = PlacedEffect("external_force", "sled", (4.0, 0, 0, 0.3, 0.1))
     variants = variants_of(plant, [(), (push,), (push, push)])
     results = replay([run, later], variants)
     gained = 4.0 * 0.1 / SLED_KG

@@ -33,7 +33,7 @@ from wheel_rig import (
     wheel,
 )
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
 
@@ -161,15 +161,15 @@ def test_variants_and_runs_do_not_touch_each_other():
     command = np.stack([COMMAND, -COMMAND], axis=1)
     models = [
         (),
-        (Placed("backlash", "elbow", (0.05,)),),
-        (Placed("coulomb_friction", "shoulder", (0.3,)),),
-        (Placed("command_latency", "commands", (0.0071,)),),
-        (Placed("joint_elasticity", "elbow", (30.0, 0.05)),),
-        (Placed("drag", "lower", (3.0,)),),
-        (Placed("external_force", "lower", (3.0, 0, 0, 0.1, 0.1)),),
-        (Placed("speed_limit", "elbow", (1.0,)),),
-        (Placed("servo_fade", "elbow", (0.05,)),),
-        (Placed("stribeck_friction", "elbow", (0.1, 0.1, 0.1)),),
+        (PlacedEffect("backlash", "elbow", (0.05,)),),
+        (PlacedEffect("coulomb_friction", "shoulder", (0.3,)),),
+        (PlacedEffect("command_latency", "commands", (0.0071,)),),
+        (PlacedEffect("joint_elasticity", "elbow", (30.0, 0.05)),),
+        (PlacedEffect("drag", "lower", (3.0,)),),
+        (PlacedEffect("external_force", "lower", (3.0, 0, 0, 0.1, 0.1)),),
+        (PlacedEffect("speed_limit", "elbow", (1.0,)),),
+        (PlacedEffect("servo_fade", "elbow", (0.05,)),),
+        (PlacedEffect("stribeck_friction", "elbow", (0.1, 0.1, 0.1)),),
     ]
     short = slice(0, 40)
     runs = [
@@ -192,7 +192,7 @@ def test_variants_and_runs_do_not_touch_each_other():
 def test_what_blows_up_stays_alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # MuJoCo writes a log
     plant = plant_of(WHEEL, kp=KP, kd=KD)
-    burst = (Placed("servo_gain", HINGE, (1e9,)),)
+    burst = (PlacedEffect("servo_gain", HINGE, (1e9,)),)
     (result,) = replay([commanded(plant)], variants_of(plant, [(), burst, ()]))
     (alone,) = replay([commanded(plant)], variants_of(plant, [()]))
     assert not np.abs(result.position_rad[1, -1]).max() < 1e3  # or not a number
@@ -213,8 +213,8 @@ def test_a_replay_leaves_the_plant_as_it_was():
 def test_fading_servos_leave_springs_of_other_rows_alone():
     plant = plant_of(PENDULUM, kp=KP, kd=KD, armature=0.01)
     run = commanded(plant, 1 + COMMAND, position_rad=1.0)
-    soft = Placed("joint_elasticity", HINGE, (20.0, 0.1))
-    fade = Placed("servo_fade", HINGE, (0.5,))
+    soft = PlacedEffect("joint_elasticity", HINGE, (20.0, 0.1))
+    fade = PlacedEffect("servo_fade", HINGE, (0.5,))
     models = [(soft,), (fade,), (soft, fade), ()]
     (result,) = replay([run], variants_of(plant, models))
     (alone,) = replay([run], variants_of(plant, models[:1]))
@@ -229,7 +229,9 @@ def test_fading_servos_leave_springs_of_other_rows_alone():
 def test_threads_change_nothing():
     plant = plant_of(ARM, kp=8.0, kd=0.2)
     run = commanded(plant, np.stack([COMMAND, -COMMAND], axis=1))
-    models = [(Placed("servo_gain", "elbow", (x,)),) for x in (0.5, 1.0, 1.5, 2.0)]
+    models = [
+        (PlacedEffect("servo_gain", "elbow", (x,)),) for x in (0.5, 1.0, 1.5, 2.0)
+    ]
     (one,) = replay([run], variants_of(plant, models), threads=1)
     (two,) = replay([run], variants_of(plant, models), threads=2)
     np.testing.assert_array_equal(one.position_rad, two.position_rad)

@@ -27,7 +27,7 @@ from wheel_rig import (
     wheel,
 )
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
 
@@ -176,7 +176,7 @@ def test_the_servo_acts_on_what_the_encoder_says():
 
 def test_a_fixed_base_has_its_gyroscopes_bias():
     plant = wheel()
-    model = (Placed("gyro_bias", "gyroscope", (0.1, -0.2, 0.3)),)
+    model = (PlacedEffect("gyro_bias", "gyroscope", (0.1, -0.2, 0.3)),)
     (result,) = replay([commanded(plant)], variants_of(plant, [(), model]))
     np.testing.assert_allclose(result.gyroscope_rad_s[0], 0, atol=1e-12)
     wanted = np.tile([0.1, -0.2, 0.3], (len(TIME_S), 1))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from joint_rigs import ARM, plant_of, smooth_command, ticks, trace_of
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.channels import stacked
 from diagnosis.residuals.limbs import limbs_of
@@ -73,12 +73,12 @@ def test_what_feels_each_other_is_one_part(arms, joined):
     "model",
     [
         (),
-        (Placed("viscous_friction", "elbow2", (0.2,)),),
-        (Placed("payload_mass", "lower", (0.3,)),),
+        (PlacedEffect("viscous_friction", "elbow2", (0.2,)),),
+        (PlacedEffect("payload_mass", "lower", (0.3,)),),
         (
-            Placed("command_latency", "commands", (0.013,)),
-            Placed("coulomb_friction", "shoulder", (0.1,)),
-            Placed("backlash", "elbow2", (0.05,)),
+            PlacedEffect("command_latency", "commands", (0.013,)),
+            PlacedEffect("coulomb_friction", "shoulder", (0.1,)),
+            PlacedEffect("backlash", "elbow2", (0.05,)),
         ),
     ],
 )
@@ -100,8 +100,8 @@ def test_an_effect_changes_only_its_own_part(arms):
     plain, one, every = predictor.predict(
         [
             (),
-            (Placed("viscous_friction", "elbow2", (0.2,)),),
-            (Placed("command_latency", "commands", (0.013,)),),
+            (PlacedEffect("viscous_friction", "elbow2", (0.2,)),),
+            (PlacedEffect("command_latency", "commands", (0.013,)),),
         ]
     )
     assert (one[:, :2] == plain[:, :2]).all()

@@ -7,7 +7,7 @@ import pytest
 from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import WARM_UP_S, WORST, Channels, Predictor
 
 NOISE_RAD = 4e-4
@@ -69,7 +69,7 @@ def test_the_noise_is_found_on_the_traces(pendulum):
 def test_calibration_at_one_model_serves_others(pendulum):
     """The step's error hardly depends on the model."""
     plant, trace = pendulum
-    near = (Placed("servo_gain", "elbow", (0.8,)),)
+    near = (PlacedEffect("servo_gain", "elbow", (0.8,)),)
     here, there = (Predictor(plant, [trace], CHANNELS) for _ in range(2))
     here.calibrate(near)
     there.calibrate()
@@ -80,7 +80,7 @@ def test_calibration_at_one_model_serves_others(pendulum):
 
 def test_a_stiff_spring_takes_shorter_steps(monkeypatch):
     """What a joint without one needs would be half the noise off."""
-    spring = (Placed("joint_elasticity", "elbow", (800.0, 0.2)),)
+    spring = (PlacedEffect("joint_elasticity", "elbow", (800.0, 0.2)),)
     plant = arm()
     trace = recorded(plant, duration_s=2.0)
     truth = Predictor(plant, [trace], CHANNELS, step_s=5e-4)
@@ -131,7 +131,7 @@ def test_more_models_than_a_batch_holds():
     trace = recorded(plant, duration_s=0.5)
     predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
     factors = np.linspace(0.8, 1.2, 400)
-    models = [(Placed("servo_gain", "elbow", (float(f),)),) for f in factors]
+    models = [(PlacedEffect("servo_gain", "elbow", (float(f),)),) for f in factors]
     every = predictor.residuals(models)
     for row in (0, 191, 192, 399):
         alone = predictor.residuals([models[row]])[0]
@@ -142,7 +142,7 @@ def test_what_blows_up_is_as_wrong_as_can_be(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # MuJoCo writes a log
     plant = arm()
     predictor = Predictor(plant, [recorded(plant, duration_s=1.0)], CHANNELS)
-    wild = (Placed("servo_gain", "elbow", (1e9,)),)
+    wild = (PlacedEffect("servo_gain", "elbow", (1e9,)),)
     bad, good = predictor.residuals([wild, ()])
     assert np.abs(bad).max() == WORST
     assert np.isfinite(bad).all()
@@ -158,7 +158,7 @@ def test_gyroscopes_are_a_channel_if_all_traces_have_them():
     predictor = Predictor(plant, [trace])
     assert predictor.channels.names[2:] == ("gyroscope.x", "gyroscope.y", "gyroscope.z")
     np.testing.assert_allclose(predictor.channels.noise[2:], 0.01, rtol=0.5)
-    bias = (Placed("gyro_bias", "gyroscope", (0.1, 0.1, 0.1)),)
+    bias = (PlacedEffect("gyro_bias", "gyroscope", (0.1, 0.1, 0.1)),)
     without, with_bias = predictor.residuals([(), bias])
     rows = predictor.scored & (predictor.channel >= 2)
     assert np.mean(without[rows] ** 2) > 50

@@ -5,7 +5,7 @@ import pytest
 from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.residuals.start_state import StartDoubt
 from diagnosis.traces.windows import Run
@@ -43,9 +43,9 @@ def test_a_right_model_leaves_noise_though_its_start_is_wrong(seed):
     predictor.calibrate()
     assert rms(predictor) == pytest.approx(1, abs=0.15)
     for wrong in (
-        Placed("servo_gain", "elbow", (0.95,)),
-        Placed("coulomb_friction", "elbow", (0.02,)),
-        Placed("command_latency", "commands", (0.005,)),
+        PlacedEffect("servo_gain", "elbow", (0.95,)),
+        PlacedEffect("coulomb_friction", "elbow", (0.02,)),
+        PlacedEffect("command_latency", "commands", (0.005,)),
     ):
         assert rms(predictor, wrong) > 2
 

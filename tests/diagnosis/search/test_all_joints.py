@@ -5,7 +5,7 @@ from known_arms import CHANNELS, LEAN, measured
 from made_up_traces import arm
 
 from diagnosis.conclude.confidence import probability
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.all_joints import _by_kind, widespread
 from diagnosis.search.screening import Guess
@@ -13,7 +13,7 @@ from diagnosis.search.search import Search
 
 
 def guess(effect, place, gain):
-    return Guess((Placed(effect, place, (1.0,)),), gain)
+    return Guess((PlacedEffect(effect, place, (1.0,)),), gain)
 
 
 GUESSES = [
@@ -33,7 +33,7 @@ def test_kinds_are_ranked_by_what_all_their_joints_explain():
 
 
 def test_what_the_model_has_is_not_added_again():
-    model = (Placed("servo_gain", "b", (0.9,)),)
+    model = (PlacedEffect("servo_gain", "b", (0.9,)),)
     added = _by_kind(GUESSES, 15.0, model)
     assert [placed.key for placed in added[0]] == ["viscous_friction@a"]
     assert [placed.key for placed in added[1]] == ["servo_gain@a"]
@@ -49,7 +49,7 @@ def test_what_gains_most_for_its_size_is_tried_too():
     late = guess("command_latency", "commands", 90.0)
     small = [guess("backlash", joint, 20.0) for joint in joints]
     added = _by_kind([*large, *small, late], 15.0, ())
-    assert [model[0].effect for model in added[4:]] == ["command_latency", "backlash"]
+    assert [model[0].name for model in added[4:]] == ["command_latency", "backlash"]
 
 
 def searched(**truth):

@@ -5,7 +5,7 @@ from known_arms import CHANNELS, LEAN
 from made_up_search import found
 from made_up_traces import arm, recorded
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.compared import CLOSE_NATS, compared, crossed
 from diagnosis.search.result import Found, keys_of
@@ -34,8 +34,8 @@ def test_what_is_the_same_physics_does_as_well():
         for k in range(2)
     )
     models = [
-        (Placed("drag", "upper", (9.0,)),),
-        (Placed("viscous_friction", "shoulder", (0.6,)),),
+        (PlacedEffect("drag", "upper", (9.0,)),),
+        (PlacedEffect("viscous_friction", "shoulder", (0.6,)),),
     ]
     for part in (fit, select):
         part.calibrate(models[0])

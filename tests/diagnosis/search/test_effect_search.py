@@ -62,7 +62,7 @@ def test_two_effects_that_hide_each_other_are_found_together():
     _, found = searched(*truth)
     assert found.chosen == 2
     assert found.winner.keys == {"servo_gain@elbow", "payload_mass@lower"}
-    values = {placed.effect: placed.values[0] for placed in found.winner.model}
+    values = {placed.name: placed.values[0] for placed in found.winner.model}
     assert values["servo_gain"] == pytest.approx(1.3, rel=0.03)
     assert values["payload_mass"] == pytest.approx(0.12, rel=0.1)
 
@@ -94,7 +94,7 @@ def test_a_push_that_another_effect_outshouts():
     _, found = searched(("servo_gain", "elbow", 0.6), push)
     assert found.chosen == 2
     assert found.winner.keys == {"servo_gain@elbow", "external_force@lower"}
-    values = {placed.effect: placed.values for placed in found.winner.model}
+    values = {placed.name: placed.values for placed in found.winner.model}
     assert values["servo_gain"][0] == pytest.approx(0.6, rel=0.02)
     assert values["external_force"][3:] == pytest.approx((1.5, 0.2), abs=0.05)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, effect
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.search.fitting import Coordinates, fit_all
@@ -39,13 +39,13 @@ def predictor_of(*effects, noise_rad, model=(), **more):
 def test_values_without_noise(name, place, start, truth, tolerance):
     """Starts near nothing, calibrated there; then once more where that leads to."""
     predictor = predictor_of((name, place, *truth), noise_rad=0.0)
-    model = (Placed(name, place, start),)
+    model = (PlacedEffect(name, place, start),)
     for _ in range(ROUNDS):
         (fit,) = fit_all(predictor, [model])
         model = fit.model
         predictor.calibrate(model)
     (found,) = fit.model
-    assert (found.effect, found.place) == (name, place)
+    assert (found.name, found.place) == (name, place)
     assert found.values == pytest.approx(truth, rel=tolerance)
     nothing = predictor.residuals([()])[0]
     assert fit.energy < 0.02 * 0.5 * nothing @ nothing
@@ -53,7 +53,7 @@ def test_values_without_noise(name, place, start, truth, tolerance):
 
 def test_values_with_noise_are_as_sure_as_their_jacobian_says():
     """Errors of least squares have the covariance (J^T J)^-1."""
-    truth = Placed("servo_gain", "elbow", (0.7,))
+    truth = PlacedEffect("servo_gain", "elbow", (0.7,))
     wrong = []
     for seed in range(6):
         predictor = predictor_of(
@@ -62,7 +62,7 @@ def test_values_with_noise_are_as_sure_as_their_jacobian_says():
             model=(truth,),
             seed=seed,
         )
-        (fit,) = fit_all(predictor, [(Placed("servo_gain", "elbow", (0.9,)),)])
+        (fit,) = fit_all(predictor, [(PlacedEffect("servo_gain", "elbow", (0.9,)),)])
         spread = 1 / np.sqrt((fit.jacobian.T @ fit.jacobian)[0, 0])
         wrong.append((np.log(fit.model[0].values[0]) - np.log(0.7)) / spread)
         assert fit.energy == pytest.approx(predictor.scored.sum() / 2, rel=0.4)
@@ -74,8 +74,8 @@ def test_two_effects_at_once():
     effects = ("servo_gain", "elbow", 0.8), ("viscous_friction", "shoulder", 0.5)
     predictor = predictor_of(*effects, noise_rad=NOISE_RAD)
     start = (
-        Placed("servo_gain", "elbow", (1.0,)),
-        Placed("viscous_friction", "shoulder", (0.05,)),
+        PlacedEffect("servo_gain", "elbow", (1.0,)),
+        PlacedEffect("viscous_friction", "shoulder", (0.05,)),
     )
     (fit,) = fit_all(predictor, [start])
     assert fit.model[0].values[0] == pytest.approx(0.8, rel=0.02)
@@ -86,9 +86,9 @@ def test_two_effects_at_once():
 def test_fits_side_by_side_are_as_alone():
     predictor = predictor_of(("servo_gain", "elbow", 0.7), noise_rad=NOISE_RAD)
     starts = [
-        (Placed("servo_gain", "elbow", (1.0,)),),
-        (Placed("viscous_friction", "elbow", (0.05,)),),
-        (Placed("servo_gain", "shoulder", (1.0,)),),
+        (PlacedEffect("servo_gain", "elbow", (1.0,)),),
+        (PlacedEffect("viscous_friction", "elbow", (0.05,)),),
+        (PlacedEffect("servo_gain", "shoulder", (1.0,)),),
         (),
     ]
     starts = starts[:3]
@@ -105,8 +105,8 @@ def test_a_followed_jacobian_leads_to_the_same_values_for_less(monkeypatch):
     effects = ("servo_gain", "elbow", 0.8), ("viscous_friction", "shoulder", 0.5)
     predictor = predictor_of(*effects, noise_rad=NOISE_RAD)
     start = (
-        Placed("servo_gain", "elbow", (1.0,)),
-        Placed("viscous_friction", "shoulder", (0.05,)),
+        PlacedEffect("servo_gain", "elbow", (1.0,)),
+        PlacedEffect("viscous_friction", "shoulder", (0.05,)),
     )
     asked = []
     residuals = predictor.residuals
@@ -130,7 +130,7 @@ def test_a_followed_jacobian_leads_to_the_same_values_for_less(monkeypatch):
 def test_columns_of_some_effects():
     effects = ("servo_gain", "elbow", 0.8), ("viscous_friction", "shoulder", 0.5)
     predictor = predictor_of(*effects, noise_rad=NOISE_RAD)
-    start = tuple(Placed(name, place, (value,)) for name, place, value in effects)
+    start = tuple(PlacedEffect(name, place, (value,)) for name, place, value in effects)
     (fit,) = fit_all(predictor, [start], steps=1)
     np.testing.assert_array_equal(fit.jacobian_of(fit.model[1:]), fit.jacobian[:, 1:])
     assert fit.jacobian_of(()).shape == (len(fit.residual), 0)
@@ -139,7 +139,7 @@ def test_columns_of_some_effects():
 def test_values_stay_within_their_bounds():
     """Negative friction would explain a joint that moves too well."""
     predictor = predictor_of(("servo_damping", "elbow", 0.5), noise_rad=NOISE_RAD)
-    (fit,) = fit_all(predictor, [(Placed("viscous_friction", "elbow", (0.05,)),)])
+    (fit,) = fit_all(predictor, [(PlacedEffect("viscous_friction", "elbow", (0.05,)),)])
     assert 0 <= fit.model[0].values[0] < 1e-4
 
 
@@ -147,7 +147,7 @@ def test_a_start_at_a_bound_takes_a_known_jacobian():
     """The more of a scale a bound is, the farther inside it SciPy begins."""
     predictor = predictor_of(("armature", "elbow", 0.02), noise_rad=NOISE_RAD)
     parameter = effect("armature").parameters(predictor.plant, "elbow")[0]
-    start = (Placed("armature", "elbow", (parameter.high,)),)
+    start = (PlacedEffect("armature", "elbow", (parameter.high,)),)
     (fit,) = fit_all(predictor, [start], steps=1)
     (again,) = fit_all(predictor, [start], followed=True, jacobians=[fit.jacobian])
     assert again.model[0].values[0] < parameter.high
@@ -166,7 +166,7 @@ def test_coordinates_there_and_back(name):
             else float(np.sqrt(p.low * p.high))
             for p in parameters
         )
-        model = (Placed(name, place, values),)
+        model = (PlacedEffect(name, place, values),)
         coordinates = Coordinates(plant, model)
         x = coordinates.of(model)
         assert coordinates.model_at(x)[0].values == pytest.approx(values)
@@ -179,7 +179,7 @@ def test_coordinates_there_and_back(name):
 
 def test_coordinates_of_ratios_are_logarithms():
     plant = arm()
-    model = (Placed("servo_gain", "elbow", (0.5,)),)
+    model = (PlacedEffect("servo_gain", "elbow", (0.5,)),)
     assert Coordinates(plant, model).of(model) == pytest.approx([np.log(0.5)])
 
 
@@ -187,8 +187,8 @@ def test_values_that_no_data_show_do_not_slow_the_others_down():
     # a force that begins before the recording: when it began shows nowhere
     truth = ("viscous_friction", "elbow", 0.3)
     predictor = predictor_of(truth, noise_rad=0.0)
-    always = Placed("external_force", "lower", (0.0, 0.0, 0.0, -1.0, 30.0))
-    friction = Placed("viscous_friction", "elbow", (0.05,))
+    always = PlacedEffect("external_force", "lower", (0.0, 0.0, 0.0, -1.0, 30.0))
+    friction = PlacedEffect("viscous_friction", "elbow", (0.05,))
     (found,) = fit_all(predictor, [(friction, always)], steps=4)
     assert found.model[0].values[0] == pytest.approx(0.3, rel=0.02)
     assert found.model[1].values[3:] == (-1.0, 30.0)

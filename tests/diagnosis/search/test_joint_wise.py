@@ -3,12 +3,14 @@ import pytest
 from known_arms import CHANNELS, measured
 from made_up_traces import arm
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.joint_wise import joint_wise
 
-START = tuple(Placed("servo_gain", joint, (1.0,)) for joint in ("shoulder", "elbow"))
+START = tuple(
+    PlacedEffect("servo_gain", joint, (1.0,)) for joint in ("shoulder", "elbow")
+)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +31,7 @@ def test_all_joints_are_fitted_at_once(predictor):
 
 
 def test_values_of_one_kind_are_nudged_together_and_keep_to_their_joint(predictor):
-    model = (*START, Placed("command_latency", "commands", (0.0,)))
+    model = (*START, PlacedEffect("command_latency", "commands", (0.0,)))
     assert joint_wise(predictor, model).groups == [[0, 1], [2]]
     (found,) = fit_all(predictor, [model], steps=1, nudges_of=joint_wise)
     shoulder = predictor.channel == CHANNELS.names.index("position.shoulder")

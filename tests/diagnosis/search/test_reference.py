@@ -10,7 +10,7 @@ from made_up_traces import arm
 from swinger_rig import moved, swinger, with_speeds
 
 from diagnosis.diagnose import diagnose
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.channels import channels_of
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import Standing
@@ -55,9 +55,9 @@ def test_what_an_arm_lacked_before_is_part_of_it():
     found = diagnose(plant, of_arm(10), SEED, LEAN, reference=before)
     (given,) = found.given
     assert given.place == "elbow"
-    assert given.effect in ("viscous_friction", "servo_damping")
+    assert given.name in ("viscous_friction", "servo_damping")
     assert found.verdict.kind == "none"
-    assert given.effect in found.verdict.limits[-1]
+    assert given.name in found.verdict.limits[-1]
 
 
 @pytest.mark.slow
@@ -121,7 +121,7 @@ def test_what_explains_the_reference_too_gains_nothing():
     well = Predictor(plant, before, channels, standing=Standing.known((), 8))
     for predictor in (select, well):
         predictor.calibrate()
-    model = (Placed("servo_gain", "left", (0.8,)),)
+    model = (PlacedEffect("servo_gain", "left", (0.8,)),)
     plain, wise = (
         Search(select, select, well=wells).judged([model])[0].selected
         for wells in ((), (well,))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.trial_values import trial_values
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.search.screening import Screen
@@ -89,7 +89,7 @@ def test_where_nothing_is_little_is_found():
 
 def test_what_is_in_the_base_is_explained():
     truth = ("servo_gain", "shoulder", 0.85)
-    base = (Placed("servo_gain", "shoulder", (0.85,)),)
+    base = (PlacedEffect("servo_gain", "shoulder", (0.85,)),)
     (screen, before), (rest, after) = screened(truth), screened(truth, base=base)
     gain = screen.singles(before)[0].gain
     assert all(guess.gain < 0.05 * gain for guess in rest.singles(after))
@@ -103,7 +103,7 @@ def predictor():
 
 def made_up(name, place, values, change, two_sided=False):
     change = np.array(change, float)
-    placed = Placed(name, place, values)
+    placed = PlacedEffect(name, place, values)
     return Signature(placed, change, np.arange(len(change)), two_sided)
 
 
@@ -135,11 +135,11 @@ def test_values_of_the_model_so_far_may_change_with_what_is_added(predictor):
     jacobian[0, 0] = 2.0  # and a value that does nothing
     screen = Screen(predictor, [nearly, other])
     first, second = screen.singles(residual, jacobian)
-    assert first.model[0].effect == "viscous_friction"
+    assert first.model[0].name == "viscous_friction"
     assert first.gain == pytest.approx(0.5, rel=0.1)
     assert first.model[0].values == pytest.approx((0.02 * 2,), rel=0.1)
     assert second.gain == pytest.approx(0.5**2 / 1.25 / 2, rel=0.01)
-    assert [guess.model[0].effect for guess in screen.singles(residual)] == [
+    assert [guess.model[0].name for guess in screen.singles(residual)] == [
         "coulomb_friction",
         "viscous_friction",
     ]
@@ -156,9 +156,7 @@ def test_pairs_of_what_explains_nothing_alone(predictor):
     residual = np.zeros(len(predictor.scored))
     residual[:2] = -(np.array([-2, 1]) + np.array([1, -1]))  # of the sum of both
     screen = Screen(predictor, [gain, mass])
-    assert [guess.model[0].effect for guess in screen.singles(residual)] == [
-        "servo_gain"
-    ]
+    assert [guess.model[0].name for guess in screen.singles(residual)] == ["servo_gain"]
     (pair,) = screen.pairs(residual, count=5)
     assert pair.gain == pytest.approx(0.5)
 
@@ -183,7 +181,7 @@ def test_thresholds_are_not_stretched_and_springs_get_softer(predictor):
     limit = made_up("torque_limit", "elbow", (0.3,), [1.0])
     spring = made_up("joint_elasticity", "shoulder", (20.0, 0.1), [1.0])
     by_name = {
-        guess.model[0].effect: guess.model[0].values
+        guess.model[0].name: guess.model[0].values
         for guess in singles(predictor, [-2.0], limit, spring)
     }
     assert by_name["torque_limit"] == (0.3,)
@@ -231,7 +229,7 @@ def test_a_pair_is_solved_together(predictor):
     residual = np.zeros(len(predictor.scored))
     residual[:2] = -3.0, -1.0
     (guess,) = Screen(predictor, found).pairs(residual, count=5)
-    by_name = {placed.effect: placed.values for placed in guess.model}
+    by_name = {placed.name: placed.values for placed in guess.model}
     assert guess.gain == pytest.approx(5.0)
     assert set(by_name) == {"viscous_friction", "backlash"}
 

@@ -2,13 +2,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.search.result import Found, Judged
 from diagnosis.search.simpler import needed, simpler
 
-PEAKED = Placed("stribeck_friction", "elbow", (1.0, 4.0, 0.1))
-DRY = Placed("coulomb_friction", "elbow", (3.0,))
-OIL = Placed("viscous_friction", "elbow", (2.0,))
+PEAKED = PlacedEffect("stribeck_friction", "elbow", (1.0, 4.0, 0.1))
+DRY = PlacedEffect("coulomb_friction", "elbow", (3.0,))
+OIL = PlacedEffect("viscous_friction", "elbow", (2.0,))
 
 
 @pytest.fixture(autouse=True)
@@ -72,7 +72,7 @@ def leaving_out(energies):
     """A search to which each model, by its effects' names, is worth so much."""
 
     def fitted(starts):
-        return [judged(start, energies[start[0].effect]) for start in starts]
+        return [judged(start, energies[start[0].name]) for start in starts]
 
     def worth(before, after, nothing):
         return before - after > 20.0
@@ -88,7 +88,7 @@ def test_an_effect_without_which_the_rest_does_as_well_is_left_out(
     energies = {"coulomb_friction": 900.0, "viscous_friction": alone}
     monkeypatch.setattr(
         "diagnosis.search.simpler.fairly",
-        lambda search, models: [judged(m, energies[m[0].effect]) for m in models],
+        lambda search, models: [judged(m, energies[m[0].name]) for m in models],
     )
     before = found((DRY, OIL))
     after = needed(leaving_out(energies), before)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from diagnosis.conclude.estimates import estimates
-from diagnosis.effects.effect import Placed
+from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.channels import channels_of
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
@@ -16,9 +16,9 @@ from diagnosis.traces.torque_drive import driven_by_torques
 
 EMPS = Path(__file__).parents[3] / ".." / "shared" / "data" / "emps"
 FRICTION = (
-    Placed("coulomb_friction", "carriage", (10.0,)),
-    Placed("viscous_friction", "carriage", (100.0,)),
-    Placed("joint_spring", "carriage", (1.0, 2.0)),
+    PlacedEffect("coulomb_friction", "carriage", (10.0,)),
+    PlacedEffect("viscous_friction", "carriage", (100.0,)),
+    PlacedEffect("joint_spring", "carriage", (1.0, 2.0)),
 )
 
 pytestmark = pytest.mark.skipif(
