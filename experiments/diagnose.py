@@ -44,8 +44,8 @@ class Diagnose:
 
     Attributes:
       recordings: files of format 1, Parquet or CSV; at least one.
-      reference: recordings of the same robot when all was well; what they show, too, is
-        taken as given: the question is what changed since.
+      reference: recordings of the same robot while it was healthy. What they show is
+        taken as given; the question is then what has changed since.
       robot: its name, a model file (.xml or .urdf), or a robot of example-robot-data.
       kp: stiffness of all servos [N m/rad], where recordings do not say.
       kd: damping of all servos [N m s/rad], likewise.
@@ -105,7 +105,8 @@ def main(config: Diagnose) -> None:
         print(verdict.to_json(), end="")
     else:
         written = [folder.path / name for name in (REPORT, OVERLAY)]
-        print_verdict(verdict, [path for path in written if path.exists()])
+        paths = [path for path in written if path.exists()]
+        print_verdict(verdict, paths, changed=bool(config.reference))
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
@@ -198,6 +199,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
         settings=settings,
         versions={"groundwalk": provenance["groundwalk"], **packages},
         files=files,
+        changed=bool(config.reference),
     )
 
 

@@ -10,8 +10,8 @@ from experiments.diagnosis_report.numbers import amount_text, errors_text, perce
 from experiments.diagnosis_report.place_words import at_words, choice, listing
 from experiments.diagnosis_report.pulses import pulse_sentences
 from experiments.diagnosis_report.text import (
-    BADGES,
     at_many,
+    badge,
     doubts,
     headline,
     next_step,
@@ -25,14 +25,18 @@ _MOST_FOUND = 3
 _MOST_UNSURE = 2
 
 
-def print_verdict(verdict: Verdict, files: Sequence[Path]) -> None:
-    """Print a verdict on standard output, on a terminal with some weight.
+def print_verdict(
+    verdict: Verdict, files: Sequence[Path], changed: bool = False
+) -> None:
+    """Print a verdict on standard output; a terminal gets it with bold and grey text.
 
     Args:
       verdict: of the diagnosis.
-      files: what was written, the most useful first.
+      files: the files that were written, the most useful first.
+      changed: whether the question was what has changed since the reference
+        recordings, rather than what the sim lacks.
     """
-    lines = console_lines(verdict, files)
+    lines = console_lines(verdict, files, changed)
     if not sys.stdout.isatty():
         print(*(f"{label:<12}{text}" for label, text in lines), sep="\n")
         return
@@ -47,15 +51,18 @@ def print_verdict(verdict: Verdict, files: Sequence[Path]) -> None:
     Console().print(table)
 
 
-def console_lines(verdict: Verdict, files: Sequence[Path]) -> list[tuple[str, str]]:
-    """At most ten lines, each with a word on what it is about.
+def console_lines(
+    verdict: Verdict, files: Sequence[Path], changed: bool = False
+) -> list[tuple[str, str]]:
+    """A diagnosis as at most ten lines, each a label such as "doubt" and a text.
 
     Args:
       verdict: of the diagnosis.
-      files: what was written.
+      files: the files that were written.
+      changed: whether the question was what has changed since the reference.
     """
     lines = [
-        ("verdict", _verdict(verdict)),
+        ("verdict", _verdict(verdict, changed)),
         *_all_found(verdict),
         *_errors(verdict),
         ("doubt", _doubt(verdict)),
@@ -66,12 +73,12 @@ def console_lines(verdict: Verdict, files: Sequence[Path]) -> list[tuple[str, st
     return [(label, text) for label, text in lines if text]
 
 
-def _verdict(verdict: Verdict) -> str:
-    """The kind, with what belongs to it."""
-    badge, rest = BADGES[verdict.kind], verdict.unexplained
+def _verdict(verdict: Verdict, changed: bool) -> str:
+    """The kind of the verdict, with the numbers that belong to it."""
+    kind, rest = badge(verdict, changed), verdict.unexplained
     if verdict.kind == "unknown" and rest is not None:
         return (
-            f"{badge}: {percent(rest.share)} of the squared error above the noise is "
+            f"{kind}: {percent(rest.share)} of the squared error above the noise is "
             f"left, most of it in {rest.channel}"
         )
     if verdict.kind == "none" and verdict.smallest_detectable:
@@ -80,8 +87,8 @@ def _verdict(verdict: Verdict) -> str:
             f"{at_words(EffectAt(*key.split('@', 1)))} of {amount_text(amount)}"
             for key, amount in smallest
         ]
-        return f"{badge} that would be as large as {listing(amounts, 'or')}"
-    return badge
+        return f"{kind} that would be as large as {listing(amounts, 'or')}"
+    return kind
 
 
 def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:

@@ -24,8 +24,8 @@ from experiments.diagnosis_report.place_words import place_words
 from experiments.diagnosis_report.run_facts import ReportFacts
 from experiments.diagnosis_report.svg import inline_svg
 from experiments.diagnosis_report.text import (
-    BADGES,
     answer,
+    badge,
     doubts,
     next_step,
     parameter_rows,
@@ -68,7 +68,7 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         "verdict": verdict,
         "title": f"Diagnosis: {facts.robot}",
         "question": question(facts.robot, facts.changed),
-        "badge": BADGES[verdict.kind],
+        "badge": badge(verdict, facts.changed),
         "answer": answer(verdict, facts.changed),
         "doubts": doubts(verdict),
         "next_step": next_step(verdict),

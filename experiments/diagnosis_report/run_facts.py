@@ -15,8 +15,8 @@ class ReportFacts:
       settings: what was chosen, by name.
       versions: of the code and what it stands on, by name.
       files: what else was written, and what it is, by name relative to the report.
-      changed: whether the recordings were held against earlier ones of the same robot,
-        so that the question is what has changed.
+      changed: whether reference recordings of the healthy robot were given, so that the
+        question is what has changed since them.
     """
 
     robot: str

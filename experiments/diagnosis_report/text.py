@@ -35,13 +35,37 @@ BADGES = {
     "unknown": "unknown physics",
     "not_identifiable": "these data cannot tell",
 }
-"""The verdict's kind in a few words."""
+"""Each kind of verdict in a few words, where the question is what the sim lacks."""
+
+CHANGE_BADGES = {
+    "effects": "changed since the reference",
+    "none": "nothing has changed since the reference",
+    "unknown": "changed since the reference, by unknown physics",
+    "not_identifiable": "these data cannot tell whether anything has changed",
+}
+"""Each kind of verdict in a few words, where reference recordings of the healthy robot
+were given and the question is what has changed since."""
+
+
+def badge(verdict: Verdict, changed: bool = False) -> str:
+    """The kind of a verdict in a few words.
+
+    Args:
+      verdict: of the diagnosis.
+      changed: whether the question was what has changed since the reference.
+    """
+    return (CHANGE_BADGES if changed else BADGES)[verdict.kind]
 
 
 def question(robot: str, changed: bool) -> str:
-    """What was asked."""
+    """The question that a diagnosis answers.
+
+    Args:
+      robot: its name or its model file.
+      changed: whether reference recordings were given.
+    """
     if changed:
-        return f"What has changed about the robot {robot} since the earlier recordings?"
+        return f"What has changed about {robot} since the reference recordings?"
     return f"What does the sim of {robot} lack that its recordings show?"
 
 
@@ -57,9 +81,9 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
         return [*_nothing(verdict, changed), *pulses]
     first, before = list[str](), ""
     if verdict.kind == "unknown":
-        first, before = _unknown(verdict), "besides, "
+        first, before = _unknown(verdict, changed), "besides, "
     elif verdict.kind == "not_identifiable":
-        first, before = _open(verdict), "this much is sure: "
+        first, before = _open(verdict, changed), "this much is sure: "
     found = [before + each for each in findings(verdict.effects, changed)]
     return [*first, *map(sentence, found), *pulses, *_gain(verdict)]
 
@@ -196,8 +220,9 @@ def _nothing(verdict: Verdict, changed: bool) -> list[str]:
     return lines
 
 
-def _unknown(verdict: Verdict) -> list[str]:
-    lines = ["Something is missing that no effect known here explains."]
+def _unknown(verdict: Verdict, changed: bool) -> list[str]:
+    what = "has changed" if changed else "is missing"
+    lines = [f"Something {what} that no effect known here explains."]
     rest = verdict.unexplained
     if rest is not None:
         lines.append(
@@ -207,16 +232,19 @@ def _unknown(verdict: Verdict) -> list[str]:
     return lines
 
 
-def _open(verdict: Verdict) -> list[str]:
+def _open(verdict: Verdict, changed: bool) -> list[str]:
     if not verdict.alternatives:
-        why = verdict.limits[0]
-        return ["These recordings cannot tell whether anything is missing.", why]
+        what = "has changed" if changed else "is missing"
+        return [
+            f"These recordings cannot tell whether anything {what}.",
+            verdict.limits[0],
+        ]
     if len(verdict.alternatives) == 1:
         hint = answer_words(verdict.alternatives[0])
-        return [f"These recordings hint at {hint}, but do not bear it out."]
+        return [f"These recordings hint at {hint}, but do not confirm it."]
     return [
-        "The sim is off, but these recordings fit several explanations equally well: "
-        f"{choice(verdict.alternatives)}."
+        "Something differs, but these recordings fit several explanations equally "
+        f"well: {choice(verdict.alternatives)}."
     ]
 
 

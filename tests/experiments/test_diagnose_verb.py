@@ -86,6 +86,11 @@ def test_what_was_there_before_is_no_finding(recording, tmp_path, capsys):
     assert verdict.kind == "none"
     assert "servo_gain at swing" in verdict.limits[-1]
     assert not (out / "corrected.json").exists()
+    page = (out / "report.html").read_text()
+    assert "since the reference recordings?" in page
+    assert "Nothing has changed that these recordings could show." in page
+    assert "lack" not in page[page.index("<h1>") :]
+    assert "nothing has changed since the reference" in capsys.readouterr().out
 
 
 def test_a_reference_of_another_robot_is_refused(recording, tmp_path):

@@ -180,7 +180,7 @@ def test_what_was_not_computed_is_a_dash(tmp_path):
 def test_it_can_be_asked_what_has_changed(tmp_path):
     facts = dataclasses.replace(made_up.FACTS, changed=True)
     text = Page(report(tmp_path, made_up.ONE, facts=facts)).text
-    assert "What has changed about the robot nao" in text
+    assert "What has changed about nao since the reference" in text
     assert "that was not there before." in text
     assert "that the sim lacks" not in text
 
