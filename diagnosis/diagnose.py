@@ -12,6 +12,7 @@ from diagnosis.conclude.answer import effects_of, kind_of, sure
 from diagnosis.conclude.confidence import alternatives
 from diagnosis.conclude.detectable import smallest_detectable
 from diagnosis.conclude.held_out_errors import FinalTest
+from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
 from diagnosis.conclude.surprise import refutes, surprises
 from diagnosis.plant.plant import Plant
@@ -61,6 +62,10 @@ class Diagnosis:
     nominal: Predictor
     audit: Audit
     given: Model = ()
+
+    def held_out(self) -> list[HeldOutSeries]:
+        """Measured, nominal and corrected course of each held-out recording."""
+        return held_out_series(self.nominal, self.test, self.model)
 
 
 @one_blas_thread

@@ -1,7 +1,6 @@
 """`groundwalk diagnose`: what physics does the sim lack that recordings show?"""
 
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -13,7 +12,6 @@ import robots
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.diagnose import Diagnosis, diagnose
-from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.result import Rules
 from diagnosis.traces.read import read_traces
 from diagnosis.traces.reference_reading import read_reference
@@ -21,14 +19,12 @@ from diagnosis.traces.torque_drive import DriveBy
 from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
-from experiments.diagnosis_report.held_out_series import ChannelSeries, ReportSeries
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import write_report
 from experiments.diagnosis_report.run_facts import ReportFacts
 from experiments.reports.origin import command_of
 from experiments.runs.extras import extra
 from experiments.runs.folder import PROVENANCE, RunFolder, check_free, to_plain
-from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from worlds import ServoGains
 
@@ -122,7 +118,7 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
     with extra(CORRECTED_XML):
         write_correction(folder, found)
-    series = held_out(found)
+    series = found.held_out()
     with extra(REPORT):
         facts = _facts(config, folder, found)
         write_report(folder.path / REPORT, found.verdict, series, facts)
@@ -143,29 +139,6 @@ def write_correction(folder: RunFolder, found: Diagnosis) -> None:
     folder.write_text(CORRECTED_XML, xml)
     text = Correction.of(found.plant, model).to_json()
     folder.write_text(CORRECTED_JSON, text)
-
-
-def held_out(found: Diagnosis) -> list[ReportSeries]:
-    """Real, sim and corrected sim on the recordings that no fit has seen."""
-    sim = _by_trace(found.nominal, ())
-    corrected = _by_trace(found.test, found.model)
-    names = found.test.channels.names
-    series = []
-    for k, trace in enumerate(found.test.traces):
-        real = found.test.measured(k)
-        channels = {
-            name: ChannelSeries(real[:, i], sim[k][:, i], corrected[k][:, i])
-            for i, name in enumerate(names)
-        }
-        series.append(ReportSeries(trace.name, trace.time_s, channels))
-    return series
-
-
-def _by_trace(predictor: Predictor, model: Model) -> Sequence[FloatArray]:
-    """(T, c) of every trace."""
-    predicted = predictor.predict([model])[0]
-    ends = np.cumsum([trace.ticks for trace in predictor.traces])
-    return np.split(predicted, ends[:-1])
 
 
 def _description(config: Diagnose) -> robots.Description | None:

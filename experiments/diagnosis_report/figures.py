@@ -4,6 +4,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from diagnosis.conclude.held_out_series import (
+    ChannelSeries,
+    HeldOutSeries,
+    rms,
+)
 from diagnosis.verdict.verdict import Fit, Unexplained
 from experiments.diagnosis_report.figure_style import (
     CONTROL,
@@ -13,11 +18,6 @@ from experiments.diagnosis_report.figure_style import (
     SIM,
     note,
     plain,
-)
-from experiments.diagnosis_report.held_out_series import (
-    ChannelSeries,
-    ReportSeries,
-    rms,
 )
 from experiments.diagnosis_report.numbers import error_unit, errors_text
 from experiments.diagnosis_report.svg import new_figure
@@ -50,7 +50,7 @@ class View(NamedTuple):
     """Whether there is a correction to be shown."""
 
 
-def overlay_figure(series: ReportSeries, channel: str, view: View) -> "Figure":
+def overlay_figure(series: HeldOutSeries, channel: str, view: View) -> "Figure":
     """A close-up of one channel above the errors over the whole recording.
 
     Args:

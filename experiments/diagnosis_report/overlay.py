@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.verdict.verdict import Fit
-from experiments.diagnosis_report.held_out_series import (
+from diagnosis.conclude.held_out_series import (
     ChannelSeries,
-    ReportSeries,
+    HeldOutSeries,
     by_error,
 )
+from diagnosis.verdict.verdict import Fit
 from experiments.seeing.scenes import scene_names
 from robots.description import Description
 from worlds import Recording, RecordingMetadata
@@ -36,7 +36,7 @@ _POSE = (*vector_columns("base.position"), *vector_columns("base.orientation"))
 
 def write_overlay(
     path: Path,
-    series: Sequence[ReportSeries],
+    series: Sequence[HeldOutSeries],
     fit: Fit | None = None,
     description: Description | None = None,
 ) -> None:
@@ -63,7 +63,7 @@ def write_overlay(
     write_rrd(path, scenes, _identity(series), pages)
 
 
-def _curves(series: ReportSeries, at: str, channels: Sequence[str]) -> list[Curve]:
+def _curves(series: HeldOutSeries, at: str, channels: Sequence[str]) -> list[Curve]:
     """Course and error of each channel."""
     curves: list[Curve] = []
     for name, part in zip(channels, scene_names(channels), strict=True):
@@ -79,7 +79,7 @@ def _curves(series: ReportSeries, at: str, channels: Sequence[str]) -> list[Curv
     return curves
 
 
-def _scenes(series: ReportSeries, description: Description) -> list[Scene]:
+def _scenes(series: HeldOutSeries, description: Description) -> list[Scene]:
     """The robot as it was, as the sim has it, and as the corrected sim has it."""
     joints = [f"position.{joint}" for joint in description.joints]
     names = [name for name in joints if name in series.channels]
@@ -100,7 +100,7 @@ def _scenes(series: ReportSeries, description: Description) -> list[Scene]:
     return scenes
 
 
-def _identity(series: Sequence[ReportSeries]) -> str:
+def _identity(series: Sequence[HeldOutSeries]) -> str:
     """32 hexadecimal digits that belong to these series."""
     content = hashlib.sha256()
     for one in series:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
 from diagnosis.verdict.verdict import Errors, Fit, Found, Verdict
 from experiments.diagnosis_report.figures import (
     View,
@@ -11,7 +12,6 @@ from experiments.diagnosis_report.figures import (
     overlay_figure,
     unexplained_figure,
 )
-from experiments.diagnosis_report.held_out_series import ReportSeries, by_error
 from experiments.diagnosis_report.mismatch_map import mismatch_figure, worst_cells
 from experiments.diagnosis_report.numbers import (
     DASH,
@@ -44,7 +44,7 @@ _USES = {"fit": "fitted on", "select": "chosen on", "test": "kept out"}
 
 
 def write_report(
-    path: Path, verdict: Verdict, series: Sequence[ReportSeries], facts: ReportFacts
+    path: Path, verdict: Verdict, series: Sequence[HeldOutSeries], facts: ReportFacts
 ) -> None:
     """Write the page, the file at once.
 
@@ -102,7 +102,7 @@ def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
     }
 
 
-def _shown(verdict: Verdict, series: Sequence[ReportSeries]) -> dict[str, Any]:
+def _shown(verdict: Verdict, series: Sequence[HeldOutSeries]) -> dict[str, Any]:
     """What the page shows in figures."""
     rest, cells = verdict.unexplained, worst_cells(verdict.mismatch)
     return {
@@ -132,7 +132,7 @@ def _shown(verdict: Verdict, series: Sequence[ReportSeries]) -> dict[str, Any]:
     }
 
 
-def _picture(series: ReportSeries, verdict: Verdict, name: str) -> dict[str, Any]:
+def _picture(series: HeldOutSeries, verdict: Verdict, name: str) -> dict[str, Any]:
     """The worst channel of a held-out recording."""
     channel = by_error(series, verdict.fit)[0]
     scored = verdict.fit.channels.get(channel) if verdict.fit else None

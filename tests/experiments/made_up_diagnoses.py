@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from diagnosis.conclude.held_out_series import ChannelSeries, HeldOutSeries
 from diagnosis.verdict.verdict import (
     Amount,
     ChannelFit,
@@ -16,7 +17,6 @@ from diagnosis.verdict.verdict import (
     Verdict,
     When,
 )
-from experiments.diagnosis_report.held_out_series import ChannelSeries, ReportSeries
 from experiments.diagnosis_report.run_facts import ReportFacts
 
 JOINTS = (
@@ -216,4 +216,4 @@ def series(name="air_multisine_1", duration_s=20.0, seed=3, joints=JOINTS):
         off = 0.012 * np.tanh(4 * np.gradient(motion, time_s)) * (joint == "LKneePitch")
         real = motion - off + noise
         channels[f"position.{joint}"] = ChannelSeries(real, motion, motion - 0.93 * off)
-    return ReportSeries(name, time_s, channels)
+    return HeldOutSeries(name, time_s, channels)

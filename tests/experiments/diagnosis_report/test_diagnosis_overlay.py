@@ -6,7 +6,7 @@ import pytest
 from rerun.chunk import RrdReader
 
 import robots
-from experiments.diagnosis_report.held_out_series import ChannelSeries
+from diagnosis.conclude.held_out_series import ChannelSeries
 from experiments.diagnosis_report.overlay import write_overlay
 from groundwalk.errors import BadValueError
 

@@ -7,20 +7,12 @@ import pytest
 
 from diagnosis.verdict.verdict import (
     Amount,
-    ChannelFit,
     EffectAt,
     Estimate,
-    Fit,
     Found,
     When,
 )
 from experiments.diagnosis_report.figures import CLOSE_UP_S, close_up
-from experiments.diagnosis_report.held_out_series import (
-    ChannelSeries,
-    ReportSeries,
-    by_error,
-    rms,
-)
 from experiments.diagnosis_report.numbers import (
     amount_text,
     error_unit,
@@ -35,7 +27,7 @@ from experiments.diagnosis_report.place_words import (
 )
 from experiments.diagnosis_report.text import finding, findings
 from experiments.diagnosis_report.words import WORDS, effect_words
-from groundwalk.errors import BadValueError, UnknownNameError
+from groundwalk.errors import UnknownNameError
 
 # Effects with their parameters, as the diagnosis' file format has them.
 PARAMETERS = {
@@ -193,44 +185,6 @@ def test_of_two_errors_the_one_beside_less_motion_is_shown():
     off = np.full(1000, 0.02)
     rows = one_second(motion, motion + off)
     assert rows.start >= 400
-
-
-def channels(**errors):
-    flat = np.zeros(5)
-    return {
-        name: ChannelSeries(flat, flat + error, flat) for name, error in errors.items()
-    }
-
-
-def test_the_worst_channel_is_that_of_most_noise_floors():
-    series = ReportSeries("a", np.arange(5.0), channels(a=0.5, b=-0.1, c=9.0))
-    floors = {"a": 0.1, "b": 0.001}
-    fits = {
-        name: ChannelFit(nominal=1.0, corrected=1.0, floor=floor, unit="rad")
-        for name, floor in floors.items()
-    }
-    fit = Fit(nominal=1.0, corrected=1.0, floor=1.0, channels=fits)
-    assert by_error(series, fit) == ["b", "a"]
-    assert by_error(series, None) == ["c", "a", "b"]
-
-
-def test_rms_leaves_out_what_is_missing():
-    assert rms(np.array([3.0, np.nan, -4.0])) == pytest.approx(np.sqrt(12.5))
-    assert rms(np.array([np.nan])) == 0.0
-
-
-@pytest.mark.parametrize(
-    ("time_s", "of"),
-    [
-        (np.arange(5.0), {}),
-        (np.arange(4.0), channels(a=1.0)),
-        (np.arange(1.0), channels(a=1.0)),
-    ],
-)
-def test_series_that_do_not_fit_together_are_refused(time_s, of):
-    assert ReportSeries("a", np.arange(5.0), channels(a=1.0)).name == "a"
-    with pytest.raises(BadValueError, match="series 'a'"):
-        ReportSeries("a", time_s, of)
 
 
 def friction(place, torque):

@@ -1,0 +1,118 @@
+"""What was measured and what both sims predict, over time, on held-out recordings."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.verdict.verdict import Fit
+from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadValueError
+
+
+class ChannelSeries(NamedTuple):
+    """One measured quantity over T ticks, in SI units; NaN is a missing value.
+
+    Attributes:
+      real: (T,) as it was measured.
+      sim: (T,) as the nominal sim predicts it.
+      corrected: (T,) as the sim with the diagnosed effects predicts it.
+    """
+
+    real: FloatArray
+    sim: FloatArray
+    corrected: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOutSeries:
+    """A held-out recording, or a part of one, beside what both sims predict for it.
+
+    Attributes:
+      name: of the recording.
+      time_s: (T,) increasing.
+      channels: by name, such as "position.LKneePitch" or "base.orientation.w"; the
+        text before the first dot is the quantity.
+    """
+
+    name: str
+    time_s: FloatArray
+    channels: Mapping[str, ChannelSeries]
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not fit together.
+
+        Raises:
+          BadValueError: there are fewer than two ticks, no channels, or a channel
+            whose length is not that of `time_s`.
+        """
+        if self.time_s.ndim != 1 or self.time_s.size < 2 or not self.channels:
+            raise BadValueError(
+                f"series {self.name!r} must have a channel and two ticks at least"
+            )
+        for name, channel in self.channels.items():
+            for part, values in channel._asdict().items():
+                if values.shape != self.time_s.shape:
+                    raise BadValueError(
+                        f"series {self.name!r}: {part} of {name} has shape "
+                        f"{values.shape}, time_s has {self.time_s.shape}"
+                    )
+
+
+def held_out_series(
+    nominal: Predictor, corrected: Predictor, model: Model
+) -> list[HeldOutSeries]:
+    """Measured, nominal and corrected course of each held-out recording.
+
+    Args:
+      nominal: predicts the held-out recordings, calibrated at the plant alone.
+      corrected: predicts the same recordings, calibrated at `model`.
+      model: the effects of the corrected sim.
+    """
+    sim, after = _by_trace(nominal, ()), _by_trace(corrected, model)
+    names = corrected.channels.names
+    series = []
+    for k, trace in enumerate(corrected.traces):
+        real = corrected.measured(k)
+        channels = {
+            name: ChannelSeries(real[:, i], sim[k][:, i], after[k][:, i])
+            for i, name in enumerate(names)
+        }
+        series.append(HeldOutSeries(trace.name, trace.time_s, channels))
+    return series
+
+
+def _by_trace(predictor: Predictor, model: Model) -> Sequence[FloatArray]:
+    """The prediction of each trace, (ticks, channels) each."""
+    predicted = predictor.predict([model])[0]
+    ends = np.cumsum([trace.ticks for trace in predictor.traces])
+    return np.split(predicted, ends[:-1])
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square of the values that are not NaN; 0 if all are."""
+    known = values[~np.isnan(values)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
+
+
+def by_error(series: HeldOutSeries, fit: Fit | None) -> list[str]:
+    """Names of the scored channels, the one with the nominal sim's worst error first.
+
+    Errors are compared in multiples of each channel's noise floor. Channels without a
+    floor, such as the pose of a base that nothing measured, are left out; where no
+    channel has one, all are kept and compared in their own units.
+
+    Args:
+      series: the recording.
+      fit: the verdict's held-out errors, which hold the floors; None without any.
+    """
+    floors = {name: one.floor for name, one in fit.channels.items()} if fit else {}
+    scored = [name for name in series.channels if floors.get(name)]
+    errors = {
+        name: rms(series.channels[name].real - series.channels[name].sim)
+        / floors.get(name, 1.0)
+        for name in scored or series.channels
+    }
+    return sorted(errors, key=lambda name: -errors[name])
