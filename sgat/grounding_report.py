@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -10,7 +10,6 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from sgat.measures import (
     Advance,
-    action_bias,
     autocorrelation,
     coverage,
     cross_correlation,
@@ -18,7 +17,6 @@ from sgat.measures import (
     multi_step_error,
     r_squared,
     root_mean_square,
-    spread_ratio,
 )
 from sgat.models.forward_model import ForwardModel
 from sgat.transitions import Transitions
@@ -45,8 +43,6 @@ class GroundingReport:
       autocorrelation: (lags, p) of the residuals.
       cross_correlation: (p, p) of the residuals.
       excess_kurtosis: (p,) of the residuals.
-      action_bias: (a,) mean of transformed less ideal action, where that is known.
-      action_spread_ratio: (a,) spread put on the action over the ideal one, likewise.
     """
 
     one_step_error: FloatArray
@@ -58,8 +54,6 @@ class GroundingReport:
     autocorrelation: FloatArray
     cross_correlation: FloatArray
     excess_kurtosis: FloatArray
-    action_bias: FloatArray | None = None
-    action_spread_ratio: FloatArray | None = None
 
     @classmethod
     def of(
@@ -92,22 +86,6 @@ class GroundingReport:
             autocorrelation=autocorrelation(residuals, held_out.episode, lags),
             cross_correlation=cross_correlation(residuals),
             excess_kurtosis=excess_kurtosis(residuals),
-        )
-
-    def with_actions(
-        self, transformed: FloatArray, ideal: FloatArray, action: FloatArray
-    ) -> Self:
-        """The report together with what is known of the transformed actions.
-
-        Args:
-          transformed: (N, a) actions.
-          ideal: (N, a) samples of what they should be.
-          action: (N, a) of the policy.
-        """
-        return replace(
-            self,
-            action_bias=action_bias(transformed, ideal),
-            action_spread_ratio=spread_ratio(transformed, ideal, action),
         )
 
     def to_json(self) -> str:

@@ -102,27 +102,6 @@ def excess_kurtosis(residuals: FloatArray) -> FloatArray:
     return np.asarray(np.mean(off**4, axis=0) / _variance(off) ** 2 - 3)
 
 
-def action_bias(transformed: FloatArray, ideal: FloatArray) -> FloatArray:
-    """(a,) how far transformed actions (N, a) are off the ideal ones in the mean.
-
-    The ideal is known where the difference between the worlds is: if real only adds
-    noise to the action, it is the noisy action.
-    """
-    return np.asarray((transformed - ideal).mean(axis=0))
-
-
-def spread_ratio(
-    transformed: FloatArray, ideal: FloatArray, action: FloatArray
-) -> FloatArray:
-    """(a,) spread of what the transformer adds to an action, over the ideal spread.
-
-    1 is right; a transformer without noise has 0, one whose inverse model shrinks
-    has less than 1.
-    """
-    got = (transformed - action).std(axis=0)
-    return np.asarray(got / np.sqrt(_variance(ideal - action)))
-
-
 def _variance(values: FloatArray) -> FloatArray:
     """(d,) of (N, d) values; NaN where they are constant, whatever rounding says."""
     return np.where(np.ptp(values, axis=0) > 0, values.var(axis=0), np.nan)

@@ -11,7 +11,6 @@ from typing import Any, TypeAlias
 import gymnasium as gym
 import numpy as np
 from gymnasium.spaces import Box
-from gymnasium.vector import AutoresetMode, VectorEnv
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
@@ -20,7 +19,6 @@ from sgat.transitions import Transitions
 Policy = Callable[[FloatArray], FloatArray]
 """Observations to actions: (o,) to (a,), or (n, o) to (n, a) for n environments."""
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
-Environments: TypeAlias = VectorEnv[FloatArray, FloatArray, Any]
 
 
 class _Rows:
@@ -75,47 +73,6 @@ def collect(
         rows.add(before, action, after, end)
         observation = env.reset()[0] if end else after
     return rows.to_transitions()
-
-
-def collect_vector(
-    envs: Environments, policy: Policy, steps: int, rng: np.random.Generator
-) -> Transitions:
-    """At least so many transitions of n environments that reset themselves.
-
-    Environments that reset in the same step tell the true last observation in
-    `info["final_obs"]`. Those that reset in the next step return it; their step of
-    resetting ignores the action and is no transition.
-
-    Args:
-      envs: with either mode of automatic reset.
-      policy: its actions are clipped to the action space, in the data, too.
-      steps: all environments together.
-      rng: gives the seed of the first episodes; the others follow from it.
-    """
-    mode = envs.metadata["autoreset_mode"]
-    if mode not in (AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP):
-        raise BadValueError(f"the environments' reset mode is {mode}; it must be on")
-    low, high = _bounds(envs.single_action_space)
-    every = [_Rows() for _ in range(envs.num_envs)]
-    resetting = np.zeros(envs.num_envs, bool)
-    observation, _ = envs.reset(seed=int(rng.integers(2**31)))
-    while sum(len(rows.state) for rows in every) < steps:
-        before = np.array(observation, float)
-        action = np.clip(policy(observation), low, high)
-        after, _, terminated, truncated, info = envs.step(action)
-        end = terminated | truncated
-        for i in np.flatnonzero(~resetting):
-            final = end[i] and mode == AutoresetMode.SAME_STEP
-            next_state = info["final_obs"][i] if final else after[i]
-            every[i].add(before[i], action[i], next_state, bool(end[i]))
-        if mode == AutoresetMode.NEXT_STEP:
-            resetting = end
-        observation = after
-    transitions = [rows.to_transitions() for rows in every if rows.state]
-    joined = transitions[0]
-    for more in transitions[1:]:
-        joined = joined.joined(more)
-    return joined
 
 
 def _bounds(space: gym.Space[Any]) -> tuple[FloatArray, FloatArray]:

@@ -59,3 +59,22 @@ def roll(step, episodes, ticks, seed):
 
 def seeds(n, root=5):
     return [np.random.SeedSequence([root, i]) for i in range(n)]
+
+
+def action_bias(transformed, ideal):
+    """(a,) how far transformed actions (N, a) are off the ideal ones in the mean.
+
+    The ideal is known where the difference between the worlds is: if real only adds
+    noise to the action, it is the noisy action.
+    """
+    return np.asarray((transformed - ideal).mean(axis=0))
+
+
+def spread_ratio(transformed, ideal, action):
+    """(a,) spread of what the transformer adds to an action, over the ideal spread.
+
+    1 is right; a transformer without noise has 0, one whose inverse model shrinks
+    has less than 1.
+    """
+    got = (transformed - action).std(axis=0)
+    return np.asarray(got / (ideal - action).std(axis=0))

@@ -125,22 +125,6 @@ def test_constants_have_neither_correlation_nor_kurtosis():
     assert np.isnan(measures.cross_correlation(flat)).sum() == 3
 
 
-def test_bias_and_spread_of_actions():
-    action = RNG.uniform(-1, 1, (N, 2))
-    ideal = action + 0.3 * WHITE
-    other = RNG.standard_normal((N, 2))
-    for found, bias, ratio in (
-        (action + 0.3 * other, 0, 1),
-        (action + 0.15 * other + 0.1, 0.1, 0.5),
-        (action, 0, 0),
-    ):
-        np.testing.assert_allclose(measures.action_bias(found, ideal), bias, atol=0.01)
-        np.testing.assert_allclose(
-            measures.spread_ratio(found, ideal, action), ratio, atol=0.02
-        )
-    assert np.isnan(measures.spread_ratio(ideal, action, action)).all()
-
-
 # The report
 
 
@@ -178,9 +162,3 @@ def test_a_report_in_json(report):
     plain = json.loads(report.to_json())
     assert set(plain) == set(vars(report))
     np.testing.assert_array_equal(plain["coverage"], report.coverage)
-    assert plain["action_bias"] is None
-    action = WHITE[:100]
-    more = report.with_actions(action + 0.5, action, action)
-    plain = json.loads(more.to_json())
-    np.testing.assert_allclose(plain["action_bias"], 0.5)
-    assert plain["action_spread_ratio"] == [None, None]

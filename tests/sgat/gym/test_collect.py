@@ -10,7 +10,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv
 
 from groundwalk.errors import BadValueError
-from sgat.gym.collect import collect, collect_vector
+from sgat.gym.collect import collect
 from sgat.transitions import Transitions
 
 LENGTHS = [3, 4, 5, 6]
@@ -50,19 +50,6 @@ def test_one_environment(wrap):
         assert np.unique(found.episode, return_counts=True)[1].tolist() == [*LENGTHS, 3]
 
 
-@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
-@pytest.mark.parametrize("copy", [True, False])
-def test_many_environments_that_reset_themselves(mode, copy):
-    makers = [lambda first=first: FallingEnv(first) for first in (0, 10, 21)]
-    envs = SyncVectorEnv(makers, autoreset_mode=mode, copy=copy)
-    found = collect_vector(envs, half, 60, rng())
-    check(found)
-    assert 60 <= found.n < 63
-    lengths = np.unique(found.episode, return_counts=True)[1]
-    assert len(lengths) > 11
-    assert set(lengths) >= set(LENGTHS)
-
-
 def test_the_defect_would_be_seen():
     """Taking what a self-resetting environment returns for the next state is wrong."""
     envs = SyncVectorEnv([FallingEnv], autoreset_mode=AutoresetMode.SAME_STEP)
@@ -84,12 +71,6 @@ def test_the_defect_would_be_seen():
         jumped += bool(end[0]) and after[0, 1] == 0
         state = after
     assert jumped == len(LENGTHS)
-
-
-def test_environments_that_do_not_reset_themselves_are_refused():
-    envs = SyncVectorEnv([FallingEnv], autoreset_mode=AutoresetMode.DISABLED)
-    with pytest.raises(BadValueError, match="reset mode"):
-        collect_vector(envs, half, 5, rng())
 
 
 def test_actions_are_clipped_in_the_data_too():
@@ -114,7 +95,4 @@ def test_actions_that_are_no_numbers_are_refused():
 
     with pytest.raises(BadValueError, match="Box"):
         collect(Choice(), half, 5, rng())
-    envs = SyncVectorEnv([Choice], autoreset_mode=AutoresetMode.SAME_STEP)
-    with pytest.raises(BadValueError, match="Box"):
-        collect_vector(envs, half, 5, rng())
     assert FlattenObservation(FallingEnv()).action_space.shape == (1,)

@@ -7,13 +7,8 @@ import pytest
 from known_dynamics import seeds
 
 from groundwalk.errors import BadValueError
-from sgat.models.latent_noise import LatentNoise
 from sgat.noise import NoiseStream, WhiteNoise
 from sgat.transformers.block_noise import BlockNoise
-
-PERSISTENCE = np.array([0.3, 0.6, 0.85])
-INNOVATIONS = np.array([[1.0, 0.5, 0.3], [0.5, 1.0, -0.2], [0.3, -0.2, 1.0]])
-LATENT = LatentNoise(PERSISTENCE, INNOVATIONS, freedom=12.0)
 
 
 def residuals_of_a_walk(seed=1):
@@ -29,7 +24,7 @@ def residuals_of_a_walk(seed=1):
 
 
 BLOCK = BlockNoise(*residuals_of_a_walk(), ticks=20)
-LAWS = [WhiteNoise(3), BLOCK, LATENT, LatentNoise(PERSISTENCE, INNOVATIONS)]
+LAWS = [WhiteNoise(3), BLOCK]
 
 
 def drawn(law, n, ticks, root=5):
@@ -133,98 +128,7 @@ def test_blocks_longer_than_any_episode_are_refused():
         BlockNoise(residuals, episode, 0)
 
 
-def test_latent_noise_has_the_memory_and_correlation_that_it_claims():
-    noise = drawn(LATENT, 500, 500)
-    for lag in (1, 2, 5):
-        found = (noise[lag:] * noise[:-lag]).mean(axis=(0, 1))
-        np.testing.assert_allclose(found, PERSISTENCE**lag, atol=0.02)
-    root = np.sqrt(1 - PERSISTENCE**2)
-    factor = np.outer(root, root) / (1 - np.outer(PERSISTENCE, PERSISTENCE))
-    across = np.einsum("tni,tnj->ij", noise, noise) / noise[..., 0].size
-    np.testing.assert_allclose(across, INNOVATIONS * factor, atol=0.03)
-
-
-def test_latent_noise_starts_as_it_goes_on():
-    first = drawn(LATENT, 20_000, 1)[0]
-    root = np.sqrt(1 - PERSISTENCE**2)
-    factor = np.outer(root, root) / (1 - np.outer(PERSISTENCE, PERSISTENCE))
-    np.testing.assert_allclose(np.cov(first.T), INNOVATIONS * factor, atol=0.05)
-
-
-@pytest.mark.parametrize(("freedom", "excess"), [(12.0, 6 / 8), (math.inf, 0.0)])
-def test_latent_noise_has_the_tails_that_it_claims(freedom, excess):
-    """Excess kurtosis 6 / (freedom - 4) of t, times (1 - p^2) / (1 + p^2) by memory."""
-    noise = drawn(LatentNoise(PERSISTENCE, INNOVATIONS, freedom), 600, 600)
-    p = PERSISTENCE**2
-    found = (noise**4).mean(axis=(0, 1)) - 3 * noise.var(axis=(0, 1)) ** 2
-    np.testing.assert_allclose(found, excess * (1 - p) / (1 + p), atol=0.1)
-
-
-def test_outliers_of_latent_noise_hit_all_dimensions():
-    independent = LatentNoise(np.zeros(2), np.eye(2), freedom=6.0)
-    squares = drawn(independent, 300, 300) ** 2
-    assert np.corrcoef(squares[..., 0].ravel(), squares[..., 1].ravel())[0, 1] > 0.1
-    normal = drawn(LatentNoise(np.zeros(2), np.eye(2)), 300, 300) ** 2
-    both = np.corrcoef(normal[..., 0].ravel(), normal[..., 1].ravel())[0, 1]
-    assert abs(both) < 0.02
-
-
-def test_latent_noise_is_found_again_in_its_own_draws():
-    noise = drawn(LATENT, 200, 300)
-    residuals = noise.transpose(1, 0, 2).reshape(-1, 3) * [2, 1, 0.5] + 1
-    found = LatentNoise.from_residuals(residuals, np.repeat(np.arange(200), 300))
-    np.testing.assert_allclose(found.persistence, PERSISTENCE, atol=0.02)
-    np.testing.assert_allclose(found.correlation, INNOVATIONS, atol=0.03)
-    assert 9 < found.freedom < 16
-
-
-def test_normal_residuals_have_no_tails_to_be_found():
-    """Uniform ones have thinner tails than any t distribution."""
-    rng = np.random.default_rng(3)
-    found = LatentNoise.from_residuals(
-        rng.uniform(size=(5000, 2)), np.repeat(np.arange(5), 1000)
-    )
-    assert math.isinf(found.freedom)
-
-
-def test_memory_is_not_looked_for_across_episodes():
-    """An episode is a number and its negative; the next one knows nothing of it."""
-    rng = np.random.default_rng(4)
-    episode = np.arange(4000) // 2
-    steps = np.tile([-1.0, 1.0], 2000) * rng.choice([-1, 1], 2000).repeat(2)
-    found = LatentNoise.from_residuals(steps[:, None], episode)
-    assert found.persistence[0] < -0.95
-
-
-def test_correlations_that_no_such_noise_has_become_the_nearest():
-    """A copy of the past is wholly correlated with what has no memory at all."""
-    rng = np.random.default_rng(5)
-    white = rng.normal(size=4001)
-    slow = np.zeros(4001)
-    for t in range(1, 4001):
-        slow[t] = 0.9 * slow[t - 1] + white[t]
-    residuals = np.column_stack([white, slow + 3 * white])
-    found = LatentNoise.from_residuals(residuals, np.zeros(4001, int))
-    noise = drawn(found, 100, 200)
-    np.testing.assert_allclose(noise.var(axis=(0, 1)), 1, atol=0.08)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"persistence": np.array([0.5, 1.0])}, "persistence"),
-        ({"correlation": np.eye(3)}, "2 x 2"),
-        ({"correlation": np.array([[1, 0.5], [0.4, 1]])}, "symmetric"),
-        ({"correlation": 2 * np.eye(2)}, "ones"),
-        ({"correlation": np.array([[1, 1.2], [1.2, 1]])}, "positive definite"),
-        ({"freedom": 4.0}, "freedom"),
-    ],
-)
-def test_what_is_no_noise_is_refused(change, words):
-    right = {"persistence": np.array([0.5, 0.2]), "correlation": np.eye(2)}
-    LatentNoise(**right, freedom=5.0)
-    with pytest.raises(BadValueError, match=words):
-        LatentNoise(**(right | change))
+def test_noise_without_dimensions_is_refused():
     with pytest.raises(BadValueError, match="dimensions"):
         WhiteNoise(0)
 

@@ -3,15 +3,23 @@
 import numpy as np
 import pytest
 from conftest import NOISE
-from known_dynamics import HIGH, LIGHT, LOW, linear, noisy_actions, roll, seeds
+from known_dynamics import (
+    HIGH,
+    LIGHT,
+    LOW,
+    action_bias,
+    linear,
+    noisy_actions,
+    roll,
+    seeds,
+    spread_ratio,
+)
 
 from groundwalk.errors import BadValueError
-from sgat.measures import action_bias, spread_ratio
 from sgat.models.distributional_inverse import DistributionalInverse
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.models.latent_noise import LatentNoise
 from sgat.models.network_config import NetworkConfig
 from sgat.noise import WhiteNoise
 from sgat.transformers.action_noise import ActionNoise
@@ -82,15 +90,9 @@ def test_noise_that_no_action_makes_is_lost_on_the_way():
     assert ratio["gaussian"] < 0.8
 
 
-@pytest.mark.parametrize("kind", ["block", "latent"])
-def test_other_noise_laws_fit_in(full, inverse, noisy_real, kind):
+def test_blocks_of_residuals_fit_in(full, inverse, noisy_real):
     known, data = noisy_real
-    residuals = full.residuals(known)
-    law = (
-        BlockNoise(residuals, known.episode, 10)
-        if kind == "block"
-        else LatentNoise.from_residuals(residuals, known.episode)
-    )
+    law = BlockNoise(full.residuals(known), known.episode, 10)
     g = ActionTransformer(full, inverse, LOW, HIGH, law)
     ratio = spread_ratio(transformed(g, data), ideal(data), data.action)
     np.testing.assert_allclose(ratio, 1, atol=0.15)
