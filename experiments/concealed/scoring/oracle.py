@@ -1,8 +1,7 @@
-"""The oracle: what the true structure reaches when its values are fitted.
+"""The oracle: how much a case's recordings can tell about the effects hidden in it.
 
-How much a case can tell is measured, not felt: the true effects at their true places
-are fitted to the same recordings that a diagnosis fits, and by how much that beats the
-nominal model is the case's level.
+The true effects at their true places are fitted to the recordings that a diagnosis
+fits. The log-likelihood by which they beat the nominal model is the case's level.
 """
 
 import hashlib
@@ -13,35 +12,28 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.corrected.effects_json import EffectValues
+from diagnosis.conclude.oracle import fit_structure
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, effect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import channels_of
-from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.fitting import fit_all
-from diagnosis.search.reference import standing_of
-from diagnosis.traces.split import split
-from diagnosis.traces.trace import Trace
 from diagnosis.verdict.verdict import Found
 from experiments.concealed.reading import read_case
 from experiments.concealed.scoring.truth import TrueCase
 from experiments.concealed.size_by_information import level_of
-from groundwalk.arrays import FloatArray, IntArray
-from groundwalk.blas import one_blas_thread
 
 
 @dataclass(frozen=True)
 class Oracle:
-    """What the true structure reaches in one case.
+    """The errors that the true effects of one case leave once they are fitted.
 
     Attributes:
-      gain: log-score [nats] per recording by which it beats the nominal model.
-      nominal: rms error on held-out recordings, in units of noise.
-      fitted: the same with the true structure, refitted.
+      gain: log-likelihood [nats] per recording by which the fitted true effects beat
+        the nominal model.
+      nominal: rms error of the nominal model on held-out recordings, in units of noise.
+      fitted: rms error there with the fitted true effects.
       neutral: value at which a parameter does nothing, by "effect@place" and name;
         None where that is infinite.
-      answered: by method, the hash of its effects and the held-out rms with them.
+      answered: by method, the hash of the effects it found and the rms error with them.
     """
 
     gain: float
@@ -52,23 +44,23 @@ class Oracle:
 
     @property
     def level(self) -> str:
-        """How easy the case is."""
+        """How easy the case is, from "L1" (easiest) to "L4"."""
         return level_of(self.gain)
 
     def to_json(self) -> str:
-        """As text."""
+        """The oracle as JSON."""
         return json.dumps(asdict(self), indent=1) + "\n"
 
     @classmethod
     def from_json(cls, text: str) -> "Oracle":
-        """What `to_json` has written."""
+        """Read text that `to_json` has written."""
         plain = json.loads(text)
         answered = {name: (key, rms) for name, (key, rms) in plain["answered"].items()}
         return cls(**{**plain, "answered": answered})
 
 
 def answer_key(found: Sequence[Found]) -> str:
-    """Tells one set of effects with their values from another."""
+    """Hash of a list of effects with their places and values."""
     text = json.dumps(
         [
             [each.name, each.place, {k: e.value for k, e in each.parameters.items()}]
@@ -78,95 +70,59 @@ def answer_key(found: Sequence[Found]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-@one_blas_thread
 def consult(
     folder: Path, case: TrueCase, answers: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """Fit the true structure, and replay what others found on held-out recordings.
+    """Fit the true structure of a case, and replay the answers on held-out recordings.
 
     Args:
       folder: of the case.
       case: the truth.
-      answers: by method, the effects it found.
+      answers: by method, the effects it found. An effect that the diagnosis' library
+        does not have, or not at that place, is left out.
     """
     plant, traces, reference = read_case(folder)
-    parts = split(traces)
-    channels = channels_of(plant, [*traces, *reference])
-    standing = standing_of(plant, reference, channels) if reference else None
-    start = tuple(_true(plant, each) for each in case.effects)
-    fitting = Predictor(plant, parts.fit, channels, standing=standing)
-    fitting.calibrate(start)
-    model = fit_all(fitting, [start])[0].model
-    used = [*parts.fit, *parts.select, *parts.test]
-    every = Predictor(plant, used, channels, standing=standing)
-    every.calibrate(model)
-    models = [_answered(plant, traces, found) for found in answers.values()]
-    residuals = every.residuals([(), model, *models])
-    held_out = every.trace >= len(parts.fit) + len(parts.select)
-    error = np.sqrt(np.mean(residuals[:, held_out & every.scored] ** 2, axis=1))
+    true = tuple(_placed(plant, e.name, e.place, e.parameters) for e in case.effects)
+    answered = [
+        tuple(
+            _placed(plant, each.name, each.place, _values(each))
+            for each in found
+            if each.name in EFFECTS
+            and each.place in effect(each.name).places(plant, traces)
+        )
+        for found in answers.values()
+    ]
+    fit = fit_structure(plant, traces, reference, true, answered)
     keys = [answer_key(found) for found in answers.values()]
     return Oracle(
-        gain=log_score_gain(residuals[0], residuals[1], every.channel) / len(traces),
-        nominal=float(error[0]),
-        fitted=float(error[1]),
-        neutral={one.key: _neutral(plant, one) for one in start},
-        answered={
-            name: (key, float(rms))
-            for name, key, rms in zip(answers, keys, error[2:], strict=True)
-        },
+        gain=fit.gain,
+        nominal=fit.nominal,
+        fitted=fit.fitted,
+        neutral={one.key: _neutral(plant, one) for one in true},
+        answered=dict(zip(answers, zip(keys, fit.others, strict=True), strict=True)),
     )
 
 
-def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -> float:
-    """Log-likelihood [nats] that a fitted model has over the nominal one.
-
-    Errors are taken as Gaussian. What the true structure cannot explain, such as the
-    difference of two engines, is noise as well: a channel's variance is the larger of
-    its sensor's and of what the fitted model leaves.
-
-    Args:
-      nominal: (N,) residual in units of the sensor's noise; 0 where not scored.
-      fitted: (N,) likewise.
-      channel: (N,) of each value.
-    """
-    gain = 0.0
-    for number in np.unique(channel):
-        mine = channel == number
-        seen = mine & ((nominal != 0) | (fitted != 0))
-        if seen.any():
-            variance = max(1.0, float(np.mean(fitted[seen] ** 2)))
-            gain += (
-                0.5 * float(np.sum(nominal[seen] ** 2 - fitted[seen] ** 2)) / variance
-            )
-    return gain
+def _values(found: Found) -> dict[str, float]:
+    return {name: estimate.value for name, estimate in found.parameters.items()}
 
 
-def _true(plant: Plant, true: EffectValues) -> PlacedEffect:
-    """The hidden effect in the diagnosis' words, within its bounds."""
-    values = [
-        min(max(true.parameters.get(p.name, p.typical), p.low), p.high)
-        for p in effect(true.name).parameters(plant, true.place)
-    ]
-    return PlacedEffect(true.name, true.place, tuple(values))
-
-
-def _answered(plant: Plant, traces: Sequence[Trace], found: Sequence[Found]) -> Model:
-    """What an answer says, as a model; what the plant cannot have is left out."""
-    model = []
-    for each in found:
-        known = EFFECTS.get(each.name)
-        if known is None or each.place not in known.places(plant, traces):
-            continue
-        given = {name: estimate.value for name, estimate in each.parameters.items()}
-        values = [
-            min(max(given.get(p.name, p.typical), p.low), p.high)
-            for p in known.parameters(plant, each.place)
-        ]
-        model.append(PlacedEffect(each.name, each.place, tuple(values)))
-    return tuple(model)
+def _placed(
+    plant: Plant, name: str, place: str, values: Mapping[str, float]
+) -> PlacedEffect:
+    """The effect with its values within their bounds, typical ones where not given."""
+    return PlacedEffect(
+        name,
+        place,
+        tuple(
+            min(max(values.get(p.name, p.typical), p.low), p.high)
+            for p in effect(name).parameters(plant, place)
+        ),
+    )
 
 
 def _neutral(plant: Plant, placed: PlacedEffect) -> dict[str, float | None]:
+    """Values at which the effect does nothing, by parameter; None where infinite."""
     parameters = effect(placed.name).parameters(plant, placed.place)
     values = {
         p.name: float(p.neutral) if np.isfinite(p.neutral) else None for p in parameters

@@ -1,0 +1,104 @@
+"""Fits a known structure: the error that the true effects leave, once fitted.
+
+A diagnosis has to find which effects are missing. Where these are known, as in
+recordings made with hidden physics, fitting them alone says how much the recordings can
+tell about them at all, and how small the error can get.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import fit_all
+from diagnosis.search.reference import standing_of
+from diagnosis.traces.split import split
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.blas import one_blas_thread
+
+
+@dataclass(frozen=True)
+class StructureFit:
+    """The errors of a known structure on recordings, beside those of other models.
+
+    Attributes:
+      gain: mean over recordings of the log-likelihood [nats] by which the fitted
+        structure beats the nominal model.
+      nominal: rms error of the nominal model on held-out recordings, in units of noise.
+      fitted: rms error of the fitted structure there.
+      others: rms error there of each other model, in the order they were given.
+    """
+
+    gain: float
+    nominal: float
+    fitted: float
+    others: tuple[float, ...]
+
+
+@one_blas_thread
+def fit_structure(
+    plant: Plant,
+    traces: Sequence[Trace],
+    reference: Sequence[Trace],
+    structure: Model,
+    others: Sequence[Model] = (),
+) -> StructureFit:
+    """Fit the values of a known structure; replay other models beside it.
+
+    The values are fitted to the same recordings that a diagnosis fits. The other
+    models keep the values they are given.
+
+    Args:
+      plant: nominal.
+      traces: recordings of the robot.
+      reference: recordings of the healthy robot; may be empty.
+      structure: the true effects at their true places, with values to start from.
+      others: models to compare with, such as the answers of a diagnosis.
+    """
+    parts = split(traces)
+    channels = channels_of(plant, [*traces, *reference])
+    standing = standing_of(plant, reference, channels) if reference else None
+    fitting = Predictor(plant, parts.fit, channels, standing=standing)
+    fitting.calibrate(structure)
+    model = fit_all(fitting, [structure])[0].model
+    used = [*parts.fit, *parts.select, *parts.test]
+    every = Predictor(plant, used, channels, standing=standing)
+    every.calibrate(model)
+    residuals = every.residuals([(), model, *others])
+    held_out = every.trace >= len(parts.fit) + len(parts.select)
+    error = np.sqrt(np.mean(residuals[:, held_out & every.scored] ** 2, axis=1))
+    nominal, fitted, *rest = map(float, error)
+    return StructureFit(
+        gain=log_score_gain(residuals[0], residuals[1], every.channel) / len(traces),
+        nominal=nominal,
+        fitted=fitted,
+        others=tuple(rest),
+    )
+
+
+def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -> float:
+    """Log-likelihood [nats] by which a fitted model beats the nominal one.
+
+    Errors are taken as Gaussian. Error that the fitted model cannot explain, such as
+    the difference between two engines, counts as noise: a channel's variance is the
+    larger of its sensor's and of the fitted model's mean squared error.
+
+    Args:
+      nominal: (N,) residuals in units of the sensor's noise; 0 where not scored.
+      fitted: (N,) residuals of the fitted model, in the same units.
+      channel: (N,) index of the channel of each residual.
+    """
+    gain = 0.0
+    for number in np.unique(channel):
+        mine = channel == number
+        seen = mine & ((nominal != 0) | (fitted != 0))
+        if seen.any():
+            variance = max(1.0, float(np.mean(fitted[seen] ** 2)))
+            gain += (
+                0.5 * float(np.sum(nominal[seen] ** 2 - fitted[seen] ** 2)) / variance
+            )
+    return gain
