@@ -25,6 +25,7 @@ from experiments.diagnosis_report.run_facts import ReportFacts
 from experiments.reports.origin import command_of
 from experiments.runs.extras import extra
 from experiments.runs.folder import PROVENANCE, RunFolder, check_free, to_plain
+from experiments.runs.options import check_at_least
 from groundwalk.errors import BadValueError, GroundwalkError
 from worlds import ServoGains
 
@@ -82,8 +83,7 @@ class Diagnose:
             raise BadValueError("kd or max_torque is given without kp")
         if not 0 <= self.least_share < 1:
             raise BadValueError(f"least_share is {self.least_share}; it must be a part")
-        if self.seed < 0 or self.threads < 0:
-            raise BadValueError("seed and threads must not be negative")
+        check_at_least(self, seed=0, threads=0)
 
     @property
     def gains(self) -> ServoGains | None:

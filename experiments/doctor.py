@@ -2,13 +2,15 @@
 
 import argparse
 import dataclasses
-import importlib.util
 import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from experiments.reports.tables import print_table
 from experiments.runs.doctor_checks import Finding, State, examine
+
+COLOURS = {State.OK: "green", State.NOTE: "yellow", State.FAIL: "red"}
 
 
 @dataclass(frozen=True)
@@ -19,39 +21,26 @@ class DoctorConfig:
     """Print the findings as JSON."""
 
 
-def print_lines(findings: Sequence[Finding]) -> None:
-    """The findings as plain text, one line each."""
-    for finding in findings:
-        advice = f" -> {finding.advice}" if finding.advice else ""
-        print(f"{finding.state:5}{finding.name:20}{finding.found}{advice}")
-
-
-def print_table(findings: Sequence[Finding]) -> None:
-    """The findings as a table in colours, for a terminal."""
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.table import Table
-
-    colours = {State.OK: "green", State.NOTE: "yellow", State.FAIL: "red"}
-    table = Table("", "what", "found", "what to do", box=None)
-    for finding in findings:
-        colour = colours[finding.state]
-        texts = (finding.name, finding.found, finding.advice)
-        table.add_row(f"[{colour}]{finding.state}[/]", *map(escape, texts))
-    Console().print(table)
+def print_findings(findings: Sequence[Finding]) -> None:
+    """Print the findings as a table, one line each; coloured on a terminal."""
+    rows = [(one.state, one.name, one.found, one.advice) for one in findings]
+    colours = [COLOURS[one.state] for one in findings]
+    print_table(("", "what", "found", "what to do"), rows, colours)
 
 
 def main(config: DoctorConfig) -> int:
-    """Report; 0 if everything that is required works, else 1."""
+    """Report what is installed.
+
+    Returns:
+      The exit status: 0 if everything that is required works, else 1.
+    """
     findings = examine()
     works = all(finding.state is not State.FAIL for finding in findings)
     if config.json:
         rows = [dataclasses.asdict(finding) for finding in findings]
         print(json.dumps({"works": works, "findings": rows}, indent=2))
-    elif sys.stdout.isatty() and importlib.util.find_spec("rich"):
-        print_table(findings)
     else:
-        print_lines(findings)
+        print_findings(findings)
     return 0 if works else 1
 
 

@@ -9,7 +9,13 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.reports.score_table import print_json, print_scores
+from experiments.reports.tables import (
+    SCORE_HEADINGS,
+    print_folder,
+    print_json,
+    print_table,
+    score_rows,
+)
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, open_run
 from experiments.runs.gait_files import load_gaits
@@ -76,7 +82,8 @@ def main(config: Evaluate) -> None:
     if config.json:
         print_json(result)
     else:
-        print_scores(result, folder.path)
+        print_table(SCORE_HEADINGS, score_rows(result))
+        print_folder(folder.path)
 
 
 if __name__ == "__main__":

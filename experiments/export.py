@@ -9,7 +9,7 @@ import tyro
 
 import robots
 from experiments.command_line import run_verb
-from experiments.runs.new_file import check_new
+from experiments.runs.folder import check_new
 from groundwalk.files import write_text
 from robots.mjcf import mujoco_spec
 from robots.urdf import urdf

@@ -17,8 +17,7 @@ from experiments.humanoid_study.page import (
     robot_rows,
     write_humanoids_page,
 )
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
     CHECKPOINT,
@@ -27,7 +26,7 @@ from experiments.runs.folder import (
     RunFolder,
     open_run,
 )
-from experiments.runs.options import RunOptions
+from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run
 from experiments.walking.evaluation import Study, evaluate, keep
 from experiments.walking.reward import reward_cm_s
@@ -90,10 +89,7 @@ class Humanoids(RunOptions):
             raise BadValueError("name at least one robot, and none of them twice")
         check_search(self.population, self.sigma)
         self.studies()
-        if self.generations < 1:
-            raise BadValueError(
-                f"generations is {self.generations}; it must be positive"
-            )
+        check_at_least(self, generations=1)
         super().__post_init__()
 
     def studies(self) -> dict[str, Study]:

@@ -8,7 +8,7 @@ import tyro
 
 import robots
 from experiments.command_line import run_verb
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_table
 from groundwalk.errors import UnknownNameError
 from terrain.bounds import Parameter
 from terrain.catalog import FAMILIES

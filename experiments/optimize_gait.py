@@ -10,7 +10,13 @@ import numpy as np
 
 import robots
 from experiments.command_line import run_verb
-from experiments.reports.score_table import print_json, print_scores
+from experiments.reports.tables import (
+    SCORE_HEADINGS,
+    print_folder,
+    print_json,
+    print_table,
+    score_rows,
+)
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
     CHECKPOINT,
@@ -20,7 +26,7 @@ from experiments.runs.folder import (
     open_run,
 )
 from experiments.runs.gait_files import load_gait
-from experiments.runs.options import RunOptions
+from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run
 from experiments.seeing.score_page import write_page
 from experiments.walking.evaluation import Study, evaluate, keep
@@ -31,7 +37,6 @@ from experiments.walking.search_run import RATINGS, best_mean, run_search
 from experiments.walking.sims import check_correction, make_sim
 from experiments.walking.trials import SEARCH_TRIAL, TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError
 from terrain import Heightfield, TerrainSpec, parse
 from walk_engine import Gait
 
@@ -81,10 +86,7 @@ class OptimizeGait(RunOptions):
         check_search(self.population, self.sigma)
         for world in WORLDS:
             self.study(world)
-        if self.generations < 1:
-            raise BadValueError(
-                f"generations is {self.generations}; it must be positive"
-            )
+        check_at_least(self, generations=1)
         super().__post_init__()
 
     def study(self, world: str) -> Study:
@@ -107,7 +109,9 @@ def main(config: OptimizeGait) -> None:
     if config.json:
         print_json(result)
     else:
-        print_scores({world: result[world] for world in WORLDS}, folder.path)
+        scores = {world: result[world] for world in WORLDS}
+        print_table(SCORE_HEADINGS, score_rows(scores))
+        print_folder(folder.path)
 
 
 def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:

@@ -14,7 +14,8 @@ from experiments.motions.on_feet import (
     standing_commands,
     walking_feed,
 )
-from experiments.runs.new_file import check_new
+from experiments.runs.folder import check_new
+from experiments.runs.options import check_at_least
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from groundwalk.files import write_text
@@ -73,8 +74,7 @@ class Record:
             raise BadValueError(
                 f"duration is {self.duration}; from 0.1 to {_LONGEST_S:g} s"
             )
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        check_at_least(self, seed=0)
         if self.base is not None and (self.base == "floating") != self.on_feet:
             needs = "floating" if self.on_feet else "fixed"
             raise BadValueError(f"motion {self.motion} needs a {needs} base")

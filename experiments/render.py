@@ -8,7 +8,7 @@ from typing import Annotated
 import tyro
 
 from experiments.command_line import run_verb
-from experiments.runs.new_file import check_new
+from experiments.runs.folder import check_new
 from experiments.seeing.film import Film, film_bytes, strip_bytes
 from experiments.seeing.scenes import make_scenes
 from experiments.visualize import check_paths, gather

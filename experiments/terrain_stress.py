@@ -11,12 +11,11 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.runs.gait_files import load_gaits
-from experiments.runs.options import RunOptions
+from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
 from experiments.stress.curves import curves_of
 from experiments.stress.families import FAMILIES, FLAT, Place, leg_length_m
@@ -28,7 +27,6 @@ from groundwalk.errors import BadValueError, UnknownNameError
 from walk_engine import Gait
 
 VERB = "terrain-stress"
-SMALLEST = {"trials": 1, "rungs": 2, "worst": 0, "threads": 0, "seed": 0}
 
 
 @dataclass(frozen=True)
@@ -74,11 +72,8 @@ class TerrainStress(RunOptions):
         for family in self.families:
             if family not in FAMILIES:
                 raise UnknownNameError("family of ground", family, FAMILIES)
-        for name, least in SMALLEST.items():
-            if getattr(self, name) < least:
-                raise BadValueError(
-                    f"{name} is {getattr(self, name)}; give at least {least}"
-                )
+        check_at_least(self, trials=1, rungs=2, worst=0, threads=0)
+        super().__post_init__()
 
     @property
     def places(self) -> list[Place]:
@@ -109,7 +104,7 @@ def main(config: TerrainStress) -> None:
         print_json(result)
     else:
         print_table(HALF_HEADINGS, half_rows(curves))
-        print(f"everything else is in {folder.path}")
+        print_folder(folder.path)
 
 
 def _walk_cells(

@@ -9,8 +9,7 @@ from typing import Annotated
 import tyro
 
 from experiments.command_line import run_verb
-from experiments.runs.folder import RECORDINGS, RunFolder
-from experiments.runs.new_file import check_new
+from experiments.runs.folder import RECORDINGS, RunFolder, check_new
 from experiments.seeing.run_pictures import WALK_RERUN, picture_search
 from experiments.seeing.scenes import make_scenes, read_recordings, scene_names
 from experiments.seeing.visualize_search import visualize_search

@@ -6,18 +6,17 @@ How cases are drawn, such that their truth can be told: `experiments.concealed.d
 
 import hashlib
 import json
-import multiprocessing
-import os
 import shutil
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import tyro
 
 from experiments.command_line import run_verb
 from experiments.concealed.case import case_name, make_case
+from experiments.runs.options import REPEATABLE, check_at_least
+from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_text
@@ -39,6 +38,8 @@ class ConcealedMake:
       threads: processes; 0 for one per core.
     """
 
+    if_interrupted: ClassVar[str] = REPEATABLE
+
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
     cases: int = 200
     seed: int = 1
@@ -48,10 +49,7 @@ class ConcealedMake:
         """Refuse sets that cannot be."""
         if not 1 <= self.cases <= _MOST_CASES:
             raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
-        for name in ("seed", "threads"):
-            value = getattr(self, name)
-            if value < 0:
-                raise BadValueError(f"{name} is {value}; it must not be negative")
+        check_at_least(self, seed=0, threads=0)
 
 
 def main(config: ConcealedMake) -> None:
@@ -86,23 +84,17 @@ def _make_all(config: ConcealedMake, parts: Path) -> None:
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
     done = config.cases - len(missing)
-    workers = min(config.threads or os.cpu_count() or 1, max(len(missing), 1))
-    with progress("cases", config.cases, done) as task:
-        if workers == 1:
-            for number in missing:
-                make_case(cases, parts, config.seed, number)
-                task.advance()
-            return
-        # PyBullet and MuJoCo keep state of their own: no forked copies of it.
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=context) as pool:
-            futures = [
-                pool.submit(make_case, cases, parts, config.seed, number)
-                for number in missing
-            ]
-            for future in as_completed(futures):
-                future.result()
-                task.advance()
+    with (
+        progress("cases", config.cases, done) as task,
+        process_pool(config.threads, len(missing)) as pool,
+    ):
+        calls = {
+            number: pool.submit(make_case, cases, parts, config.seed, number)
+            for number in missing
+        }
+        for _, call in as_done(calls):
+            call.result()
+            task.advance()
 
 
 def _seal(config: ConcealedMake) -> None:

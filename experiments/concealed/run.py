@@ -1,13 +1,10 @@
 """`groundwalk concealed run`: answer every case without looking at its truth."""
 
-import multiprocessing
-import os
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 import tyro
@@ -19,10 +16,12 @@ from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, read_case
 from experiments.runs.folder import PROVENANCE, RunFolder, provenance
+from experiments.runs.options import REPEATABLE, check_at_least
+from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
 from experiments.runs.repeat_command import repeat_command
 from groundwalk.blas import one_blas_thread
-from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
+from groundwalk.errors import BadRecordingError, RunFolderError
 from groundwalk.files import write_text
 
 VERB = "concealed-run"
@@ -40,6 +39,8 @@ class ConcealedRun:
       threads: cases at a time, each in a process of its own; 0 for one per core.
     """
 
+    if_interrupted: ClassVar[str] = REPEATABLE
+
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
     by: Literal["diagnosis", "sysid", "bic", "sparse"] = "diagnosis"
     seed: int = 1
@@ -49,8 +50,7 @@ class ConcealedRun:
         """Refuse what is no set."""
         if not (self.folder / CASES).is_dir():
             raise RunFolderError(f"{self.folder} holds no {CASES}: make them first")
-        if self.seed < 0 or self.threads < 0:
-            raise BadValueError("seed and threads must not be negative")
+        check_at_least(self, seed=0, threads=0)
 
 
 def main(config: ConcealedRun) -> None:
@@ -106,27 +106,20 @@ def answer_all(
       Exception: what the first case that failed has raised, once all others are done.
     """
     missing = unanswered(folder, kind)
-    context = multiprocessing.get_context("spawn")
-    workers = threads or os.cpu_count() or 1
     total = len(cases_of(folder))
     with (
         progress("cases diagnosed", total, done=total - len(missing)) as bar,
-        ProcessPoolExecutor(workers, mp_context=context) as pool,
+        process_pool(threads, len(missing)) as pool,
     ):
-        asked = {pool.submit(answer, case, seed): case for case in missing}
+        calls = {case: pool.submit(answer, case, seed) for case in missing}
         failures: dict[str, BaseException] = {}
-        try:
-            for future in as_completed(asked):
-                case = asked[future]
-                failure = future.exception()
-                if failure is None:
-                    write_text(_path(folder, kind, case), future.result().to_json())
-                    bar.advance(case.name)
-                else:
-                    failures[case.name] = failure
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+        for case, call in as_done(calls):
+            failure = call.exception()
+            if failure is None:
+                write_text(_path(folder, kind, case), call.result().to_json())
+                bar.advance(case.name)
+            else:
+                failures[case.name] = failure
     for name, failure in failures.items():
         failure.add_note(f"in {name}; without an answer: {', '.join(failures)}")
         raise failure

@@ -1,13 +1,10 @@
 """`groundwalk concealed score`: open the sealed truth and count what was right."""
 
 import json
-import multiprocessing
-import os
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import tyro
 
@@ -28,12 +25,13 @@ from experiments.concealed.scoring.truth import (
     read_truth,
 )
 from experiments.reports.origin import Origin
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import PROVENANCE, RunFolder, provenance
+from experiments.runs.options import REPEATABLE, check_at_least
+from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
 from experiments.runs.repeat_command import repeat_command
-from groundwalk.errors import BadValueError
 from groundwalk.files import write_text
 
 VERB = "concealed-score"
@@ -54,15 +52,14 @@ class ConcealedScore:
       threads: processes that fit the true structures; 0 for one per core.
     """
 
+    if_interrupted: ClassVar[str] = REPEATABLE
+
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse fewer threads than none."""
-        if self.threads < 0:
-            raise BadValueError(
-                f"threads is {self.threads}; it must be 0 (one per core) or more"
-            )
+        """Refuse a negative number of threads."""
+        check_at_least(self, threads=0)
 
 
 def main(config: ConcealedScore) -> None:
@@ -154,19 +151,17 @@ def consult_all(
     missing = [case for case in asked if case.name not in oracles]
     if not missing:
         return oracles
-    workers = min(threads or os.cpu_count() or 1, len(missing))
-    context = multiprocessing.get_context("spawn")
     with (
         progress("true structures", len(asked), len(oracles)) as task,
-        ProcessPoolExecutor(workers, mp_context=context) as pool,
+        process_pool(threads, len(missing)) as pool,
     ):
-        futures = {
-            pool.submit(_consult, folder, case, _effects(answers, case.name)): case.name
+        calls = {
+            case.name: pool.submit(_consult, folder, case, _effects(answers, case.name))
             for case in missing
         }
-        for future in as_completed(futures):
-            oracles[futures[future]] = future.result()
-            task.advance(oracles[futures[future]].level)
+        for name, call in as_done(calls):
+            oracles[name] = call.result()
+            task.advance(oracles[name].level)
     return oracles
 
 

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from experiments.reports.intervals import wilson
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
+from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 
 TITLE = "Which other humanoids walk 5 s after a short search?"

@@ -10,8 +10,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Self, TypeVar, get_args
 
-from experiments.runs.repeat_command import repeat_command
 from experiments.runs.options import RunOptions, options_of
+from experiments.runs.repeat_command import repeat_command
 from groundwalk import __version__
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_bytes, write_text
@@ -130,6 +130,22 @@ def check_free(path: Path | None) -> None:
             f"{path} exists already: choose another --out, or continue it with "
             f"--resume {path}"
         )
+
+
+def check_new(path: Path, suffix: str = "") -> None:
+    """Refuse a path at which no new file can be made.
+
+    Args:
+      path: as given with --out.
+      suffix: what its name must end with.
+
+    Raises:
+      BadValueError: there is something already, or the name ends otherwise.
+    """
+    if path.exists():
+        raise BadValueError(f"{path} exists already: choose another --out")
+    if not path.name.endswith(suffix):
+        raise BadValueError(f"{path} must end with {suffix}")
 
 
 def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:

@@ -1,23 +1,29 @@
-"""The options that all runs share which can be resumed."""
+"""Options that several verbs share, and their check."""
 
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from groundwalk.errors import BadValueError
+
+RESUMABLE = "; --resume DIR continues the run"
+REPEATABLE = "; the same command continues where this one stopped"
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions:
-    """What every such run can be told; a verb's configuration adds its own options.
+    """Options of every verb whose runs can be resumed; each verb adds its own.
 
     Attributes:
       seed: every random number follows from it.
-      out: the run's folder; a new one under runs/ by default.
-      resume: continue the run of this folder.
+      out: folder of the run; a new one under runs/ by default.
+      resume: continue the run of this folder, with its options.
       json: print the result as JSON.
     """
+
+    if_interrupted: ClassVar[str] = RESUMABLE
+    """What the command line says after "interrupted"."""
 
     seed: int = 1
     out: Path | None = None
@@ -26,10 +32,28 @@ class RunOptions:
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
-        if self.seed < 0:
-            raise BadValueError(f"seed is {self.seed}; it must not be negative")
+        check_at_least(self, seed=0)
+
+
+def check_at_least(options: Any, **least: float) -> None:
+    """Refuse options that are too small, or not a number.
+
+    Args:
+      options: the options, a dataclass; None is allowed for any of them.
+      **least: the smallest value that is allowed, by the option's name.
+
+    Raises:
+      BadValueError: an option is smaller, or NaN.
+
+    Example:
+      >>> check_at_least(RunOptions(seed=3), seed=0)
+    """
+    for name, bound in least.items():
+        value = getattr(options, name)
+        if value is not None and not value >= bound:
+            raise BadValueError(f"{name} is {value}; it must be at least {bound:g}")
 
 
 def options_of(config: Any) -> list["dataclasses.Field[Any]"]:
-    """The fields of a configuration: its own, and then those of `RunOptions`."""
+    """The fields of a configuration: its own first, then those of `RunOptions`."""
     return sorted(dataclasses.fields(config), key=lambda field: bool(field.kw_only))

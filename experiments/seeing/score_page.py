@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from experiments.reports.intervals import wilson
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
-from experiments.reports.score_table import Scores
+from experiments.reports.statistics import wilson
+from experiments.reports.tables import Scores
 from experiments.runs.folder import RESULT, RunFolder
 from experiments.seeing.run_pictures import SEARCH_PICTURE, WALK_PICTURE
 from walk_engine import PARAMETERS

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from experiments.reports.intervals import wilson
+from experiments.reports.statistics import half_fall, wilson
 from experiments.stress.families import FAMILIES, FLAT
-from experiments.stress.half_fall import half_fall
 from experiments.stress.walks import Trial
 
 Cell = Mapping[str, Any]

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.command_line import run_verb
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.runs.options import RunOptions
@@ -67,7 +66,8 @@ def main(config: TransferCliff) -> None:
         print_json(result)
     else:
         print_table(*returns_table(rows))
-        print(*claim_lines(claims), f"everything else is in {folder.path}", sep="\n")
+        print(*claim_lines(claims), sep="\n")
+        print_folder(folder.path)
 
 
 def _compare_all(config: TransferCliff, folder: RunFolder) -> list[Row]:

@@ -10,11 +10,10 @@ import worlds
 from experiments.command_line import run_verb
 from experiments.grounded_walks.courses import Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
-from experiments.runs.options import RunOptions
+from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
 from experiments.transfer.nao_studies.figure import FIGURE, draw_cells
 from experiments.transfer.nao_studies.page import (
@@ -96,11 +95,7 @@ class TransferNao(RunOptions):
             check_correction(robot, worlds.kind("sim").options, self.sim)
         check_search(self.population, self.sigma)
         check_search(self.real_population, self.sigma)
-        for name, least in SMALLEST.items():
-            if getattr(self, name) < least:
-                raise BadValueError(
-                    f"{name} is {getattr(self, name)}; give at least {least}"
-                )
+        check_at_least(self, **SMALLEST)
         super().__post_init__()
 
     @property
@@ -152,7 +147,7 @@ def main(config: TransferNao) -> None:
         print_json({CELLS: study.cells})
     else:
         print_table(HEADINGS, table_of(study.cells))
-        print(f"everything else is in {folder.path}")
+        print_folder(folder.path)
 
 
 def _write(

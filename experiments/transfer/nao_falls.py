@@ -13,8 +13,7 @@ from experiments.grounded_walks.data import GaitCloud, walk
 from experiments.grounded_walks.methods import GROUNDINGS, WalkModels
 from experiments.grounded_walks.records import record_real, record_walks
 from experiments.grounded_walks.sim import ROBOT, walk_in_sim
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, open_run
 from experiments.runs.options import RunOptions
@@ -86,7 +85,7 @@ def main(config: TransferNaoFalls) -> None:
         print_json(folder.read_json(RESULT))
     else:
         print_table(HEADINGS, table_of(rows))
-        print(f"everything else is in {folder.path}")
+        print_folder(folder.path)
 
 
 def _stages(

@@ -8,15 +8,13 @@ import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.reports.report import markdown_table
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.folder import RESULT, open_run
-from experiments.runs.options import RunOptions
+from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.toy_mdps import TOYS, Toy
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError
 from sgat.tabular.grounding import grounded_sim
 from sgat.tabular.mdp import FiniteMdp
 from sgat.tabular.models import counted_forward_model
@@ -53,8 +51,7 @@ class TransferToy(RunOptions):
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
-        if self.episodes < 1:
-            raise BadValueError(f"episodes is {self.episodes}; it must be positive")
+        check_at_least(self, episodes=1)
         super().__post_init__()
 
 
@@ -77,7 +74,7 @@ def main(config: TransferToy) -> None:
         print_json(result)
     else:
         print_table(COLUMNS, rows)
-        print(f"everything else is in {folder.path}")
+        print_folder(folder.path)
 
 
 def _answer(toys: Mapping[str, Any]) -> str:

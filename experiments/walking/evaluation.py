@@ -11,6 +11,7 @@ import numpy as np
 
 import worlds
 from experiments.runs.folder import RECORDINGS, RunFolder
+from experiments.runs.options import check_at_least
 from experiments.runs.progress import progress
 from experiments.walking.recorder import Recorder, servo_gains
 from experiments.walking.sims import make_sim
@@ -76,10 +77,7 @@ class Study:
         """Refuse unknown worlds and terrains, and no trials."""
         worlds.kind(self.world)
         parse(self.terrain)
-        if self.trials < 1:
-            raise BadValueError(f"trials is {self.trials}; it must be at least 1")
-        if self.threads < 0:
-            raise BadValueError(f"threads is {self.threads}; it must not be negative")
+        check_at_least(self, trials=1, threads=0)
         if self.correction is not None and self.world != "sim":
             raise BadValueError(f"only the sim can be corrected, not {self.world!r}")
         if self.hidden and self.world != "real":

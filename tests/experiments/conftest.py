@@ -5,6 +5,7 @@ from functools import partial
 
 import pytest
 
+from experiments.runs import processes
 from experiments.walking.trials import TrialRules
 
 SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
@@ -14,17 +15,10 @@ TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
 
 @pytest.fixture
 def in_this_process(monkeypatch):
-    """Function: let a module do its work here, not in processes of their own.
-
-    Those take longer to begin than small work takes.
-    """
-
-    def patched(module):
-        monkeypatch.setattr(
-            module, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
-        )
-
-    return patched
+    """Calls of `process_pool` are computed here: processes take seconds to start."""
+    monkeypatch.setattr(
+        processes, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
+    )
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from experiments import doctor
-from experiments.doctor import DoctorConfig, main, print_lines
+from experiments.doctor import DoctorConfig, main, print_findings
 from experiments.runs import doctor_checks
 from experiments.runs.doctor_checks import (
     Finding,
@@ -170,11 +170,11 @@ def test_exit_status(monkeypatch, capsys, findings, status):
 
 
 def test_plain_lines(capsys):
-    print_lines([FINE, MISSING])
-    fine, missing = capsys.readouterr().out.splitlines()
+    print_findings([FINE, MISSING])
+    _, fine, missing = capsys.readouterr().out.splitlines()
     assert fine.split() == ["ok", "numpy", "2.4.6"]
     assert missing.startswith("fail")
-    assert missing.endswith("not installed -> pip install mujoco==4.0.0")
+    assert missing.endswith("not installed  pip install mujoco==4.0.0")
 
 
 def test_a_terminal_gets_a_table_with_the_same_texts(monkeypatch, capsys):
@@ -218,4 +218,4 @@ def test_this_very_machine_works(monkeypatch, capsys):
     status = main(DoctorConfig())
     out = capsys.readouterr().out
     assert status == 0, out
-    assert len(out.splitlines()) == len(required) + 5
+    assert len(out.splitlines()) == len(required) + 6

@@ -13,7 +13,7 @@ import numpy as np
 
 from experiments.concealed.scoring.marks import NAMED_KINDS, Mark, by_kind
 from experiments.concealed.size_by_information import LEVELS
-from experiments.reports.intervals import wilson
+from experiments.reports.statistics import wilson
 
 Figure = dict[str, float | int | None]
 Statistic = Callable[[Sequence[Mark]], float]
@@ -151,7 +151,11 @@ def _mean(marks: Sequence[Mark], name: str, rng: np.random.Generator) -> Figure:
 def _bootstrap(
     marks: Sequence[Mark], statistic: Statistic, rng: np.random.Generator
 ) -> Figure:
-    """A statistic of cases, and its 2.5 % and 97.5 % quantiles over resampled cases."""
+    """A statistic of cases, and its 2.5 % and 97.5 % quantiles over resampled cases.
+
+    `scipy.stats.bootstrap` draws its resamples in another order, so that all published
+    intervals would change; it also needs an array, and these cases are objects.
+    """
     n = len(marks)
     if not n:
         return {"value": None, "n": 0, "low": None, "high": None}

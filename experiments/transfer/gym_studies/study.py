@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from experiments.runs.options import check_at_least
 from experiments.transfer.gym_studies.environments import Domain
 from experiments.transfer.gym_studies.grounding import GroundingConfig, ground
 from experiments.transfer.gym_studies.training import (
@@ -83,10 +84,7 @@ class GymStudy:
                 raise BadValueError(
                     f"{name} is {getattr(self, name)}; a standard error takes 2"
                 )
-        if self.timesteps < 1 or self.seed < 0:
-            raise BadValueError(
-                f"timesteps is {self.timesteps}, seed {self.seed}; give at least 1, 0"
-            )
+        check_at_least(self, timesteps=1, seed=0)
         if not self.noises or not all(0 <= noise < np.inf for noise in self.noises):
             raise BadValueError(f"noises is {self.noises}; give values from 0 up")
         for kind, given, known in (

@@ -1,16 +1,14 @@
 """What the Gymnasium studies share: their options, their run, and its resuming."""
 
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
-from multiprocessing import get_context
 from typing import Any, ClassVar
 
-from experiments.reports.score_table import print_json
-from experiments.reports.text_table import print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
-from experiments.runs.options import RunOptions
+from experiments.runs.options import RunOptions, check_at_least
+from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
 from experiments.transfer.claims import claim_lines
 from experiments.transfer.gym_studies.environments import Domain
@@ -20,7 +18,6 @@ from experiments.transfer.gym_studies.page import write_gym_page
 from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
 from experiments.transfer.gym_studies.sizes import Size, SizeName
 from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, Job, do_job
-from groundwalk.errors import BadValueError
 
 
 @dataclass(frozen=True)
@@ -56,8 +53,7 @@ class TransferGym(RunOptions):
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
         self.study()
-        if self.threads < 1:
-            raise BadValueError(f"threads is {self.threads}; it must be at least 1")
+        check_at_least(self, threads=1)
         super().__post_init__()
 
     def study(self) -> GymStudy:
@@ -107,7 +103,8 @@ def run_study(verb: str, title: str, figure: str, config: TransferGym) -> None:
         print_json(result)
     else:
         print_table(*returns_table(rows, "deterministic"))
-        print(*claim_lines(claims), f"everything else is in {folder.path}", sep="\n")
+        print(*claim_lines(claims), sep="\n")
+        print_folder(folder.path)
 
 
 def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
@@ -117,21 +114,17 @@ def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
     done = sum(folder.has(job.file) for job in every)
     with (
         progress("trainings and trials", len(every), done=done) as bar,
-        ProcessPoolExecutor(threads, mp_context=get_context("spawn")) as pool,
+        process_pool(threads) as pool,
     ):
         for stage in stages:
-            missing = {
-                pool.submit(do_job, study, folder.path, job): job
+            calls = {
+                job: pool.submit(do_job, study, folder.path, job)
                 for job in stage
                 if not folder.has(job.file)
             }
-            try:
-                for future in as_completed(missing):
-                    _keep(folder, missing[future], future.result())
-                    bar.advance()
-            except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                raise
+            for job, call in as_done(calls):
+                _keep(folder, job, call.result())
+                bar.advance()
     return [folder.read_json(job.file) for job in stages[-1]]
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from experiments.grounded_walks.groundings_words import UNEVEN_MEANS
 from experiments.grounded_walks.methods import ENSEMBLE, GROUNDINGS, SGAT, UNEVEN
-from experiments.reports.intervals import NORMAL_95
 from experiments.reports.report import markdown_table
+from experiments.reports.statistics import NORMAL_95
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.falls_figure import FIGURE

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from experiments.reports.figure_file import write_figure
-from experiments.reports.intervals import wilson
+from experiments.reports.statistics import wilson
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

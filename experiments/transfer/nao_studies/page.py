@@ -9,8 +9,8 @@ from experiments.grounded_walks.groundings_words import UNEVEN_MEANS
 from experiments.grounded_walks.methods import GAT, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S, RATED
 from experiments.grounded_walks.step import LUMPS_MARGIN
-from experiments.reports.intervals import wilson
 from experiments.reports.report import markdown_table
+from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.figure import FIGURE

@@ -1,6 +1,7 @@
 import hashlib
 import json
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from experiments.concealed import make as concealed_make
 from experiments.concealed.draw import CASE_KINDS, PLANTS, CaseSort
 from experiments.concealed.make import ConcealedMake, main
 from experiments.concealed.motion import CaseMotion
+from experiments.runs import processes
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from worlds import read_recording
 from worlds.hidden.effects import KINDS
@@ -24,7 +26,12 @@ def pendulums(monkeypatch):
 
 
 def make(folder, cases=2, seed=4):
-    main(ConcealedMake(folder=folder, cases=cases, seed=seed, threads=1))
+    """Make a set in this process, with what a test has changed in it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            processes, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
+        )
+        main(ConcealedMake(folder=folder, cases=cases, seed=seed, threads=1))
     return (folder / "sealed.sha256").read_text().split()[0]
 
 

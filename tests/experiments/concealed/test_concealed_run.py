@@ -54,7 +54,6 @@ def test_every_case_gets_its_own_answer(folder):
 
 
 def test_an_answer_that_is_there_is_kept(folder, in_this_process):
-    in_this_process(concealed_run)
     answer_all(folder, ANSWERS, noted, seed=5, threads=1)
     (folder / ANSWERS / "case_001.json").unlink()
     answer_all(folder, ANSWERS, noted, seed=6, threads=1)
@@ -70,7 +69,6 @@ def test_a_failure_is_raised_and_loses_no_answer(folder):
 
 def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkeypatch):
     """From what a diagnosis learns from; what is kept for its test stays unseen."""
-    in_this_process(concealed_run)
     traces = [made_up_trace(name) for name in "abcdef"]
     monkeypatch.setattr(concealed_run, "read_case", lambda case: (None, traces, []))
     seen = []
@@ -96,7 +94,6 @@ def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkey
 def test_code_is_not_noted_beside_answers_of_unknown_code(
     folder, in_this_process, monkeypatch, left
 ):
-    in_this_process(concealed_run)
     monkeypatch.setattr(concealed_run, "diagnosed", noted)
     answer_all(folder, ANSWERS, noted, seed=5, threads=1)
     for path in list((folder / ANSWERS).iterdir())[:left]:
@@ -107,7 +104,6 @@ def test_code_is_not_noted_beside_answers_of_unknown_code(
 
 
 def test_other_code_that_goes_on_is_noted_too(folder, in_this_process, monkeypatch):
-    in_this_process(concealed_run)
     monkeypatch.setattr(concealed_run, "diagnosed", noted)
     main(ConcealedRun(folder, threads=1))
     path = folder / ANSWERS / "provenance.json"
@@ -125,5 +121,5 @@ def test_a_folder_without_cases_is_refused(tmp_path):
 
 
 def test_a_negative_seed_is_refused(folder):
-    with pytest.raises(BadValueError, match="negative"):
+    with pytest.raises(BadValueError, match="seed is -1"):
         ConcealedRun(folder, seed=-1)

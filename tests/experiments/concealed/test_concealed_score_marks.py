@@ -20,7 +20,7 @@ from made_up_scores import (
 from diagnosis.corrected.effects_json import EffectValues
 from diagnosis.verdict.verdict import EffectAt, Estimate, Fit, Found, Verdict
 from experiments.concealed.scoring.oracle import Oracle
-from experiments.reports.intervals import wilson
+from experiments.reports.statistics import wilson
 
 # Names
 

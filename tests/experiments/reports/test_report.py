@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from html_page import Page
 from made_up_runs import history
-from test_diagnosis_report import Page
 
 from experiments.diagnose import Diagnose
 from experiments.evaluate import Evaluate

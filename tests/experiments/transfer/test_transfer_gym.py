@@ -7,7 +7,6 @@ from matplotlib.image import imread
 
 from experiments.transfer import half_cheetah as transfer_half_cheetah
 from experiments.transfer import inverted_pendulum as transfer_inverted_pendulum
-from experiments.transfer.gym_studies import verb as transfer_gym
 from experiments.transfer.gym_studies.figure import returns_figure
 from experiments.transfer.gym_studies.rows import check_claims, rows_of
 from experiments.transfer.gym_studies.study import METHODS
@@ -60,7 +59,6 @@ def test_a_smoke_run_tries_every_method(pendulum):
 
 @pytest.mark.slow
 def test_resuming_computes_only_what_is_missing(pendulum, in_this_process):
-    in_this_process(transfer_gym)
     before = result_of(pendulum)
     lost, kept = (
         pendulum / f"cells/noisy-real_{m}_0.5_s1.json" for m in ("sgat", "gat")
@@ -77,7 +75,6 @@ def test_resuming_computes_only_what_is_missing(pendulum, in_this_process):
 
 @pytest.mark.slow
 def test_the_cheetah_has_both_settings(tmp_path, capsys, in_this_process):
-    in_this_process(transfer_gym)
     options = TransferHalfCheetah(
         size="smoke",
         episodes=2,

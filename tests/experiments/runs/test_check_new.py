@@ -1,6 +1,6 @@
 import pytest
 
-from experiments.runs.new_file import check_new
+from experiments.runs.folder import check_new
 from groundwalk.errors import BadValueError
 
 

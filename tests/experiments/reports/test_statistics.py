@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from experiments.stress.half_fall import half_fall
+from experiments.reports.statistics import half_fall
 from groundwalk.errors import BadValueError
 
 LADDER = np.geomspace(0.002, 0.032, 5)

@@ -1,0 +1,83 @@
+"""Tables and results on standard output: coloured on a terminal, plain in a pipe."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+Scores = Mapping[str, Mapping[str, Mapping[str, Any]]]
+"""The fields of a `Score` by world ("sim", "real") and by the name of the gait."""
+
+SCORE_HEADINGS = ("world", "gait", "speed [cm/s]", "falls")
+"""Headings of `score_rows`."""
+
+
+def print_table(
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    colours: Sequence[str] = (),
+) -> None:
+    """Print a table.
+
+    In a file or a pipe (and without the package rich) its lines are never wrapped.
+
+    Args:
+      columns: the headings. On a terminal only the last column is wrapped.
+      rows: the cells, one text for each column.
+      colours: a colour of rich for the first cell of each row; none by default.
+
+    Example:
+      >>> print_table(["robot", "joints"], [["nao", "22"]])
+      robot  joints
+      nao    22
+    """
+    try:
+        from rich.console import Console
+        from rich.table import Column, Table
+        from rich.text import Text
+    except ImportError:
+        plain = True
+    else:
+        plain = not sys.stdout.isatty()
+    if plain:
+        print(*_aligned([columns, *rows]), sep="\n")
+        return
+    last = len(columns) - 1
+    headings = [
+        Column(Text(text), no_wrap=column < last) for column, text in enumerate(columns)
+    ]
+    table = Table(*headings, box=None, pad_edge=False)
+    for i, (first, *others) in enumerate(rows):
+        coloured = Text(first, style=colours[i] if colours else "")
+        table.add_row(coloured, *map(Text, others))
+    Console().print(table)
+
+
+def score_rows(scores: Scores) -> list[tuple[str, str, str, str]]:
+    """One row of texts for each world and gait, as `SCORE_HEADINGS` has them."""
+    return [
+        (
+            world,
+            gait,
+            f"{score['speed_cm_s']:.1f} ± {score['speed_std']:.1f}",
+            f"{score['falls']}/{score['trials']}",
+        )
+        for world, gaits in scores.items()
+        for gait, score in gaits.items()
+    ]
+
+
+def print_json(result: Mapping[str, Any]) -> None:
+    """Print a result for programs: nothing else goes to standard output."""
+    print(json.dumps(result, indent=1))
+
+
+def print_folder(folder: Path) -> None:
+    """Tell where a run has written its pages, pictures and recordings."""
+    print(f"Results written to {folder}")
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
