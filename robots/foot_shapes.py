@@ -9,7 +9,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError
 from robots.adaptation import SoleBox
 from robots.description import Foot
-from robots.mesh_vertices import mesh_vertices
+from robots.mesh_files import read_mesh
 from robots.package_paths import mesh_path
 from robots.posed_tree import PosedTree
 from robots.urdf_tree import UrdfShape
@@ -63,7 +63,7 @@ def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
     values = shape.values
     if shape.kind == "mesh":
         path = mesh_path(posed.tree.path, values["filename"])
-        return mesh_vertices(path) * _numbers(values.get("scale", "1 1 1"))
+        return read_mesh(path).vertices * _numbers(values.get("scale", "1 1 1"))
     if shape.kind == "box":
         return _CORNERS * _numbers(values["size"]) / 2
     radius = float(values["radius"])

@@ -33,7 +33,7 @@ from worlds.recordings.columns import SUPPORT
 from worlds.rerun_files.balance import support_look, write_balance
 from worlds.rerun_files.columns import ColumnLog
 from worlds.rerun_files.layout import blueprint
-from worlds.rerun_files.link_meshes import link_mesh
+from worlds.rerun_files.meshes import link_mesh
 from worlds.scenes import colours
 from worlds.scenes.curves import Curve, support_changes, traces
 from worlds.scenes.scene import SIDES, Scene, check_beside, content_id

@@ -17,8 +17,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Link
 from terrain import Heightfield
-from worlds.rerun_files.capsule_mesh import capsule_mesh
-from worlds.rerun_files.link_meshes import LinkMesh, link_mesh
+from worlds.rerun_files.meshes import LinkMesh, capsule_mesh, link_mesh
 from worlds.rerun_files.search_history import SearchWalk
 from worlds.scenes import colours
 from worlds.scenes.balance import balance

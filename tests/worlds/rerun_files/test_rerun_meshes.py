@@ -4,15 +4,15 @@ import struct
 
 import numpy as np
 import pytest
+import trimesh
 from made_up_urdf import link, two_legged
 from rrd_files import components, read, rerun
 
 import robots
-from robots.mesh_vertices import Surface
 from worlds.recordings.metadata import RecordingMetadata
 from worlds.recordings.recording import Recording
-from worlds.rerun_files.link_meshes import CELL_M, coarse, link_mesh
 from worlds.rerun_files.log import write_rrd
+from worlds.rerun_files.meshes import CELL_M, coarse, link_mesh
 from worlds.scenes.colours import accent, pale
 from worlds.scenes.scene import Scene
 
@@ -53,6 +53,10 @@ def written(path, robot):
     recording = Recording(columns, RecordingMetadata("made", "fixed", "a test"))
     write_rrd(path, [Scene("sim", recording, robot)])
     return path
+
+
+def mesh_of(points_m, triangles):
+    return trimesh.Trimesh(points_m, triangles, process=False)
 
 
 def rows(points):
@@ -121,17 +125,17 @@ def test_coarse_drops_what_is_smaller_than_a_cell_and_moves_no_point():
     points_m = CORNERS[TETRAHEDRON].reshape(-1, 3)
     small_m = 0.5 + 0.1 * CELL_M + CELL_M * points_m
     triangles = np.arange(24).reshape(-1, 3)
-    found = coarse(Surface(np.vstack([points_m, small_m]), triangles))
-    kept = found.points_m[found.triangles]
+    found = coarse(mesh_of(np.vstack([points_m, small_m]), triangles))
+    kept = found.vertices[found.faces]
     np.testing.assert_array_equal(kept, CORNERS[TETRAHEDRON])
-    fine = coarse(Surface(np.vstack([points_m, small_m]), triangles), CELL_M / 1e4)
-    assert fine.triangles.shape == (8, 3)
-    assert fine.points_m.shape == (8, 3)
+    fine = coarse(mesh_of(np.vstack([points_m, small_m]), triangles), CELL_M / 1e4)
+    assert fine.faces.shape == (8, 3)
+    assert fine.vertices.shape == (8, 3)
 
 
 def test_coarse_keeps_one_of_equal_triangles_and_takes_nothing():
     twice = np.array([[0, 1, 2], [2, 1, 0], [1, 2, 3]])
-    found = coarse(Surface(CORNERS, twice))
-    assert len(found.triangles) == 2
-    nothing = coarse(Surface(np.empty((0, 3)), np.empty((0, 3), np.intp)))
-    assert nothing.triangles.shape == (0, 3)
+    found = coarse(mesh_of(CORNERS, twice))
+    assert len(found.faces) == 2
+    nothing = coarse(mesh_of(np.empty((0, 3)), np.empty((0, 3), np.intp)))
+    assert nothing.faces.shape == (0, 3)

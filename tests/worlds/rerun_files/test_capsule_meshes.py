@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from robots.description import Capsule
-from worlds.rerun_files.capsule_mesh import capsule_mesh
+from worlds.rerun_files.meshes import capsule_mesh
 from worlds.scenes.colours import DARK
 
 ACCENT = (1, 2, 3)

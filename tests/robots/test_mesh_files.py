@@ -1,4 +1,4 @@
-"""Points of meshes, from files written here by hand."""
+"""Mesh files, written here by hand."""
 
 import struct
 
@@ -6,9 +6,19 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadModelError
-from robots.mesh_vertices import mesh_surface, mesh_vertices
+from robots.mesh_files import read_mesh
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 3]])
+TEXT_STL = """solid made by hand
+facet normal 0 0 1
+outer loop
+  vertex {}
+  vertex {}
+  vertex {}
+endloop
+endfacet
+endsolid
+"""
 DAE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema">
 <asset><unit meter="0.01"/>{up}</asset>
 <library_geometries><geometry id="g"><mesh>
@@ -21,20 +31,26 @@ DAE = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema">
 </COLLADA>"""
 
 
+def turned(faces):
+    """Triangles in any order, each from its least corner on, the way round kept."""
+    faces = [tuple(map(int, face)) for face in faces]
+    return sorted(min(face[k:] + face[:k] for k in range(3)) for face in faces)
+
+
 def test_binary_stl(tmp_path):
     facet = struct.pack("<12fH", 0, 0, 1, *CORNERS.ravel(), 0)
     path = tmp_path / "one.STL"
     path.write_bytes(b"solid".ljust(80) + struct.pack("<I", 1) + facet)
-    np.testing.assert_allclose(mesh_vertices(path), CORNERS)
+    np.testing.assert_allclose(read_mesh(path).vertices, CORNERS)
 
 
 def test_text_stl_and_obj(tmp_path):
     rows = [" ".join(map(str, corner)) for corner in CORNERS]
     stl, obj = tmp_path / "one.stl", tmp_path / "one.obj"
-    stl.write_text("solid\n" + "\n".join(f"  vertex {row}" for row in rows))
+    stl.write_text(TEXT_STL.format(*rows))
     obj.write_text("\n".join([*(f"v {row}" for row in rows), "vn 0 0 1", "f 1 2 3"]))
-    np.testing.assert_allclose(mesh_vertices(stl), CORNERS)
-    np.testing.assert_allclose(mesh_vertices(obj), CORNERS)
+    np.testing.assert_allclose(read_mesh(stl).vertices, CORNERS)
+    np.testing.assert_allclose(read_mesh(obj).vertices, CORNERS)
 
 
 def test_collada_with_its_scene(tmp_path):
@@ -42,7 +58,7 @@ def test_collada_with_its_scene(tmp_path):
     path = tmp_path / "one.dae"
     path.write_text(DAE.format(up="<up_axis>Z_UP</up_axis>"))
     expected = [[0.1, 0, 0], [0.1, 0.02, 0], [0.06, 0, 0.06]]
-    np.testing.assert_allclose(mesh_vertices(path), expected, atol=1e-12)
+    np.testing.assert_allclose(read_mesh(path).vertices, expected, atol=1e-12)
 
 
 def test_collada_whose_y_is_up(tmp_path):
@@ -51,7 +67,7 @@ def test_collada_whose_y_is_up(tmp_path):
     expected = [[0.1, 0, 0], [0.1, 0, 0.02], [0.06, -0.06, 0]]
     for up in ("", "<up_axis>Y_UP</up_axis>"):
         path.write_text(DAE.format(up=up))
-        np.testing.assert_allclose(mesh_vertices(path), expected, atol=1e-12)
+        np.testing.assert_allclose(read_mesh(path).vertices, expected, atol=1e-12)
 
 
 FACES = {
@@ -69,10 +85,10 @@ def test_faces_of_collada(tmp_path, kind):
     path = tmp_path / "one.dae"
     path.write_text(DAE.format(up="").replace("</mesh>", faces))
     expected = [[0, 1, 2], [2, 1, 0], [2, 0, 2]]
-    np.testing.assert_array_equal(mesh_surface(path).triangles, expected)
+    assert turned(read_mesh(path).faces) == turned(expected)
     path.write_text(path.read_text().replace("<p>0", "<p>3"))
     with pytest.raises(BadModelError, match="lacks"):
-        mesh_surface(path)
+        read_mesh(path)
 
 
 def test_a_mirror_in_the_scene_turns_faces_round(tmp_path):
@@ -80,7 +96,7 @@ def test_a_mirror_in_the_scene_turns_faces_round(tmp_path):
     path = tmp_path / "one.dae"
     text = DAE.format(up="").replace("</mesh>", faces)
     path.write_text(text.replace("<scale>2 2 2", "<scale>2 2 -2"))
-    np.testing.assert_array_equal(mesh_surface(path).triangles, [[2, 1, 0]])
+    assert turned(read_mesh(path).faces) == turned([[2, 1, 0]])
 
 
 def test_faces_of_obj_and_stl(tmp_path):
@@ -89,12 +105,12 @@ def test_faces_of_obj_and_stl(tmp_path):
     points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
     obj.write_text(points + "f 1/7/8 2/7/8 3 4\nf -1 -2 -3\nv 1 1 1\n")
     expected = [[0, 1, 2], [0, 2, 3], [3, 2, 1]]
-    np.testing.assert_array_equal(mesh_surface(obj).triangles, expected)
-    stl.write_text("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n")
-    np.testing.assert_array_equal(mesh_surface(stl).triangles, [[0, 1, 2]])
+    assert turned(read_mesh(obj).faces) == turned(expected)
+    stl.write_text(TEXT_STL.format("0 0 0", "1 0 0", "0 1 0"))
+    assert turned(read_mesh(stl).faces) == turned([[0, 1, 2]])
     obj.write_text(points + "f 1 2 5\n")
     with pytest.raises(BadModelError, match="lacks"):
-        mesh_surface(obj)
+        read_mesh(obj)
 
 
 @pytest.mark.parametrize(
@@ -105,4 +121,4 @@ def test_what_is_no_mesh(tmp_path, name, content):
     path = tmp_path / name
     path.write_text(content)
     with pytest.raises(BadModelError, match=name):
-        mesh_vertices(path)
+        read_mesh(path)

@@ -1,0 +1,155 @@
+"""A link's look as triangles: its mesh files, or the capsules of its description.
+
+A viewer can repeat a mesh at many poses, which Rerun 0.41 cannot do with capsules: it
+draws the first capsule at the first pose and the second one at the second.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import Rotation
+
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.errors import BadModelError
+from robots.description import Capsule, Link, VisualMesh
+from robots.mesh_files import joined, read_mesh
+from worlds.scenes.colours import Colour
+from worlds.scenes.shapes import Mesh, capsules
+
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+CELL_M = 0.003
+"""Details smaller than this [m] are not drawn: mesh files show single screws, and
+would make a .rrd file megabytes larger."""
+
+_CAPSULE_SECTIONS = (6, 16)
+"""Sections of a capsule from pole to pole, and around its axis."""
+
+
+class LinkMesh(NamedTuple):
+    """Triangles in the frame of a link's joint, in one colour; fields as in Rerun."""
+
+    vertex_positions: FloatArray
+    """(points, 3) [m]."""
+    triangle_indices: IntArray
+    """(triangles, 3)."""
+    vertex_normals: FloatArray
+    """(points, 3) unit vectors; Rerun does not shade without them."""
+    albedo_factor: Colour
+
+
+def link_mesh(link: Link, colour: Colour) -> LinkMesh | None:
+    """All mesh files of a link as one mesh, without details below `CELL_M`.
+
+    Returns:
+      The mesh; None if no file can be read or none has triangles, so that the link's
+      capsules have to be drawn.
+    """
+    found = [mesh for mesh in map(_placed, link.meshes) if mesh is not None]
+    whole = coarse(joined(found))
+    if not len(whole.faces):
+        return None
+    return LinkMesh(*_shaded(whole), colour)
+
+
+def coarse(mesh: "Trimesh", cell_m: float = CELL_M) -> "Trimesh":
+    """Simplify a mesh: all points in one cubic cell become the first one of them.
+
+    Triangles that shrink to a line or a point go, and so does every triangle but one
+    between the same points (vertex clustering: J. Rossignac and P. Borrel,
+    Multi-resolution 3D approximations for rendering complex scenes, 1993). trimesh's
+    own simplification needs one more library, and a closed surface.
+
+    Args:
+      mesh: any triangles; not changed.
+      cell_m: length of a cell's edge [m].
+    """
+    import trimesh
+
+    cells = np.floor(mesh.vertices / cell_m).astype(np.int64)
+    first, cell_of_point = _distinct(cells)
+    faces = cell_of_point[mesh.faces]
+    simple = trimesh.Trimesh(mesh.vertices[first], faces, process=False)
+    corners = np.sort(faces, axis=1)
+    simple.update_faces(
+        (corners[:, 1:] != corners[:, :-1]).all(axis=1) & simple.unique_faces()
+    )
+    return simple
+
+
+def capsule_mesh(shapes: Sequence[Capsule], accent: Colour) -> Mesh:
+    """A link's capsules as one mesh in the frame of its joint.
+
+    Args:
+      shapes: at least one.
+      accent: the robot's own colour; see `shape_colours`.
+    """
+    import trimesh
+
+    found = capsules(shapes, accent)
+    parts, normals = [], []
+    for length, radius, start, quaternion in zip(*found[:4], strict=True):
+        part = trimesh.creation.capsule(length, radius, _CAPSULE_SECTIONS)
+        # trimesh centres a capsule, but `start` is one end of its axis.
+        part.apply_translation([0.0, 0.0, length / 2])
+        on_axis_m = np.clip(part.vertices, 0.0, (0.0, 0.0, length))
+        turn = Rotation.from_quat(quaternion)
+        normals.append(turn.apply((part.vertices - on_axis_m) / radius))
+        parts.append(part.apply_transform(_placement(start, turn)))
+    whole = joined(parts)
+    return Mesh(
+        vertex_positions=whole.vertices,
+        triangle_indices=whole.faces,
+        vertex_normals=np.vstack(normals),
+        vertex_colors=np.repeat(found.colors, list(map(len, normals)), axis=0),
+    )
+
+
+def _shaded(mesh: "Trimesh") -> tuple[FloatArray, IntArray, FloatArray]:
+    """Points, triangles and the points' normals.
+
+    A point where triangles face different sides of a cube around it becomes one point
+    for each side, so that edges stay sharp and round surfaces smooth. trimesh's own
+    `smooth_shade` looks no better and takes three times as long for a whole robot.
+    """
+    area = np.cross(*np.diff(mesh.triangles, axis=1).swapaxes(0, 1))
+    axis = np.abs(area).argmax(axis=1)
+    side = 2 * axis + (np.take_along_axis(area, axis[:, None], axis=1)[:, 0] > 0)
+    point_and_side = np.stack([mesh.faces.ravel(), np.repeat(side, 3)], axis=1)
+    first, point = _distinct(point_and_side)
+    normals = np.zeros((len(first), 3))
+    np.add.at(normals, point, np.repeat(area, 3, axis=0))
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals /= np.where(length > 0, length, 1.0)
+    points_m = mesh.vertices[point_and_side[first, 0]]
+    return points_m, point.reshape(-1, 3), normals
+
+
+def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:
+    """Where each different row stands first, and which of those each row equals."""
+    from trimesh.grouping import unique_rows
+
+    first, which = unique_rows(rows)  # type: ignore[no-untyped-call]  # has no types
+    return first, which
+
+
+def _placed(mesh: VisualMesh) -> "Trimesh | None":
+    """A file's mesh in the joint's frame; None if it cannot be read."""
+    try:
+        read = read_mesh(mesh.path)
+    except BadModelError:
+        return None
+    turn = Rotation.from_quat(mesh.orientation, scalar_first=True)
+    placement = _placement(mesh.position_m, turn)
+    placement[:3, :3] *= mesh.scale
+    return read.apply_transform(placement)
+
+
+def _placement(place_m: npt.ArrayLike, turn: Rotation) -> FloatArray:
+    """(4, 4) of a (3,) place and a rotation."""
+    placement = np.eye(4)
+    placement[:3, :3], placement[:3, 3] = turn.as_matrix(), place_m
+    return placement
