@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from groundwalk.errors import BadValueError
+from groundwalk.json_data import from_plain, to_plain
 from terrain.bounds import Parameter
 from terrain.catalog import configuration
 from terrain.heightfield import Heightfield
@@ -42,11 +42,8 @@ class TerrainSpec:
 
     def to_json(self) -> dict[str, object]:
         """Describe the ground in plain types that JSON knows."""
-        parameters = {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in self.parameters.items()
-        }
-        return {"name": self.name, "parameters": parameters, "seed": self.seed}
+        plain: dict[str, object] = to_plain(self)
+        return plain
 
     @classmethod
     def from_json(cls, data: object) -> "TerrainSpec":
@@ -56,14 +53,4 @@ class TerrainSpec:
           UnknownNameError: there is no such family, or it has no such parameter.
           BadValueError: the data has another shape, or holds an impossible value.
         """
-        if not isinstance(data, Mapping) or set(data) != {"name", "parameters", "seed"}:
-            raise BadValueError(
-                f"a terrain must hold exactly name, parameters and seed, not {data!r}"
-            )
-        name, parameters = data["name"], data["parameters"]
-        if not isinstance(name, str) or not isinstance(parameters, Mapping):
-            raise BadValueError(
-                "a terrain's name must be text and its parameters a table, "
-                f"not {name!r} and {parameters!r}"
-            )
-        return cls(name, parameters, data["seed"])
+        return from_plain(cls, data, "terrain")

@@ -11,9 +11,9 @@ from diagnosis.effects.ground_slope import GroundSlope
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.residuals.predictor import Model
-from diagnosis.verdict.as_json import from_plain, to_plain
 from diagnosis.verdict.verdict import Verdict
 from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
+from groundwalk.json_data import from_plain, parse_object, to_plain
 
 CORRECTED_JSON, DIAGNOSIS_JSON = "corrected.json", "diagnosis.json"
 FORMAT = 1
@@ -122,9 +122,8 @@ def load_correction(source: str | Path, plant: Plant) -> Model:
     """
     path = _file(Path(source))
     try:
-        plain = json.loads(path.read_text())
-        return _correction(plain, plant).model(plant)
-    except (ValueError, BadValueError) as error:
+        return _correction(path.read_text(), plant).model(plant)
+    except (UnicodeDecodeError, BadValueError) as error:
         raise BadModelError(f"{path} is no diagnosis: {error}") from None
     except BadModelError as error:
         raise BadModelError(f"{path}: {error}") from None
@@ -143,17 +142,12 @@ def _file(source: Path) -> Path:
     )
 
 
-def _correction(plain: object, plant: Plant) -> Correction:
-    if not isinstance(plain, dict):
-        raise BadValueError("it must be an object")
+def _correction(text: str, plant: Plant) -> Correction:
+    plain = parse_object(text, "correction", FORMAT)
     if "kind" in plain:
-        verdict = Verdict.from_json(json.dumps(plain))
+        verdict = Verdict.from_json(text)
         return Correction.of_verdict(verdict, plant.name, "fixed")
-    number = plain.pop("format", None)
-    if isinstance(number, bool) or number != FORMAT:
-        raise BadValueError(f"its format is {number!r}; only {FORMAT} is known")
-    correction: Correction = from_plain(Correction, plain, "correction")
-    return correction
+    return from_plain(Correction, plain, "correction")
 
 
 def _sorted(

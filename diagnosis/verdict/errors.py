@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from diagnosis.verdict.as_json import check_number
+from groundwalk.json_data import check_number
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from diagnosis.verdict.as_json import check_number
 from groundwalk.errors import BadValueError
+from groundwalk.json_data import check_number
 
 Course = Literal["always", "burst", "drift"]
 PulseSource = Literal["actuator input", "torque sensor", "position sensor"]

@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from diagnosis.verdict.as_json import check_number, from_plain, to_plain
 from diagnosis.verdict.errors import ChannelFit, Errors, Fit
 from diagnosis.verdict.parts import (
     Amount,
@@ -20,6 +19,7 @@ from diagnosis.verdict.parts import (
     When,
 )
 from groundwalk.errors import BadValueError
+from groundwalk.json_data import check_number, from_plain, parse_object, to_plain
 
 __all__ = [
     "Amount",
@@ -114,17 +114,6 @@ class Verdict:
           BadValueError: it is no JSON, of another format, a key is missing or unknown,
             or a value is wrong.
         """
-        try:
-            plain = json.loads(text)
-        except ValueError as error:
-            raise BadValueError(f"the verdict is no JSON: {error}") from None
-        if not isinstance(plain, dict):
-            raise BadValueError(f"the verdict must be an object, not {plain!r}")
-        found = plain.pop("format", None)
-        if isinstance(found, bool) or found != FORMAT:
-            raise BadValueError(
-                f"the verdict's format is {found!r}; only {FORMAT} is known"
-            )
-        plain.setdefault("pulses", [])  # the first ones had no such key
-        verdict: Verdict = from_plain(cls, plain, "verdict")
-        return verdict
+        plain = parse_object(text, "verdict", FORMAT)
+        plain.setdefault("pulses", [])  # the first verdicts had no such key
+        return from_plain(cls, plain, "verdict")

@@ -8,11 +8,11 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, Self, TypeVar, get_args
+from typing import Any, Self, TypeVar
 
 from experiments.runs.options import RunOptions, options_of
 from experiments.runs.repeat_command import repeat_command
-from groundwalk import __version__
+from groundwalk import __version__, json_data
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_bytes, write_text
 
@@ -171,7 +171,8 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
         given = getattr(config, field.name)
         before = field.default  # of an option that the run's version did not have
         if field.name in stored:
-            before = _revived(stored[field.name], field.type)
+            kind: Any = field.type
+            before = json_data.from_plain(kind, stored[field.name], field.name)
         if given not in (field.default, before):
             raise BadValueError(
                 f"{field.name} cannot change from {before} to {given} when a run is "
@@ -184,20 +185,8 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
 
 def to_plain(config: Any) -> dict[str, Any]:
     """A configuration as values that JSON knows; paths become text."""
-    return {one.name: _plain(getattr(config, one.name)) for one in options_of(config)}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return str(value) if isinstance(value, Path) else value
-
-
-def _revived(value: Any, kind: Any) -> Any:
-    """JSON knows no tuples and no paths."""
-    if isinstance(value, str) and Path in get_args(kind):
-        return Path(value)
-    return tuple(value) if isinstance(value, list) else value
+    plain = json_data.to_plain(config)
+    return {one.name: plain[one.name] for one in options_of(config)}
 
 
 def provenance() -> dict[str, Any]:

@@ -10,6 +10,7 @@ import torch
 
 from groundwalk.errors import BadModelError
 from groundwalk.files import write_bytes
+from groundwalk.json_data import from_plain
 from sgat.models.network_config import NetworkConfig
 from sgat.models.scaled_network import ScaledNetwork
 
@@ -56,7 +57,8 @@ def read_model(
         found = header["format"], header["kind"]
         if found == (_FORMAT, kind):
             network = ScaledNetwork.from_tensors(content["tensors"])
-            return config_type(**header["config"]), network
+            config = from_plain(config_type, header["config"], "config", False)
+            return config, network
     except Exception as error:  # a foreign file fails in any way it likes
         raise BadModelError(f"{path} is no model file, or a damaged one") from error
     raise BadModelError(

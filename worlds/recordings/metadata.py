@@ -2,13 +2,13 @@
 
 import json
 import sys
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from numbers import Real
-from typing import NoReturn, cast
+from typing import cast
 
-from groundwalk.errors import BadRecordingError
-from worlds.recordings.columns import nearest
+from groundwalk.errors import BadRecordingError, BadValueError
+from groundwalk.json_data import from_plain, parse_object, to_plain
 
 FORMAT = 1
 _BASES = ("fixed", "floating")
@@ -38,6 +38,20 @@ class ServoGains:
             object.__setattr__(self, item.name, float(value))
         if self.max_torque == 0.0:
             raise BadRecordingError("servo max_torque must be above 0")
+
+
+@dataclass(frozen=True)
+class _Terrain:
+    """How a recording words what was walked on: enough to make a terrain again."""
+
+    name: str
+    parameters: Mapping[str, object] = field(default_factory=dict)
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse a negative seed."""
+        if self.seed < 0:
+            raise BadValueError(f"seed must be from 0 up, not {self.seed}")
 
 
 @dataclass(frozen=True)
@@ -92,10 +106,9 @@ class RecordingMetadata:
 
     def to_json(self) -> str:
         """The metadata as JSON text; the same metadata gives the same text."""
-        parts = {item.name: getattr(self, item.name) for item in fields(self)}
-        servo = {joint: asdict(gains) for joint, gains in self.servo.items()}
-        parts["servo"] = servo or None
-        known = {key: part for key, part in parts.items() if part is not None}
+        plain = to_plain(self)
+        plain["servo"] = plain["servo"] or None
+        known = {key: part for key, part in plain.items() if part is not None}
         return json.dumps({"format": FORMAT, **known}, sort_keys=True)
 
     @classmethod
@@ -109,62 +122,18 @@ class RecordingMetadata:
           BadRecordingError: it is no JSON, of another format, or a part is missing,
             unknown or of the wrong kind.
         """
-        document = _parse(text)
-        if "format" not in document:
-            raise BadRecordingError(f"metadata has no 'format'; {FORMAT} is known")
-        version = document.pop("format")
-        if isinstance(version, bool) or version != FORMAT:
-            raise BadRecordingError(
-                f"metadata 'format' is {version!r}; only {FORMAT} is known"
-            )
-        parts = {key: value for key, value in document.items() if value is not None}
-        _check_keys("metadata", parts, [item.name for item in fields(cls)], _REQUIRED)
-        parts["servo"] = _servo(parts.get("servo", {}))
-        return cls(**parts)  # type: ignore[arg-type]  # the constructor checks kinds
-
-
-def _parse(text: str | bytes) -> dict[str, object]:
-    def refuse(constant: str) -> NoReturn:
-        raise ValueError(f"{constant} is no number")
-
-    try:
-        document = json.loads(text, parse_constant=refuse)
-    except (ValueError, RecursionError) as error:
-        raise BadRecordingError(f"metadata is not JSON: {error}") from error
-    return _as_object("metadata", document)
+        try:
+            plain = parse_object(text, "metadata", FORMAT)
+            known = {key: value for key, value in plain.items() if value is not None}
+            return from_plain(cls, known, "metadata", complete=False)
+        except BadValueError as error:
+            raise BadRecordingError(str(error)) from None
 
 
 def _as_object(what: str, value: object) -> dict[str, object]:
     if not isinstance(value, Mapping):
         raise BadRecordingError(f"{what} must be a JSON object, not {value!r}")
     return dict(value)
-
-
-def _check_keys(
-    what: str,
-    given: Mapping[str, object],
-    known: Iterable[str],
-    required: Iterable[str],
-) -> None:
-    known = list(known)
-    for key in given:
-        if key not in known:
-            hint = nearest(key, known) or f"; known are {', '.join(known)}"
-            raise BadRecordingError(f"{what} has an unknown key {key!r}{hint}")
-    for key in required:
-        if key not in given:
-            raise BadRecordingError(f"{what} has no {key!r}")
-
-
-def _servo(value: object) -> dict[str, ServoGains]:
-    names = [item.name for item in fields(ServoGains)]
-    servo = {}
-    for joint, gains in _as_object("metadata 'servo'", value).items():
-        what = f"servo of {joint!r}"
-        numbers = _as_object(what, gains)
-        _check_keys(what, numbers, names, names)
-        servo[joint] = ServoGains(**cast("dict[str, float]", numbers))
-    return servo
 
 
 def _check_servo(servo: Mapping[str, ServoGains]) -> None:
@@ -183,13 +152,7 @@ def _json_object(key: str, value: object) -> dict[str, object]:
 
 
 def _check_terrain(terrain: Mapping[str, object]) -> None:
-    what = "metadata 'terrain'"
-    _check_keys(what, terrain, ("name", "parameters", "seed"), ("name",))
-    if not isinstance(terrain["name"], str):
-        raise BadRecordingError(f"{what}: name must be text, not {terrain['name']!r}")
-    _as_object(f"{what}: parameters", terrain.get("parameters", {}))
-    seed = terrain.get("seed", 0)
-    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise BadRecordingError(
-            f"{what}: seed must be an integer from 0 up, not {seed!r}"
-        )
+    try:
+        from_plain(_Terrain, dict(terrain), "metadata.terrain", complete=False)
+    except BadValueError as error:
+        raise BadRecordingError(str(error)) from None

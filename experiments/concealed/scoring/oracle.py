@@ -7,7 +7,7 @@ fits. The log-likelihood by which they beat the nominal model is the case's leve
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from diagnosis.verdict.verdict import Found
 from experiments.concealed.reading import read_case
 from experiments.concealed.scoring.truth import TrueCase
 from experiments.concealed.size_by_information import level_of
+from groundwalk.json_data import from_plain, parse_json, to_plain
 
 
 @dataclass(frozen=True)
@@ -49,14 +50,16 @@ class Oracle:
 
     def to_json(self) -> str:
         """The oracle as JSON."""
-        return json.dumps(asdict(self), indent=1) + "\n"
+        return json.dumps(to_plain(self), indent=1) + "\n"
 
     @classmethod
     def from_json(cls, text: str) -> "Oracle":
-        """Read text that `to_json` has written."""
-        plain = json.loads(text)
-        answered = {name: (key, rms) for name, (key, rms) in plain["answered"].items()}
-        return cls(**{**plain, "answered": answered})
+        """Read what `to_json` has written.
+
+        Raises:
+          BadValueError: it is no JSON, or a key or a value is wrong.
+        """
+        return from_plain(cls, parse_json(text, "oracle"), "oracle")
 
 
 def answer_key(found: Sequence[Found]) -> str:

@@ -1,16 +1,16 @@
 """What was hidden in a set of concealed cases, and what was answered."""
 
 import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from diagnosis.corrected.effects_json import EffectValues
 from diagnosis.verdict.verdict import Verdict
-from experiments.concealed.make import HASH, SEALED, TRUTH
+from experiments.concealed.make import FORMAT, HASH, SEALED, TRUTH
 from experiments.concealed.reading import BASELINE_ANSWERS
 from groundwalk.errors import BadValueError, RunFolderError
+from groundwalk.json_data import from_plain, parse_object
 
 
 @dataclass(frozen=True)
@@ -30,6 +30,30 @@ class TrueCase:
     engine: str
     kind: str
     effects: tuple[EffectValues, ...] = ()
+
+
+@dataclass(frozen=True)
+class _SealedCase:
+    """One case as the sealed file holds it; see `experiments.concealed.case`."""
+
+    plant: str
+    engine: str
+    kind: str
+    effects: tuple[EffectValues, ...]
+    size: float | None = None
+    held: tuple[str, ...] = ()
+
+    def named(self, name: str) -> TrueCase:
+        """The case under its name, without how its sizes were drawn."""
+        return TrueCase(name, self.plant, self.engine, self.kind, self.effects)
+
+
+@dataclass(frozen=True)
+class _SealedSet:
+    """The sealed file of a set: its seed, and its cases by name."""
+
+    seed: int
+    cases: Mapping[str, _SealedCase]
 
 
 @dataclass(frozen=True)
@@ -66,22 +90,13 @@ def read_truth(folder: Path) -> Truth:
             f"{path} is not what was sealed: its sha256 is {found}, {stamp} says "
             f"{sealed[0] if sealed else 'nothing'}"
         )
-    plain = json.loads(content)
-    cases = (_case(name, case) for name, case in plain["cases"].items())
-    return Truth(int(plain["seed"]), found, tuple(cases))
-
-
-def _case(name: str, plain: Mapping[str, object]) -> TrueCase:
-    effects = plain["effects"]
-    if not isinstance(effects, list):
-        raise RunFolderError(f"the truth of {name} has no list of effects")
-    return TrueCase(
-        name,
-        str(plain["plant"]),
-        str(plain["engine"]),
-        str(plain["kind"]),
-        tuple(EffectValues(e["name"], e["place"], e["parameters"]) for e in effects),
-    )
+    try:
+        plain = parse_object(content, TRUTH, FORMAT)
+        sealed_set = from_plain(_SealedSet, plain, TRUTH, complete=False)
+    except BadValueError as error:
+        raise RunFolderError(f"{path}: {error}") from None
+    cases = sealed_set.cases.items()
+    return Truth(sealed_set.seed, found, tuple(one.named(name) for name, one in cases))
 
 
 def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:

@@ -117,8 +117,8 @@ EFFECT = ("effects", 0)
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        (("format",), 2, "format is 2; only 1"),
-        (("format",), True, "format is True"),
+        (("format",), 2, "'format' is 2; only 1"),
+        (("format",), True, "'format' is True"),
         (("fit",), KeyError, "has no 'fit'"),
         (("fits",), 1, "unknown key 'fits': did you mean 'fit'?"),
         (("kind",), "maybe", "kind must be effects or none"),
@@ -126,7 +126,7 @@ EFFECT = ("effects", 0)
         (("unexplained",), None, "must show 'unexplained'"),
         (("limits",), "text", "limits must be a list"),
         (("seconds",), "3", "seconds must be a finite number"),
-        (("seconds",), float("nan"), "seconds must be a finite number"),
+        (("seconds",), float("nan"), "verdict is not JSON: NaN is no number"),
         (("smallest_detectable", "drag"), {"value": 1, "unit": "N"}, "'effect@place'"),
         ((*EFFECT, "probability"), 1.2, r"effects\[0\]: probability .* from 0 to 1"),
         ((*EFFECT, "probability"), True, "must be a finite number, not True"),

@@ -121,7 +121,7 @@ def test_folders_without_truth_hash_or_answers_are_refused(tmp_path):
 def test_an_answer_that_cannot_be_read_is_named(tmp_path):
     write_set(tmp_path, CASES, {"answers": {}})
     (tmp_path / "answers" / "case_000.json").write_text("{")
-    with pytest.raises(RunFolderError, match=r"case_000\.json: the verdict is no JSON"):
+    with pytest.raises(RunFolderError, match=r"case_000\.json: verdict is not JSON"):
         main(ConcealedScore(tmp_path))
 
 
