@@ -25,6 +25,7 @@ CORRECTED_XML = "corrected.xml"
 _LINEAR = 1
 """MuJoCo's number for a course between two controls that is straight."""
 
+_CONTACTS = " and all contacts switched off"
 _DIGITS = 17
 """As many as it takes to read a number back as it was."""
 
@@ -33,22 +34,31 @@ def corrected_mjcf(
     plant: Plant,
     model: Model,
     servo: Servo | None = None,
-    step_s: float = STEP_S,
+    step_s: float | None = None,
 ) -> str:
-    """MJCF of a plant with the native effects of a model; the others are left out.
+    """MJCF of a robot model with those effects in it that MuJoCo can simulate.
 
-    Controls are position targets of the plant's joints. A late command is an
-    actuator's `delay`; before the first one is due the target is 0.
+    Time step, integrator, contact flags and the solver parameters of joints without a
+    new friction are those of the file that the model came from. A comment in the MJCF
+    lists what differs from it. Controls are position targets of the plant's joints. A
+    late command is an actuator's `delay`; before the first one is due the target is 0.
 
     Args:
-      plant: nominal.
-      model: the effects.
+      plant: the robot model without the effects.
+      model: the effects; those that MuJoCo cannot simulate are left out.
       servo: of the recordings; the plant's own where None.
-      step_s: of the physics, for which contacts and friction are set.
+      step_s: time step [s]; the model file's own where None, or where that has none
+        the one of replays.
     """
     native = tuple(placed for placed in model if effect(placed.name).native)
     variants = variants_of(plant, [native])
     spec = plant.spec.copy()
+    options = plant.options
+    if options is not None:
+        spec.option.timestep = options.timestep_s
+        spec.option.integrator = options.integrator
+        spec.option.disableflags = options.disableflags
+    step_s = step_s or (options.timestep_s if options else STEP_S)
     spec.option.timestep = step_s
     compiled = spec.compile()
     _write_fields(compiled, variants, servo or plant.servo, step_s)
@@ -57,7 +67,31 @@ def corrected_mjcf(
     folder = Path(spec.modelfiledir or ".").resolve()
     spec.meshdir = str(folder / spec.meshdir) if spec.meshes else spec.meshdir
     with _all_digits():
-        return str(spec.to_xml())
+        head, line, rest = str(spec.to_xml()).partition("\n")
+    return f"{head}{line}{_comment(variants, native, model)}{rest}"
+
+
+def _comment(variants: Variants, native: Model, model: Model) -> str:
+    """An XML comment: how the corrected MJCF differs from the nominal robot model."""
+    plant = variants.plant
+    others = [placed.key for placed in model if placed not in native]
+    rub = [plant.joints[i] for i in np.flatnonzero(variants.joints.coulomb_nm[0])]
+    lines = [
+        f"{plant.name} with the effects that groundwalk diagnose found.",
+        f"In this file: {', '.join(placed.key for placed in native) or 'none'}.",
+        f"Not in this file, MuJoCo lacks them: {', '.join(others)}." if others else "",
+        f"Friction solver parameters (solreffriction, solimpfriction) are stiff at "
+        f"{', '.join(rub)}: with softer ones the friction found creeps."
+        if rub
+        else "",
+        "Actuators are position servos with the recordings' gains, named as their "
+        "joints. Joints that no recording has are held at zero, and bodies that do "
+        "not move are merged with what carries them.",
+        f"The diagnosis itself ran with a time step of {STEP_S:g} s, the integrator "
+        f"implicitfast{_CONTACTS if plant.base == 'fixed' else ''}.",
+    ]
+    told = "\n".join(f"    {line}" for line in lines if line).replace("--", "- -")
+    return f"  <!--\n{told}\n  -->\n"
 
 
 class _OneModel:
@@ -89,7 +123,13 @@ def _write_fields(
     one, joints = _OneModel(compiled), vars(variants.joints)
     servos = BatchServos(one, variants.plant, [servo], joints, step_s)
     damping = servos.damping_nm_s_rad
+    rows, limits = variants.plant.actuators, servos.law["limit"][0]
+    compiled.actuator_forcelimited[rows] = np.isfinite(limits)
+    own = compiled.dof_solimp.copy(), compiled.dof_solref.copy()
     BatchFriction(one, variants.plant, joints, damping, step_s)
+    same = np.ones(compiled.nv, bool)
+    same[np.array(variants.plant.dofs)[variants.joints.coulomb_nm[0] != 0]] = False
+    compiled.dof_solimp[same], compiled.dof_solref[same] = own[0][same], own[1][same]
 
 
 def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from diagnosis.plant.base import lock_joints, set_base, standing_bodies
 from diagnosis.plant.model_files import mjcf_spec, urdf_spec
-from diagnosis.plant.plant import ROOT, Base, Plant
+from diagnosis.plant.plant import ROOT, Base, ModelOptions, Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.plant.servo_sources import (
     Gains,
@@ -64,9 +64,11 @@ def load_plant(
     else:
         own = model_servo(known, ours)
     own = with_gains(own, ours, servo)
+    has_options = description is not None or Path(source).suffix == ".xml"
+    options = ModelOptions.of(spec) if has_options else None
     _equip(spec, base, ours, own)
-    model = _compiled(spec, name)
-    return Plant(name, spec, ours, own, base, _feet(model, base, description))
+    feet = _feet(_compiled(spec, name), base, description)
+    return Plant(name, spec, ours, own, base, feet, options)
 
 
 def described_plant(

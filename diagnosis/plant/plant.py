@@ -22,6 +22,27 @@ _SLIDING = {
 }
 
 
+@dataclass(frozen=True)
+class ModelOptions:
+    """Options of a model file that replays replace by their own.
+
+    Attributes:
+      timestep_s: of the physics.
+      integrator: MuJoCo's number of it.
+      disableflags: MuJoCo's bits of what is switched off, such as contacts.
+    """
+
+    timestep_s: float
+    integrator: int
+    disableflags: int
+
+    @classmethod
+    def of(cls, spec: "mujoco.MjSpec") -> "ModelOptions":
+        """The options that a specification has."""
+        option = spec.option
+        return cls(option.timestep, int(option.integrator), int(option.disableflags))
+
+
 @dataclass(frozen=True, eq=False)
 class Plant:
     """A MuJoCo model whose joints are driven by servos of one law.
@@ -35,6 +56,8 @@ class Plant:
       servo: of these joints, where a trace does not say otherwise.
       base: "fixed" or "floating".
       feet: names of the bodies that touch the ground, left before right.
+      options: of the file that the model was read from; None if the file has none, as
+        a URDF.
     """
 
     name: str
@@ -43,6 +66,7 @@ class Plant:
     servo: Servo
     base: Base = "fixed"
     feet: tuple[str, ...] = ()
+    options: ModelOptions | None = None
 
     @cached_property
     def model(self) -> "mujoco.MjModel":

@@ -55,6 +55,7 @@ def commanded_run(plant, servo=None):
 def simulated(text, plant, run):
     """Positions (T, j) as MuJoCo alone has them."""
     model = mujoco.MjModel.from_xml_string(text)
+    assert model.opt.timestep == plant.model.opt.timestep
     data = mujoco.MjData(model)
     if run.base is not None:
         data.qpos[:7] = run.base[:7]
@@ -102,7 +103,46 @@ def test_late_commands(delay_s):
 def test_what_mujoco_lacks_is_left_out():
     plant = load_plant("nao", "fixed")
     play = PlacedEffect("backlash", "LKneePitch", (0.03,))
-    assert corrected_mjcf(plant, (play,)) == corrected_mjcf(plant, ())
+    text, without = corrected_mjcf(plant, (play,)), corrected_mjcf(plant, ())
+    assert "MuJoCo lacks them: backlash@LKneePitch" in text
+    assert text.partition("-->")[2] == without.partition("-->")[2]
+
+
+OWN = """<mujoco model="own">
+  <option timestep="0.0007" integrator="RK4" iterations="33"/>
+  <worldbody><body name="upper"><joint name="shoulder" axis="0 1 0" frictionloss="0.1"
+  solreffriction="0.03 1.1" solimpfriction="0.8 0.85 0.002 0.4 3"/>
+  <geom size="0.05" pos="0 0 -0.2"/><body name="lower" pos="0 0 -0.4">
+  <joint name="elbow" axis="0 1 0" frictionloss="0.2" solreffriction="0.04 1.2"/>
+  <geom size="0.05" pos="0 0 -0.2"/></body></body></worldbody><actuator>
+  <position joint="shoulder" kp="20" kv="1"/><position joint="elbow" kp="10" kv="0.5"/>
+  </actuator></mujoco>"""
+"""A user's arm whose options are none of MuJoCo's defaults or of replays."""
+
+
+@pytest.mark.parametrize("found", ["armature", "coulomb_friction"])
+def test_the_users_own_options_stay(tmp_path, found):
+    path = tmp_path / "arm.xml"
+    path.write_text(OWN)
+    plant = load_plant(path, "fixed")
+    text = corrected_mjcf(plant, (PlacedEffect(found, "elbow", (0.05,)),))
+    own, new = (mujoco.MjModel.from_xml_string(xml) for xml in (OWN, text))
+    for option in ("timestep", "integrator", "disableflags", "iterations", "cone"):
+        assert getattr(new.opt, option) == getattr(own.opt, option), option
+    rubs = found == "coulomb_friction"
+    changed = {"armature": (0.05, 0.2), "coulomb_friction": (0, 0.25)}[found]
+    assert (new.dof_armature[1], new.dof_frictionloss[1]) == pytest.approx(changed)
+    for name in ("dof_solref", "dof_solimp"):
+        same = getattr(own, name) == getattr(new, name)
+        assert same[0].all()
+        assert same[1].all() == (not rubs)
+    assert new.dof_frictionloss[0] == own.dof_frictionloss[0]
+    np.testing.assert_array_equal(own.actuator_gainprm, new.actuator_gainprm)
+    np.testing.assert_array_equal(own.actuator_forcelimited, new.actuator_forcelimited)
+    comment = text.partition("<!--")[2].partition("-->")[0]
+    assert f"In this file: {found}@elbow." in comment
+    assert ("solreffriction" in comment) == rubs
+    assert "time step of 0.002 s" in comment
 
 
 def test_others_are_written_with_as_few_digits_as_ever():
