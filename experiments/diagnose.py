@@ -20,8 +20,7 @@ from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
 from experiments.diagnosis_report.overlay import write_overlay
-from experiments.diagnosis_report.page import write_report
-from experiments.diagnosis_report.run_facts import ReportFacts
+from experiments.diagnosis_report.page import ReportFacts, write_report
 from experiments.reports.origin import command_of
 from experiments.runs.extras import extra
 from experiments.runs.folder import PROVENANCE, RunFolder, check_free, to_plain

@@ -6,23 +6,22 @@ from dataclasses import replace
 from pathlib import Path
 
 from diagnosis.verdict.verdict import EffectAt, Fit, Found, Verdict
-from experiments.diagnosis_report.numbers import amount_text, errors_text, percent
-from experiments.diagnosis_report.place_words import at_words, choice, listing
-from experiments.diagnosis_report.pulses import pulse_sentences
-from experiments.diagnosis_report.text import (
+from experiments.diagnosis_report.findings import (
     at_many,
-    badge,
-    doubts,
-    headline,
-    next_step,
     parameter_rows,
+    pulse_sentences,
     told_together,
 )
+from experiments.diagnosis_report.numbers import amount_text, errors_text, percent
+from experiments.diagnosis_report.place_words import at_words, choice, listing
+from experiments.diagnosis_report.text import badge, doubts, headline, next_step
 
 _SHOWN_AMOUNTS = 3
+"""Smallest detectable sizes that the line of the verdict "none" tells."""
 _MOST_FOUND = 3
-"""Lines about what was found, pulses among them."""
+"""Lines about findings, pulses among them."""
 _MOST_UNSURE = 2
+"""Effects whose doubts are told."""
 
 
 def print_verdict(
@@ -92,7 +91,7 @@ def _verdict(verdict: Verdict, changed: bool) -> str:
 
 
 def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
-    """What was found, or the first of it and how much more there is."""
+    """The first findings, and the number of findings that are left out."""
     groups = told_together(verdict.effects)
     found = [at_many(group) if len(group) > 1 else _found(group[0]) for group in groups]
     lines = [*found, *pulse_sentences(verdict.pulses)]
@@ -110,7 +109,7 @@ def _found(effect: Found) -> str:
 
 
 def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:
-    """Before and after of the worst channel, and of all."""
+    """Held-out errors of the worst channel and of all; with a correction, both ways."""
     fit, worst = verdict.fit, headline(verdict.fit)
     if fit is None or worst is None:
         return
@@ -118,25 +117,31 @@ def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:
     if verdict.effects:
         course = f"{worst.nominal} -> {worst.corrected}"
     yield (
-        "kept out",
-        f"error in {worst.channel} {course} {worst.unit}, noise {worst.floor}",
+        "held out",
+        f"error in {worst.channel} {course} {worst.unit}, noise floor {worst.floor}",
     )
     if verdict.effects:
         yield "", _all_channels(fit)
 
 
 def _all_channels(fit: Fit) -> str:
-    nominal, corrected, place, effect, ceiling = errors_text(
-        (fit.nominal, fit.corrected, fit.wrong_place, fit.wrong_effect, fit.ceiling)
+    """Errors of all channels, and what controls and a regression reach instead."""
+    controls = {
+        "the same effect at another place": fit.wrong_place,
+        "another effect at this place": fit.wrong_effect,
+        "a regression without physics": fit.ceiling,
+    }
+    known = {name: error for name, error in controls.items() if error is not None}
+    nominal, corrected, *others = errors_text(
+        (fit.nominal, fit.corrected, *known.values())
     )
-    return (
-        f"all channels {nominal} -> {corrected} times the noise; effect elsewhere "
-        f"{place}, wrong effect {effect}, regression {ceiling}"
-    )
+    instead = [f"{name} {error}" for name, error in zip(known, others, strict=True)]
+    text = f"all channels {nominal} -> {corrected} times the noise floor"
+    return f"{text}; instead of it {', '.join(instead)}" if instead else text
 
 
 def _doubt(verdict: Verdict) -> str:
-    """What else it could be."""
+    """Other answers that fit, or the doubts about the effects that are unsure."""
     if verdict.alternatives:
         also = "" if verdict.kind == "not_identifiable" else "also "
         return f"the recordings {also}fit {choice(verdict.alternatives)}"

@@ -1,21 +1,42 @@
-"""How the figures of a diagnosis look."""
+"""How the figures of a diagnosis look, and how they come into its page as SVG."""
 
+import html
+import io
+import re
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH_IN = 7.6
+"""Width of a figure [inch]; the page shows it as wide as its column of text."""
 
 REAL, SIM, CORRECTED = "#1f2328", "#d55e00", "#0072b2"
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
+"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
 CONTROL, FAINT, GRID, NOISE = "#a6acb5", "#6a737d", "#e6e8eb", "#eceff2"
+"""Greys: of the controls' bars, of small text, of grid lines, of the noise band."""
+
+
+def new_figure(height_in: float) -> "Figure":
+    """An empty figure as wide as the page's column of text.
+
+    Args:
+      height_in: its height [inch].
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")
+    figure.patch.set_alpha(0.0)
+    return figure
 
 
 def plain(axes: "Axes", grid: Literal["x", "y"] | None = "y") -> None:
-    """Axes without a frame, with a faint grid behind what is drawn.
+    """Remove the frame of axes, and put a faint grid behind what is drawn.
 
     Args:
       axes: to be changed.
-      grid: "x", "y" or None.
+      grid: direction whose ticks get grid lines; None for no grid.
     """
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.spines["bottom"].set_color(CONTROL)
@@ -35,11 +56,11 @@ def note(
     colour: str = FAINT,
     offset: tuple[float, float] = (4, 0),
 ) -> None:
-    """A small text beside a point.
+    """Write a small text beside a point.
 
     Args:
       axes: to be drawn on.
-      text: what it says.
+      text: to be written.
       at: the point, in the axes' units.
       colour: of the text.
       offset: of the text's left end from the point [1/72 inch].
@@ -52,4 +73,44 @@ def note(
         va="center",
         fontsize=8.5,
         color=colour,
+    )
+
+
+def inline_svg(figure: "Figure", name: str, alternative: str) -> str:
+    """A figure as an `<svg>` element; the same figure always gives the same bytes.
+
+    Args:
+      figure: drawn without pyplot.
+      name: unlike those of the page's other figures; the element's ids begin with it.
+      alternative: what the figure shows, for people who cannot see it.
+    """
+    import matplotlib as mpl
+
+    text = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "none"}):
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    svg = text.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
+    svg = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", svg, count=1)
+    svg = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1)
+    label = html.escape(alternative)
+    svg = svg.replace("<svg", f'<svg role="img" aria-label="{label}"', 1)
+    return _with_ids(svg, name)
+
+
+def _with_ids(svg: str, name: str) -> str:
+    """Keep only the ids that are referred to, and name them after the figure.
+
+    Matplotlib's own ids are random, or hash the last digits of the layout.
+    """
+    used = dict.fromkeys(re.findall(r'(?:url\(|href=")#([\w.]+)', svg))
+    new = {old: f"{name}-{count}" for count, old in enumerate(used)}
+
+    def identity(match: re.Match[str]) -> str:
+        return f' id="{new[match[1]]}"' if match[1] in new else ""
+
+    svg = re.sub(r' id="([\w.]+)"', identity, svg)
+    return re.sub(
+        r'(url\(|href=")#([\w.]+)', lambda match: f"{match[1]}#{new[match[2]]}", svg
     )

@@ -1,4 +1,4 @@
-"""Before and after: overlays, errors over time, and errors in all."""
+"""Figures of held-out recordings: motion and errors over time, and errors in all."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,11 +16,11 @@ from experiments.diagnosis_report.figure_style import (
     NOISE,
     REAL,
     SIM,
+    new_figure,
     note,
     plain,
 )
 from experiments.diagnosis_report.numbers import error_unit, errors_text
-from experiments.diagnosis_report.svg import new_figure
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -28,34 +28,39 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CLOSE_UP_S = 1.0
-"""Length of what is shown of the overlay."""
+"""Length of the close-up of a motion [s]: long enough for a reversal or two."""
 BARS = {
-    "nominal": ("the sim as it was", SIM),
-    "wrong_effect": ("control: a wrong effect there", CONTROL),
-    "wrong_place": ("control: the effect elsewhere", CONTROL),
+    "nominal": ("the nominal sim", SIM),
+    "wrong_effect": ("control: another effect at this place", CONTROL),
+    "wrong_place": ("control: the same effect at another place", CONTROL),
     "corrected": ("the corrected sim", CORRECTED),
-    "ceiling": ("a flexible regression", CONTROL),
+    "ceiling": ("a regression without physics", CONTROL),
 }
+"""Label and colour of each error of a verdict, in the order of the bars."""
 UNCORRECTED = ("nominal", "ceiling")
+"""The errors that are drawn where nothing was corrected."""
 
 
 class View(NamedTuple):
-    """How to show a channel."""
+    """How to show a channel.
+
+    Attributes:
+      unit: of the channel.
+      floor: its noise floor in that unit; twice of it is shaded. None if unknown.
+      is_corrected: whether there is a corrected sim to be shown.
+    """
 
     unit: str
-    """Of the channel."""
     floor: float | None
-    """Rms of its noise, if that is known; twice of it is shaded."""
     is_corrected: bool
-    """Whether there is a correction to be shown."""
 
 
 def overlay_figure(series: HeldOutSeries, channel: str, view: View) -> "Figure":
     """A close-up of one channel above the errors over the whole recording.
 
     Args:
-      series: held-out.
-      channel: of it.
+      series: a held-out recording.
+      channel: name of one of its channels.
       view: how to show it.
     """
     real, sim, corrected = series.channels[channel]
@@ -100,13 +105,13 @@ def _draw_errors(
 def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
     """The rows of a second in which the error is both large and easy to see.
 
-    Of all windows with half the error of the worst one or more, that in which it is
-    largest beside the motion itself.
+    Among the windows with at least half the squared error of the worst one, that in
+    which the error is largest relative to the range of the motion.
 
     Args:
       time_s: (T,) increasing.
-      real: (T,), NaN where a value is missing.
-      sim: (T,) likewise.
+      real: (T,) measured, NaN where a value is missing.
+      sim: (T,) predicted, NaN where the measured value is missing.
     """
     rows = int(np.searchsorted(time_s, time_s[0] + CLOSE_UP_S, side="right"))
     windows = np.lib.stride_tricks.sliding_window_view
@@ -119,11 +124,11 @@ def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
 
 
 def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
-    """Errors of all channels together, in multiples of the noise.
+    """Errors of all channels together, in multiples of their noise floors.
 
     Args:
-      fit: of a verdict.
-      is_corrected: whether there is a correction to be shown, and its controls.
+      fit: the held-out errors of a verdict.
+      is_corrected: whether there is a corrected sim to be shown, with its controls.
     """
     bars = BARS if is_corrected else UNCORRECTED
     errors = {name: getattr(fit, name) for name in bars}
@@ -137,17 +142,21 @@ def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
         note(axes, text, (list(known.values())[row], row))
     plain(axes, grid="x")
     axes.axvline(fit.floor, color=REAL, lw=1, ls=(0, (3, 2)))
-    note(axes, "noise alone", (fit.floor, -0.75), REAL)
+    note(axes, "noise floor", (fit.floor, -0.75), REAL)
     axes.set_yticks(rows, [BARS[name][0] for name in known])
     axes.tick_params(axis="y", labelcolor=REAL)
     axes.set_xlim(0, 1.12 * max(*known.values(), fit.floor))
     axes.set_ylim(len(known) - 0.5, -1.0)
-    axes.set_xlabel("rms error on recordings that were kept out [times the noise]")
+    axes.set_xlabel("rms error on held-out recordings [multiples of the noise floor]")
     return figure
 
 
 def unexplained_figure(rest: Unexplained) -> "Figure":
-    """The mean error that is left over another quantity, with twice its spread."""
+    """The mean error left, over another quantity, with two standard errors around it.
+
+    Args:
+      rest: the shape of the error that no effect explains.
+    """
     at, mean, spread = (np.array(part) for part in (rest.at, rest.mean, rest.spread))
     largest = float(np.abs(mean).max(initial=0.0))
     factor, unit = error_unit(rest.unit, largest)

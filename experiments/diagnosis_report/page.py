@@ -1,18 +1,27 @@
-"""A diagnosis as one HTML page that needs nothing else: plain words, then evidence."""
+"""A diagnosis as one HTML page without other files: plain words, then evidence."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
+from diagnosis.residuals.channels import (
+    LEAST_NOISE_M,
+    LEAST_NOISE_RAD,
+    LEAST_RATE_RAD_S,
+    LEAST_TORQUE,
+)
 from diagnosis.verdict.verdict import Errors, Fit, Found, Verdict
+from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
     View,
     bars_figure,
     overlay_figure,
     unexplained_figure,
 )
-from experiments.diagnosis_report.mismatch_map import mismatch_figure, worst_cells
+from experiments.diagnosis_report.findings import parameter_rows
+from experiments.diagnosis_report.mismatch_figure import mismatch_figure, worst_cells
 from experiments.diagnosis_report.numbers import (
     DASH,
     amount_text,
@@ -21,39 +30,67 @@ from experiments.diagnosis_report.numbers import (
     percent,
 )
 from experiments.diagnosis_report.place_words import place_words
-from experiments.diagnosis_report.run_facts import ReportFacts
-from experiments.diagnosis_report.svg import inline_svg
-from experiments.diagnosis_report.text import (
-    answer,
-    badge,
-    doubts,
-    next_step,
-    parameter_rows,
-    question,
-)
+from experiments.diagnosis_report.text import answer, badge, doubts, next_step, question
 from experiments.diagnosis_report.words import effect_words
 from experiments.reports.html import render
 from groundwalk.files import write_text
 
 TEMPLATE = "diagnosis_report.html.jinja"
-MOST_PICTURES, SHOWN_ROWS = 4, 13
+MOST_PICTURES = 4
+"""Held-out recordings that the page draws; the rest only count in the tables."""
+SHOWN_ROWS = 13
+"""Rows of the table of errors that are open at once; the rest can be unfolded."""
 _OFF = 1.05
-"""Times the noise: what is nearer to it has nothing to close."""
+"""Multiple of the noise floor; a nominal error below it leaves nothing to close."""
 _COLUMNS = ("nominal", "corrected", "floor", "ceiling", "wrong_place", "wrong_effect")
-_USES = {"fit": "fitted on", "select": "chosen on", "test": "kept out"}
+_USES = {"fit": "fitted on", "select": "selected on", "test": "held out"}
+NOISE_FLOOR = (
+    "The noise floor of a channel is the noise measured in these recordings "
+    f"(audit.json), but at least {1e3 * LEAST_NOISE_RAD:.1g} mrad for a turning joint, "
+    f"{1e3 * LEAST_NOISE_RAD:.1g} mm for a sliding one, {1e3 * LEAST_NOISE_M:.1g} mm "
+    f"for a base's position, {1e3 * LEAST_RATE_RAD_S:.1g} mrad/s for a gyroscope and "
+    f"{100 * LEAST_TORQUE:.0f} % of a measured torque: smaller errors are within the "
+    "accuracy of encoders, clocks, simulation and motor constants."
+)
+"""What the page's "noise floor" is."""
+
+
+@dataclass(frozen=True)
+class ReportFacts:
+    """Where a diagnosis comes from, as its page tells it.
+
+    Attributes:
+      robot: its name, or the model's file.
+      base: "fixed" or "floating".
+      command: the command line that makes this report again.
+      settings: the options of the run, by name.
+      versions: of groundwalk and the packages it uses, by name.
+      files: the other files of the run and what they hold, by their names relative to
+        the report.
+      changed: whether reference recordings of the healthy robot were given, so that the
+        question is what has changed since them.
+    """
+
+    robot: str
+    base: str
+    command: str
+    settings: Mapping[str, str] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+    changed: bool = False
 
 
 def write_report(
     path: Path, verdict: Verdict, series: Sequence[HeldOutSeries], facts: ReportFacts
 ) -> None:
-    """Write the page, the file at once.
+    """Write the page; it is complete or, after an error, not there.
 
     Args:
       path: the `.html` file.
-      verdict: what the diagnosis says.
-      series: held-out recordings with what both sims make of them, the most telling
+      verdict: of the diagnosis.
+      series: held-out recordings with the predictions of both sims, those to be drawn
         first; may be empty.
-      facts: where this comes from.
+      facts: where the diagnosis comes from.
 
     Raises:
       UnknownNameError: the verdict names an effect that has no words.
@@ -63,7 +100,7 @@ def write_report(
 
 
 def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
-    """What the page says in words and small tables."""
+    """The page's sentences and small tables, by their names in the template."""
     return {
         "verdict": verdict,
         "title": f"Diagnosis: {facts.robot}",
@@ -79,11 +116,12 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         ],
         "fit_rows": _fit_rows(verdict.fit) if verdict.fit else [],
         "shown_rows": SHOWN_ROWS,
+        "noise_floor": NOISE_FLOOR,
     }
 
 
 def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
-    """What the page says of how it was made."""
+    """How the page was made, by the names of the parts in the template."""
     recordings = [
         (_USES[use], ", ".join(names))
         for use, names in vars(verdict.recordings).items()
@@ -103,14 +141,14 @@ def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
 
 
 def _shown(verdict: Verdict, series: Sequence[HeldOutSeries]) -> dict[str, Any]:
-    """What the page shows in figures."""
+    """The page's figures, by their names in the template."""
     rest, cells = verdict.unexplained, worst_cells(verdict.mismatch)
     return {
         "unexplained": rest
         and {
             "rest": rest,
             "svg": inline_svg(
-                unexplained_figure(rest), "unexplained", "error that is left"
+                unexplained_figure(rest), "unexplained", "unexplained error"
             ),
         },
         "map": cells
@@ -133,7 +171,7 @@ def _shown(verdict: Verdict, series: Sequence[HeldOutSeries]) -> dict[str, Any]:
 
 
 def _picture(series: HeldOutSeries, verdict: Verdict, name: str) -> dict[str, Any]:
-    """The worst channel of a held-out recording."""
+    """Name and figure of a held-out recording: its worst channel over time."""
     channel = by_error(series, verdict.fit)[0]
     scored = verdict.fit.channels.get(channel) if verdict.fit else None
     view = View(
@@ -171,15 +209,19 @@ def _label_and_place(name: str, place: str) -> dict[str, str]:
 
 
 def _fit_rows(fit: Fit) -> list[dict[str, Any]]:
-    """The errors in all, then channel by channel, the worst one first."""
+    """Rows of the table of errors: all channels together, then the worst first."""
     channels = sorted(fit.channels.items(), key=lambda item: -item[1].excess)
     return [
-        _fit_row("all channels", "noise", fit),
+        _fit_row("all channels", "noise floors", fit),
         *(_fit_row(name, one.unit, one) for name, one in channels),
     ]
 
 
 def _fit_row(name: str, unit: str, fit: Errors) -> dict[str, Any]:
+    """One row: errors as texts with their unit, and the share that is closed.
+
+    The share is at most 100 %: below the noise floor there is nothing left to close.
+    """
     errors = [getattr(fit, column) for column in _COLUMNS]
     factor, unit = error_unit(unit, max(filter(None, errors), default=0.0))
     texts = errors_text(error and factor * error for error in errors)
@@ -189,6 +231,6 @@ def _fit_row(name: str, unit: str, fit: Errors) -> dict[str, Any]:
         "channel": name,
         **dict(zip(_COLUMNS, texts, strict=True)),
         "unit": unit,
-        "closed": DASH if closed is None else percent(max(0.0, closed)),
+        "closed": DASH if closed is None else percent(min(max(0.0, closed), 1.0)),
         "is_all": isinstance(fit, Fit),
     }

@@ -1,16 +1,10 @@
-"""What a verdict says, in sentences."""
+"""A verdict in sentences: the question, the answer, the doubts and the next step."""
 
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
-from diagnosis.verdict.verdict import Fit, Found, Verdict
-from experiments.diagnosis_report.numbers import (
-    error_unit,
-    errors_text,
-    estimate_text,
-    percent,
-)
+from diagnosis.verdict.verdict import Fit, Verdict
+from experiments.diagnosis_report.findings import findings, pulse_sentences
+from experiments.diagnosis_report.numbers import error_unit, errors_text, percent
 from experiments.diagnosis_report.place_words import (
     answer_words,
     at_words,
@@ -20,14 +14,6 @@ from experiments.diagnosis_report.place_words import (
     place_words,
     sentence,
 )
-from experiments.diagnosis_report.pulses import pulse_sentences
-from experiments.diagnosis_report.words import effect_words
-
-MANY = 3
-"""Places of one effect from which on they are told together."""
-
-SHOWN = 0.01
-"""Part of its interval: what is closer to nothing is not shown by the data."""
 
 BADGES = {
     "effects": "missing physics found",
@@ -74,7 +60,7 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
 
     Args:
       verdict: of the diagnosis.
-      changed: whether the question was what has changed.
+      changed: whether the question was what has changed since the reference.
     """
     pulses = [*map(sentence, pulse_sentences(verdict.pulses))]
     if verdict.kind == "none":
@@ -88,84 +74,16 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
     return [*first, *map(sentence, found), *pulses, *_gain(verdict)]
 
 
-def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
-    """A clause for each effect; one for all places of an effect that is at many.
-
-    Args:
-      effects: the surest first.
-      changed: whether the question was what has changed.
-    """
-    return [
-        at_many(group) if len(group) > 1 else finding(group[0], changed)
-        for group in told_together(effects)
-    ]
-
-
-def told_together(effects: Sequence[Found]) -> list[list[Found]]:
-    """Effects in their order, each alone or with all that are alike at other places."""
-    groups: dict[str, list[Found]] = {}
-    for effect in effects:
-        alike = [one for one in effects if one.name == effect.name]
-        many = len(alike) >= MANY and all(
-            one.when.kind == "always" and one.parameters for one in alike
-        )
-        key = effect.name if many else f"{effect.name}@{effect.place}"
-        groups.setdefault(key, []).append(effect)
-    return [*groups.values()]
-
-
-def at_many(alike: Sequence[Found]) -> str:
-    """Least and most of an effect's first value, and where they are."""
-    name = next(iter(alike[0].parameters))
-    order = sorted(alike, key=lambda one: one.parameters[name].value)
-
-    def value(effect: Found) -> str:
-        one = effect.parameters[name]
-        alone = estimate_text(replace(one, low=one.value, high=one.value))
-        return f"about {alone} at {place_words(effect.place)}"
-
-    return (
-        f"{effect_words(alike[0].name).label} at {len(alike)} places, "
-        f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
-    )
-
-
-def finding(effect: Found, changed: bool = False) -> str:
-    """A clause: "the left knee (LKneePitch) has play of about 0.030 rad (...) ..."."""
-    words = effect_words(effect.name)
-    numbers = {
-        name: f"about {estimate_text(one)}"
-        for name, one in effect.parameters.items()
-        if abs(one.value) > SHOWN * (one.high - one.low)
-    }
-    clause = words.finding.format_map(
-        _Words(
-            numbers,
-            joint=place_words(effect.place),
-            body=place_words(effect.place, "body"),
-            lacking="that was not there before" if changed else "that the sim lacks",
-            usual="before" if changed else "in the sim",
-        )
-    )
-    course, start_s, end_s = effect.when.kind, effect.when.start_s, effect.when.end_s
-    if course == "always":
-        return clause
-    doing = "from" if course == "burst" else "growing from"
-    return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s"
-
-
-class _Words(dict[str, str]):
-    """Words for a template; a parameter that the data do not show is unknown."""
-
-    def __init__(self, numbers: dict[str, str], **words: str) -> None:
-        super().__init__(numbers | words)
-
-    def __missing__(self, key: str) -> str:
-        return "an unknown amount"
-
-
 class Headline(NamedTuple):
-    """Held-out errors of the channel that the nominal sim misses most, as texts."""
+    """Held-out errors of the channel with the nominal sim's worst error, as texts.
+
+    Attributes:
+      channel: its name in words.
+      nominal: rms error of the nominal sim.
+      corrected: rms error of the corrected sim.
+      floor: the channel's noise floor.
+      unit: of these three numbers.
+    """
 
     channel: str
     nominal: str
@@ -175,7 +93,11 @@ class Headline(NamedTuple):
 
 
 def headline(fit: Fit | None) -> Headline | None:
-    """The errors to tell first; None where nothing was kept out."""
+    """The errors to tell first; None where there are no held-out errors.
+
+    Args:
+      fit: the held-out errors of a verdict.
+    """
     if fit is None or not fit.channels:
         return None
     name, worst = max(fit.channels.items(), key=lambda item: item[1].excess)
@@ -186,23 +108,28 @@ def headline(fit: Fit | None) -> Headline | None:
 
 
 def _gain(verdict: Verdict) -> list[str]:
-    """Before and after, if anything was corrected."""
+    """A sentence with the errors before and after, if anything was corrected."""
     errors, fit = headline(verdict.fit), verdict.fit
     if errors is None or fit is None or not verdict.effects:
         return []
     one = "it" if len(verdict.effects) == 1 else "these"
-    closed = fit.closed(fit.corrected)
-    over_all = (
-        ""
-        if closed is None
-        else f" Over all channels, {percent(min(max(closed, 0.0), 1.0))} of the error "
-        "above the noise is gone."
-    )
     return [
-        f"With {one} the sim's error in {errors.channel}, on recordings that were kept "
-        f"out, falls from {errors.nominal} to {errors.corrected} {errors.unit}; noise "
-        f"alone makes {errors.floor}.{over_all}"
+        f"With {one} the sim's error in {errors.channel}, on held-out recordings, "
+        f"falls from {errors.nominal} to {errors.corrected} {errors.unit}; the noise "
+        f"floor is {errors.floor}.{_over_all(fit)}"
     ]
+
+
+def _over_all(fit: Fit) -> str:
+    closed = fit.closed(fit.corrected)
+    if closed is None:
+        return ""
+    if closed >= 1:
+        return " Over all channels, no error above the noise floor is left."
+    return (
+        f" Over all channels, {percent(max(closed, 0.0))} of the error above the noise "
+        "floor is gone."
+    )
 
 
 def _nothing(verdict: Verdict, changed: bool) -> list[str]:
@@ -212,11 +139,14 @@ def _nothing(verdict: Verdict, changed: bool) -> list[str]:
     if errors:
         lines.append(
             f"Even where it is largest, in {errors.channel}, the sim's error on "
-            f"recordings that were kept out is {errors.nominal} {errors.unit}; noise "
-            f"alone makes {errors.floor}."
+            f"held-out recordings is {errors.nominal} {errors.unit}; the noise floor "
+            f"is {errors.floor}."
         )
     if verdict.smallest_detectable:
-        lines.append("Smaller effects may be there; how small is said below.")
+        lines.append(
+            "Smaller effects may be there; the sizes that these recordings could have "
+            "shown are listed below."
+        )
     return lines
 
 
@@ -249,7 +179,11 @@ def _open(verdict: Verdict, changed: bool) -> list[str]:
 
 
 def doubts(verdict: Verdict) -> list[str]:
-    """What else could be so, and how sure the answer is."""
+    """Sentences on how sure each effect is, and on other answers that fit as well.
+
+    Args:
+      verdict: of the diagnosis.
+    """
     lines = []
     for effect in verdict.effects:
         sure = f"{at_words(effect)}: {percent(effect.probability)} sure"
@@ -266,17 +200,13 @@ def doubts(verdict: Verdict) -> list[str]:
 
 
 def next_step(verdict: Verdict) -> str:
-    """The experiment that would tell most; empty if there is none."""
+    """The experiment that would tell most; empty if nothing is open.
+
+    Args:
+      verdict: of the diagnosis.
+    """
     step = verdict.next_experiment
     if step is None:
         return ""
     joint = f" of {place_words(step.joint)}" if step.joint else ""
     return f"Record {step.motion}{joint}: {step.why.rstrip('.')}."
-
-
-def parameter_rows(effect: Found) -> list[tuple[str, str]]:
-    """Names and values of an effect's parameters."""
-    return [
-        (name.replace("_", " "), estimate_text(one))
-        for name, one in effect.parameters.items()
-    ]

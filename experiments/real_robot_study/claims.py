@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from diagnosis.verdict.verdict import Estimate, Pulse, Verdict
+from experiments.diagnosis_report.findings import pulse_sentences
 from experiments.diagnosis_report.numbers import estimate_text
-from experiments.diagnosis_report.pulses import pulse_sentences
 from experiments.real_robot_study.cases import Published, RealRobot
 from experiments.transfer.claims import Claim
 

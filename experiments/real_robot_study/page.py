@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from diagnosis.verdict.verdict import Found, Verdict
 from experiments.diagnosis_report.numbers import estimate_text, percent
-from experiments.diagnosis_report.text import BADGES, answer, next_step
+from experiments.diagnosis_report.text import answer, badge, next_step
 from experiments.real_robot_study.cases import RealRobot
 from experiments.real_robot_study.claims import claims_of, sane_bounds
 from experiments.reports.report import markdown_table
@@ -31,7 +31,7 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
       robot: that was diagnosed.
       verdict: the answer.
     """
-    body = [" ".join(robot.about.split()), "", f"## Verdict: {BADGES[verdict.kind]}"]
+    body = [" ".join(robot.about.split()), "", f"## Verdict: {badge(verdict)}"]
     body += ["", *_effects(robot, verdict.effects), "", *_doubts(verdict)]
     body += ["", "## Real less sim, kept out of the fit", "", *_fit(verdict)]
     body += _pulses(verdict)

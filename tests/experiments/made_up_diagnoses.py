@@ -17,7 +17,7 @@ from diagnosis.verdict.verdict import (
     Verdict,
     When,
 )
-from experiments.diagnosis_report.run_facts import ReportFacts
+from experiments.diagnosis_report.page import ReportFacts
 
 JOINTS = (
     "LHipYawPitch", "LHipRoll", "LHipPitch", "LKneePitch", "LAnklePitch", "LAnkleRoll",

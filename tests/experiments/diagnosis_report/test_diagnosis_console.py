@@ -34,8 +34,9 @@ def test_effects_have_place_value_interval_and_doubt():
     text = text_of(made_up.EFFECTS)
     assert "play (backlash) at the left knee (LKneePitch)" in text
     assert "gap 0.030 rad (0.027 to 0.034); 97 % sure" in text
-    assert "5.1 -> 1.2 mrad, noise 0.9" in text
-    assert "5.7 -> 1.3 times the noise; effect elsewhere 5.5, wrong effect 4.6" in text
+    assert "5.1 -> 1.2 mrad, noise floor 0.9" in text
+    assert "all channels 5.7 -> 1.3 times the noise floor; instead of it the" in text
+    assert "the same effect at another place 5.5, another effect at this place" in text
     assert "also fit dry friction at the left knee" in text
     assert "Record slow ramps" in text
     assert "(and 1 more)" in text
@@ -51,6 +52,16 @@ def test_other_kinds_claim_nothing():
     assert "recordings fit extra mass at the left tibia (LTibia); or" in open_
     assert "->" not in none + open_
     assert "sure" not in none + open_
+
+
+def test_controls_that_were_not_computed_are_not_told():
+    fit = dataclasses.replace(made_up.EFFECTS.fit, wrong_place=None, ceiling=None)
+    text = text_of(dataclasses.replace(made_up.EFFECTS, fit=fit))
+    assert "instead of it another effect at this place 4.6" in text
+    assert "another place" not in text
+    assert "regression" not in text
+    bare = dataclasses.replace(fit, wrong_effect=None)
+    assert "instead" not in text_of(dataclasses.replace(made_up.NONE, fit=bare))
 
 
 def test_printed_lines_are_plain_in_a_pipe(capsys):

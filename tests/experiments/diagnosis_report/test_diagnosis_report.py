@@ -59,17 +59,17 @@ def test_tags_that_do_not_match_are_seen():
                 "The left knee (LKneePitch) has play of about 0.030 rad "
                 "(0.027 to 0.034) that the sim lacks.",
                 "Commands take effect about 18.3 ms (17.5 to 19.0) later",
-                "falls from 5.1 to 1.2 mrad; noise alone makes 0.9.",
+                "falls from 5.1 to 1.2 mrad; the noise floor is 0.9.",
                 "97 % sure; the recordings do not rule out dry friction at the left "
                 "knee (LKneePitch) instead.",
                 "Record slow ramps with reversals of the left knee",
                 "MuJoCo does not have it",
                 "rotor inertia below 0.002 kg m²",
                 "halving it changes 0.04 mrad",
-                "control: the effect elsewhere",
+                "control: the same effect at another place",
                 "corrected sim",
                 "3 more channels",
-                "bursts",
+                "large errors",
             ],
             ["Nothing is missing", "smallest effects", "What no effect explains"],
         ),
@@ -128,19 +128,34 @@ def test_the_answer_comes_first(pages):
 def test_the_table_holds_every_error(tmp_path):
     text = Page(report(tmp_path, made_up.EFFECTS)).text
     channel = made_up.EFFECTS.fit.channels[made_up.WORST]
-    names = ("nominal", "corrected", "floor", "ceiling", "wrong_place", "wrong_effect")
+    names = ("floor", "ceiling", "wrong_place", "wrong_effect")
     numbers = " ".join(f"{1e3 * getattr(channel, name):.1f}" for name in names)
     closed = (channel.nominal - channel.corrected) / (channel.nominal - channel.floor)
-    assert f"{made_up.WORST} {numbers} mrad {100 * closed:.0f} %" in text
+    assert f"LKneePitch 5.1 1.2 {100 * closed:.0f} % {numbers} mrad" in text
+
+
+def test_an_error_below_the_noise_floor_closes_all_and_no_more(tmp_path):
+    below = dataclasses.replace(made_up.fit(), corrected=0.7)
+    verdict = dataclasses.replace(made_up.ONE, fit=below)
+    text = Page(report(tmp_path, verdict)).text
+    assert "all channels 5.7 0.7 100 % 1.0" in text
+    assert "no error above the noise floor is left" in text
+
+
+def test_the_noise_floor_is_explained(tmp_path):
+    text = Page(report(tmp_path, made_up.ONE)).text
+    assert "the noise measured in these recordings (audit.json)" in text
+    assert "at least 0.3 mrad for a turning joint" in text
+    assert "noise alone makes" not in text
 
 
 def test_what_was_not_computed_is_a_dash(tmp_path):
     fit = dataclasses.replace(made_up.EFFECTS.fit, ceiling=None, wrong_place=None)
     verdict = dataclasses.replace(made_up.ONE, fit=fit)
     text = Page(report(tmp_path, verdict)).text
-    assert "all channels 5.7 1.3 1.0 \N{EN DASH} \N{EN DASH} 4.6 noise" in text
-    assert "control: the effect elsewhere" not in text
-    assert "control: a wrong effect there" in text
+    assert "5.7 1.3 94 % 1.0 \N{EN DASH} \N{EN DASH} 4.6 noise floors" in text
+    assert "control: the same effect" not in text
+    assert "control: another effect at this place" in text
 
 
 def test_it_can_be_asked_what_has_changed(tmp_path):

@@ -13,6 +13,7 @@ from diagnosis.verdict.verdict import (
     When,
 )
 from experiments.diagnosis_report.figures import CLOSE_UP_S, close_up
+from experiments.diagnosis_report.findings import finding, findings
 from experiments.diagnosis_report.numbers import (
     amount_text,
     error_unit,
@@ -25,7 +26,6 @@ from experiments.diagnosis_report.place_words import (
     channel_words,
     place_words,
 )
-from experiments.diagnosis_report.text import finding, findings
 from experiments.diagnosis_report.words import WORDS, effect_words
 from groundwalk.errors import UnknownNameError
 

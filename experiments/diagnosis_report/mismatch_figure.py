@@ -1,4 +1,4 @@
-"""The mismatch map: which channels are off, in which parts of the data, and when."""
+"""The mismatch map as a figure: channels, parts of the data, and times with errors."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -6,27 +6,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnosis.verdict.verdict import MismatchCell
-from experiments.diagnosis_report.figure_style import FAINT, REAL, SIM, note, plain
+from experiments.diagnosis_report.figure_style import (
+    FAINT,
+    REAL,
+    SIM,
+    new_figure,
+    note,
+    plain,
+)
 from experiments.diagnosis_report.numbers import percent
-from experiments.diagnosis_report.svg import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_MOST_ROWS, _FEW_ROWS, _SMALL_SHARE = 12, 4, 0.005
+_MOST_ROWS = 12
+"""Channels in the map at most."""
+_FEW_ROWS, _SMALL_SHARE = 4, 0.005
+"""Below this share of the mismatch a channel is left out, except for the first few."""
 _SHARE_WIDTH, _CELL_WIDTH, _BURST_WIDTH = 2.0, 0.9, 2.6
+"""Relative widths of the bars, of one column of cells, and of the time axis."""
 _LEAST_TOP = 0.7
-"""The darkest colour means five times the noise, or more."""
+"""Decimal logarithm of the error at which cells are darkest, at least: 5 noise floors.
+Errors near the noise thus stay pale even where they are the largest ones."""
 _DARK = 0.6
-"""Cells from this part of the scale on have light numbers."""
+"""Share of the colour scale above which a cell's number is white."""
 
 
 def worst_cells(cells: Sequence[MismatchCell]) -> list[MismatchCell]:
-    """What the map shows: the worst channel first, and few that hold next to nothing.
+    """The channels that the map shows, the worst first.
 
     Args:
-      cells: of a verdict.
+      cells: all channels of a verdict's mismatch map.
     """
     ranked = sorted(cells, key=lambda cell: -cell.share)[:_MOST_ROWS]
     return [
@@ -37,7 +48,10 @@ def worst_cells(cells: Sequence[MismatchCell]) -> list[MismatchCell]:
 
 
 def mismatch_figure(rows: Sequence[MismatchCell]) -> "Figure":
-    """A row for each channel: share of the mismatch, regimes, and bursts.
+    """A row for each channel: its share of the mismatch, its errors, its bursts.
+
+    Errors are given for each part of the data (regime), such as "reversals". Panels
+    without content are left out.
 
     Args:
       rows: channels from top to bottom; at least one.
@@ -47,7 +61,7 @@ def mismatch_figure(rows: Sequence[MismatchCell]) -> "Figure":
     widths = [_SHARE_WIDTH]
     widths += [_CELL_WIDTH * len(regimes)] * bool(regimes)
     widths += [_BURST_WIDTH] * has_bursts
-    figure = new_figure(0.27 * len(rows) + 1.15)
+    figure = new_figure(0.27 * len(rows) + 1.3)
     panels = figure.subplots(
         1, len(widths), squeeze=False, sharey=True, width_ratios=widths
     )[0]
@@ -71,13 +85,13 @@ def _draw_shares(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
     axes.spines["bottom"].set_visible(False)
     axes.set_xlim(0, 1.35 * max(*shares, 1))
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    _head(axes, "share of the mismatch")
+    _head(axes, "share of\nthe mismatch")
 
 
 def _draw_regimes(
     axes: "Axes", rows: Sequence[MismatchCell], regimes: Sequence[str]
 ) -> None:
-    """Cells darken with the logarithm of the error in units of the noise."""
+    """Draw the errors as cells that darken with the error's logarithm."""
     from matplotlib.colors import LinearSegmentedColormap
 
     colours = LinearSegmentedColormap.from_list(
@@ -107,7 +121,7 @@ def _draw_regimes(
     axes.tick_params(axis="y", left=False)
     axes.set_xlim(-0.5, len(regimes) - 0.5)
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    _head(axes, "error in units of the noise, by part of the data")
+    _head(axes, "error in multiples\nof the noise floor")
 
 
 def _draw_bursts(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
@@ -116,8 +130,9 @@ def _draw_bursts(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
         axes.broken_barh(spans, (row - 0.31, 0.62), color=SIM, alpha=0.85, lw=1)
     plain(axes, grid="x")
     axes.set_xlabel("time [s]")
-    _head(axes, "bursts")
+    _head(axes, "times with\nlarge errors")
 
 
 def _head(axes: "Axes", text: str) -> None:
+    """Put two short lines above a panel; a long one would run into the next panel."""
     axes.set_title(text, loc="left", fontsize=8.5, color=FAINT)

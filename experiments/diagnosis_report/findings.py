@@ -1,0 +1,161 @@
+"""What a diagnosis found, in words: effects, with places and values, and pulses."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby, pairwise
+
+import numpy as np
+
+from diagnosis.verdict.verdict import Found, Pulse
+from experiments.diagnosis_report.numbers import estimate_text, percent
+from experiments.diagnosis_report.place_words import place_words
+from experiments.diagnosis_report.words import effect_words
+
+MANY = 3
+"""An effect found at this many places or more is summed up in one clause."""
+
+SHOWN = 0.01
+"""A value closer to zero than this share of its interval is not told: the data do not
+show it. Insensitive: values that the data show are far above it."""
+
+_WAYS = {
+    "actuator input": "came in at the input of the actuator of {joint}",
+    "torque sensor": "came in at the torque sensor of {joint}, which never felt them",
+    "position sensor": "came in at the position sensor of {joint} and were no torque",
+}
+
+
+def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
+    """A clause for each effect; one clause for all places of an effect found at many.
+
+    Args:
+      effects: the surest first.
+      changed: whether the question was what has changed since the reference.
+    """
+    return [
+        at_many(group) if len(group) > 1 else finding(group[0], changed)
+        for group in told_together(effects)
+    ]
+
+
+def told_together(effects: Sequence[Found]) -> list[list[Found]]:
+    """Groups of effects to be told in one clause each, in their order.
+
+    Most groups hold one effect. Those of one name at `MANY` places or more, acting all
+    the time, form one group.
+    """
+    groups: dict[str, list[Found]] = {}
+    for effect in effects:
+        alike = [one for one in effects if one.name == effect.name]
+        many = len(alike) >= MANY and all(
+            one.when.kind == "always" and one.parameters for one in alike
+        )
+        key = effect.name if many else f"{effect.name}@{effect.place}"
+        groups.setdefault(key, []).append(effect)
+    return [*groups.values()]
+
+
+def at_many(alike: Sequence[Found]) -> str:
+    """A clause with the range of one effect's first value, and where its ends are.
+
+    Args:
+      alike: the same effect at different places.
+    """
+    name = next(iter(alike[0].parameters))
+    order = sorted(alike, key=lambda one: one.parameters[name].value)
+
+    def value(effect: Found) -> str:
+        one = effect.parameters[name]
+        alone = estimate_text(replace(one, low=one.value, high=one.value))
+        return f"about {alone} at {place_words(effect.place)}"
+
+    return (
+        f"{effect_words(alike[0].name).label} at {len(alike)} places, "
+        f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
+    )
+
+
+def finding(effect: Found, changed: bool = False) -> str:
+    """A clause: "the left knee (LKneePitch) has play of about 0.030 rad (...) ...".
+
+    Args:
+      effect: to be told.
+      changed: whether the question was what has changed since the reference.
+    """
+    words = effect_words(effect.name)
+    numbers = {
+        name: f"about {estimate_text(one)}"
+        for name, one in effect.parameters.items()
+        if abs(one.value) > SHOWN * (one.high - one.low)
+    }
+    clause = words.finding.format_map(
+        _Words(
+            numbers,
+            joint=place_words(effect.place),
+            body=place_words(effect.place, "body"),
+            lacking="that was not there before" if changed else "that the sim lacks",
+            usual="before" if changed else "in the sim",
+        )
+    )
+    course, start_s, end_s = effect.when.kind, effect.when.start_s, effect.when.end_s
+    if course == "always":
+        return clause
+    doing = "from" if course == "burst" else "growing from"
+    return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s"
+
+
+class _Words(dict[str, str]):
+    """Words that fill a template; a parameter without one is "an unknown amount"."""
+
+    def __init__(self, numbers: dict[str, str], **words: str) -> None:
+        super().__init__(numbers | words)
+
+    def __missing__(self, key: str) -> str:
+        return "an unknown amount"
+
+
+def parameter_rows(effect: Found) -> list[tuple[str, str]]:
+    """Each parameter's name and its value with interval, as they are printed."""
+    return [
+        (name.replace("_", " "), estimate_text(one))
+        for name, one in effect.parameters.items()
+    ]
+
+
+def pulse_sentences(pulses: Sequence[Pulse]) -> Iterator[str]:
+    """A sentence for the pulses of each recording, joint and source.
+
+    Args:
+      pulses: torques that no servo asked for, in any order.
+    """
+
+    def key(pulse: Pulse) -> tuple[str, str, str]:
+        return pulse.recording, pulse.joint, pulse.source
+
+    for (recording, joint, source), own in groupby(sorted(pulses, key=key), key):
+        alike = list(own)
+        way = _WAYS[source].format(joint=place_words(joint))
+        yield f"{_amounts(alike)} in {recording} {way}: {_evidence(alike[0])}"
+
+
+def _amounts(pulses: Sequence[Pulse]) -> str:
+    """Number, mean size, median length and times of some pulses."""
+    size = np.mean([pulse.torque for pulse in pulses])
+    length_s = np.median([pulse.end_s - pulse.start_s for pulse in pulses])
+    apart = [after.start_s - before.start_s for before, after in pairwise(pulses)]
+    every = f" every {np.median(apart):.3g} s" if apart else ""
+    count = f"{len(pulses)} pulses" if apart else "A pulse"
+    return (
+        f"{count} of {size:.4g} {pulses[0].unit}, {length_s:.3g} s long, from "
+        f"{pulses[0].start_s:.3f} s on{every}"
+    )
+
+
+def _evidence(pulse: Pulse) -> str:
+    """Which measured signal jumps with a pulse, and whether the motion follows it."""
+    signal = "position" if pulse.source == "position sensor" else "torque"
+    jumps = min(max(pulse.jumps[signal], 0.0), 1.0)
+    edges = f"{percent(jumps)} of their edges are in the measured {signal}"
+    if signal == "position":
+        return edges
+    return f"{edges}, and the motion follows {percent(min(max(pulse.felt, 0.0), 1.0))}"
