@@ -1,7 +1,6 @@
 """Bodies of a compiled MuJoCo model made heavier, as if its file had said so."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Any
 
 from groundwalk.errors import BadValueError, UnknownNameError
@@ -36,19 +35,3 @@ def scale_mass(model: Any, data: Any, factor: float, bodies: Sequence[str]) -> N
         model.body_mass[index] *= factor
         model.body_inertia[index] *= factor
     mujoco.mj_setConst(model, data)
-
-
-@contextmanager
-def quiet_compiler() -> Iterator[None]:
-    """Drop MuJoCo's warnings inside.
-
-    Gymnasium's own models use attributes that MuJoCo 4 calls deprecated, and it would
-    write a log file into the working directory each time.
-    """
-    import mujoco
-
-    mujoco.set_mju_user_warning(lambda message: None)
-    try:
-        yield
-    finally:
-        mujoco.set_mju_user_warning(None)

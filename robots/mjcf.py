@@ -25,6 +25,20 @@ COUPLING_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 SIDES = ("left", "right")
 
 
+def quiet_mujoco() -> None:
+    """Switch off MuJoCo's log, on the console and as a file in the working folder.
+
+    The log is one for the whole process, and stays off. Worlds report physics that has
+    blown up by themselves, and the deprecated attributes of Gymnasium's models are
+    nothing that a user could change.
+    """
+    import mujoco
+
+    log = mujoco.MjLogConfig.get()
+    log.logto_console = log.logto_file = False
+    log.set()
+
+
 def mujoco_spec(description: Description) -> "mujoco.MjSpec":
     """The robot as an editable MuJoCo specification.
 

@@ -1,4 +1,4 @@
-"""When a rollout is over: the robot fell, flew apart or left its ground."""
+"""When a rollout is over: the robot fell, diverged or left its ground."""
 
 import math
 from collections import defaultdict
@@ -12,16 +12,38 @@ from worlds.observation import Truth
 from worlds.world import End
 
 FALL_TILT_RAD = math.radians(60)
+"""A torso whose up axis is farther than this from the vertical has fallen."""
 FALL_HEIGHT_RATIO = 0.5
+"""A torso that is below this share of its start height over the ground has fallen."""
 DIVERGED_SPEED_M_S = 50.0
-"""A torso this fast is not walking: the integration has gone wrong."""
+"""A torso this fast is not walking: the integration has gone wrong. Walks stay below
+1 m/s and falls below 5 m/s."""
+
+
+def fallen(
+    up_z: FloatArray, height_m: FloatArray, start_height_m: float | FloatArray
+) -> BoolArray:
+    """(n,) whether torsos have fallen: the one rule of all worlds.
+
+    Args:
+      up_z: (n,) cosine of the angle between the torso's up axis and the vertical.
+      height_m: (n,) height of the torso above the ground below it.
+      start_height_m: that height at the start, one number or (n,).
+    """
+    low = height_m < FALL_HEIGHT_RATIO * start_height_m
+    return np.asarray((up_z < math.cos(FALL_TILT_RAD)) | low)
 
 
 class EndRule:
     """Decides for n robots whether their rollouts are over."""
 
     def __init__(self, grounds: Sequence[Heightfield], start: Truth) -> None:
-        """Remember how high every torso started."""
+        """Remember how high every torso starts.
+
+        Args:
+          grounds: one per robot; robots may share one object.
+          start: where the robots start.
+        """
         robots = defaultdict(list)
         for i, ground in enumerate(grounds):
             robots[id(ground)].append(i)
@@ -33,9 +55,6 @@ class EndRule:
     def __call__(self, truth: Truth, sound: BoolArray) -> Mapping[End, BoolArray]:
         """Which rollouts end now, and why.
 
-        A fall is a torso's up axis more than 60 degrees from vertical, or its height
-        above the ground below half of its start height.
-
         Args:
           truth: where the robots are; rows that are not sound may hold anything.
           sound: (n,) whether a robot's physics gave finite numbers.
@@ -45,8 +64,7 @@ class EndRule:
         """
         with np.errstate(invalid="ignore", over="ignore"):
             height_m, on_ground = self._above_ground(truth)
-            low = height_m < FALL_HEIGHT_RATIO * self._start_height_m
-            fell = (truth.up_z < math.cos(FALL_TILT_RAD)) | low
+            fell = fallen(truth.up_z, height_m, self._start_height_m)
             speed_m_s = np.abs(truth.base_linear_velocity_m_s).max(axis=1)
             diverged = ~sound | ~(speed_m_s < DIVERGED_SPEED_M_S)
         return {

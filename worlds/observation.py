@@ -70,5 +70,14 @@ class Truth(_PerRobot):
     @property
     def up_z(self) -> FloatArray:
         """(n,) cosine of the angle between the torso's up axis and the vertical."""
-        _, x, y, _ = self.base_orientation.T
-        return np.asarray(1.0 - 2.0 * (x * x + y * y))
+        return up_z(self.base_orientation)
+
+
+def up_z(orientation: FloatArray) -> FloatArray:
+    """(n,) cosine of the angle between a body's up axis and the vertical.
+
+    Args:
+      orientation: (n, 4) unit quaternions w, x, y, z from body to world.
+    """
+    _, x, y, _ = orientation.T
+    return np.asarray(1.0 - 2.0 * (x * x + y * y))

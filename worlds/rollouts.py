@@ -17,7 +17,7 @@ from worlds.world import TICK_S, End, WorldOptions
 
 Schedule = list[tuple[FloatArray, int]]
 
-_MOST_RAD = 1e6
+MOST_RAD = 1e6
 """Beyond this a number is no joint position: something has gone wrong."""
 
 
@@ -67,7 +67,7 @@ class RolloutWorld(ABC):
         if not _are_positions(targets).all():
             raise BadValueError(
                 "a pose to start from holds what is no joint position; it must be "
-                f"finite and within {_MOST_RAD:g} rad"
+                f"finite and within {MOST_RAD:g} rad"
             )
         self._start(targets)
         self._delay.reset(targets)
@@ -148,4 +148,4 @@ class RolloutWorld(ABC):
 
 def _are_positions(joints_rad: FloatArray) -> BoolArray:
     """(n,) whether all of a robot's numbers can be joint positions; NaN cannot."""
-    return np.asarray(np.all(np.abs(joints_rad) < _MOST_RAD, axis=1))
+    return np.asarray(np.all(np.abs(joints_rad) < MOST_RAD, axis=1))

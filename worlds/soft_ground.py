@@ -1,12 +1,13 @@
-"""Ground that gives under a foot: a spring and a damper, the same in both worlds.
+"""Soft ground: a spring and a damper under each foot, the same in both worlds.
 
-Normal force of a flat foot K r + B r', with r how deep it sinks in (Kelvin-Voigt;
+A flat foot that has sunk in by r feels the normal force K r + B r' (Kelvin-Voigt;
 Gilardi and Sharf 2002, "Literature survey of contact dynamics modelling", section 4).
-The points of a sole share a foot's K and B evenly. So a robot at rest on one level foot
+The points of a sole share a foot's K and B evenly. A robot at rest on one level foot
 sinks in by weight / K, and by half of that on two.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,21 +19,24 @@ if TYPE_CHECKING:
     import mujoco
 
 DAMPING_RATIO = 0.1
-"""Of critical, for the whole robot on one foot."""
+"""Damping as a share of the critical damping of the whole robot on one foot: a landing
+foot rebounds once or twice. Insensitive within a factor of two."""
 
 _ADDED_MASS = 0.25
-"""Of the foot's own: what MuJoCo's contacts seem to weigh."""
+"""Share by which a foot's effective inverse mass in MuJoCo's contacts exceeds its own;
+measured: with this value a standing robot sinks in as deep as the spring says."""
 
 _IMPEDANCE_RATIO = 100.0
-"""A sticking foot creeps at tangential force / B; this slows it to a hundredth."""
+"""Ratio of friction's impedance to that of the normal force. A sticking foot creeps at
+tangential force / B; with this ratio only at a hundredth of that speed."""
 
 
 @dataclass(frozen=True)
 class FootSpring:
-    """What the ground is to one whole foot.
+    """Stiffness and damping of the ground under one whole foot.
 
     Attributes:
-      stiffness_n_m: K.
+      stiffness_n_m: K in the force K r + B r' of a foot that has sunk in by r.
       damping_n_s_m: B.
     """
 
@@ -41,7 +45,12 @@ class FootSpring:
 
     @classmethod
     def sinking(cls, description: Description, sinkage_m: float) -> "FootSpring":
-        """The ground into which this robot sinks so deep when it stands on one foot."""
+        """The ground into which a robot sinks by a given depth on one foot.
+
+        Args:
+          description: the robot.
+          sinkage_m: the depth, above 0.
+        """
         mass_kg = description.mass_kg
         stiffness_n_m = mass_kg * GRAVITY_M_S2 / sinkage_m
         critical = 2 * math.sqrt(stiffness_n_m * mass_kg)
@@ -79,6 +88,7 @@ def soften_bullet(
     bullet: Any,
     client: dict[str, int],
     body: int,
+    links: Sequence[int],
     description: Description,
     spring: FootSpring,
 ) -> None:
@@ -87,7 +97,8 @@ def soften_bullet(
     Args:
       bullet: the module.
       client: names the physics client.
-      body: the robot's number; its links are the joints in their order.
+      body: the robot's number.
+      links: numbers of the joints' links, in the description's order.
       description: the robot.
       spring: of a whole foot.
     """
@@ -95,7 +106,7 @@ def soften_bullet(
         points = len(contact_points(foot))
         bullet.changeDynamics(
             body,
-            foot.joint,
+            links[foot.joint],
             contactStiffness=spring.stiffness_n_m / points,
             contactDamping=spring.damping_n_s_m / points,
             **client,

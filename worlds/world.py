@@ -9,7 +9,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots.description import Description
 from robots.sole import FRICTION
-from worlds.hidden.effects import Hidden
+from worlds.hidden.effects import Hidden, surroundings
 from worlds.observation import Observation, Truth
 from worlds.sensor_noise import SensorNoise
 
@@ -74,7 +74,7 @@ class WorldOptions:
             )
         if self.hidden and self.sinkage_m:
             raise BadValueError("of sinkage_m and hidden physics give only one")
-        if any(effect.name == "uneven_ground" for effect in self.hidden):
+        if surroundings(self.hidden).bumps_m:
             raise BadValueError("uneven_ground: give the world an uneven ground")
         if self.threads < 0:
             raise BadValueError(f"threads is {self.threads}; it must not be negative")

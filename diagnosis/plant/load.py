@@ -20,9 +20,9 @@ from groundwalk.errors import BadModelError, BadRecordingError, UnknownNameError
 from robots import Description
 from robots import get as robot
 from robots import names as robot_names
+from robots.mjcf import quiet_mujoco
 from robots.package_paths import example_robots
 from worlds.recordings.columns import nearest
-from worlds.sim.quiet_mujoco import quiet_mujoco
 
 if TYPE_CHECKING:
     import mujoco

@@ -24,7 +24,8 @@ from groundwalk.files import write_text
 from worlds.hidden.effects import Hidden
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
 from worlds.hidden.run import Run, run_hidden
-from worlds.hidden.scales import Scales, scales
+from worlds.hidden.scales import scales
+from worlds.hidden.setting import Scales
 from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
 

@@ -11,13 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.concealed.setting import Setting
-from experiments.concealed.sizes import sized
-from experiments.concealed.where import LEAST_MOTION_RAD, Spot, spots
-from worlds.hidden.effects import KINDS, Hidden
-from worlds.hidden.plant import HiddenPlant
+from worlds.hidden import (
+    KINDS,
+    Hidden,
+    HiddenPlant,
+    Scales,
+    Setting,
+    Spot,
+)
 from worlds.hidden.recorded import HiddenSensors
-from worlds.hidden.scales import Scales
 
 PLANTS = {
     "pendulum": 0.25,
@@ -43,27 +45,8 @@ CONFUSABLE = (
     ("ground_slope", "encoder_offset"),
     ("contact_friction", "contact_compliance"),
 )
-NEEDS_MOTION = (
-    "viscous_friction",
-    "coulomb_friction",
-    "stribeck_friction",
-    "speed_limit",
-    "armature",
-)
-"""Effects that a joint shows only when it moves."""
-APART = (
-    {"backlash", "joint_elasticity"},
-    {"coulomb_friction", "stribeck_friction"},
-)
-"""Never two of these in a case: a joint has play or a spring; Coulomb friction is a
-part of Stribeck's."""
-APART_WITH_BACK_EMF = ({"viscous_friction", "servo_damping"},)
-"""Nor of these where all damping is back-EMF: they cancel."""
-APART_ON_ONE_JOINT = ({"payload_mass", "com_offset", "armature"},)
-"""Nor of these where one joint only shows one weight and one inertia."""
 _CONFUSABLE_SHARE = 0.6
 _COMPOUND_EASE = 0.5
-_ONLY = {"armature": "mujoco", "contact_compliance": "bullet"}
 _QUANTA_RAD = (0.0015, 2 * np.pi / 2**14)
 _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "none": 0}
 
@@ -134,9 +117,9 @@ def drawn_effects(
         drawn = _COMPOUND_EASE + (1 - _COMPOUND_EASE) * drawn
     ease = drawn if ease is None else ease
     if sort.kind != "unexcited":
-        joints = [j for j in joints if scales.asked_rad[j] > LEAST_MOTION_RAD]
-    there = {name: spots(name, plant, scales, joints) for name in KINDS}
-    known = [n for n in there if there[n] and _ONLY.get(n, sort.engine) == sort.engine]
+        joints = [j for j in joints if scales.moving[j]]
+    there = {n: kind.spots(plant, scales, joints) for n, kind in KINDS.items()}
+    known = [n for n in there if there[n] and sort.engine in KINDS[n].engines]
     names = _names(sort.kind, plant, known, rng)
     effects: list[Hidden] = []
     used: set[int] = set()
@@ -145,7 +128,7 @@ def drawn_effects(
         spot = _spot(there[name], used, together, rng)
         used.add(spot.joint)
         setting = Setting(plant, scales, spot, ease, duration_s, rng)
-        effects.append(sized(name, setting))
+        effects.append(Hidden.sized(name, setting))
     return Concealed(tuple(effects), ease)
 
 
@@ -164,7 +147,7 @@ def _names(
     if kind == "outside":
         return [str(rng.choice([name for name in known if KINDS[name].outside]))]
     if kind == "unexcited":
-        return [str(rng.choice([name for name in NEEDS_MOTION if name in known]))]
+        return [str(rng.choice([name for name in known if KINDS[name].needs_motion]))]
     inside = [name for name in known if not KINDS[name].outside]
     names: list[str] = []
     if kind in ("pair", "triple") and rng.uniform() < _CONFUSABLE_SHARE:
@@ -178,9 +161,5 @@ def _names(
 
 
 def _compatible(names: Sequence[str], plant: HiddenPlant) -> bool:
-    apart = [*APART]
-    if not plant.kd_nm_s_rad.any():
-        apart += APART_WITH_BACK_EMF
-    if len(plant.joints) == 1:
-        apart += APART_ON_ONE_JOINT
-    return all(len(group & set(names)) < 2 for group in apart)
+    """Whether these kinds can be distinguished from each other in one case."""
+    return not any(KINDS[name].apart(plant) & set(names) for name in names)

@@ -9,7 +9,7 @@ from groundwalk.errors import UnknownNameError
 from robots import Biped, Description, biped
 from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.legs import legs_of
-from worlds.hidden.body_sense import BodySense
+from worlds.hidden.engine import BodySense
 from worlds.world import TICK_S
 
 STANDING_MOTIONS = ("squat", "fast_squat", "sway")

@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.heavier_bodies import quiet_compiler, scale_mass
+from robots.heavier_bodies import scale_mass
+from robots.mjcf import quiet_mujoco
 
 ARM = """
 <mujoco>
@@ -65,7 +66,7 @@ def test_bad_values_are_refused():
 
 @pytest.fixture
 def logging_to_file():
-    """MuJoCo's own default, which worlds switch off for the whole process."""
+    """MuJoCo's own default, which `quiet_mujoco` switches off."""
     log = mujoco.MjLogConfig.get()
     before = log.logto_file
     log.logto_file = True
@@ -76,12 +77,15 @@ def logging_to_file():
 
 
 @pytest.mark.usefixtures("logging_to_file")
-def test_the_compiler_is_quiet_only_inside(tmp_path, monkeypatch):
+def test_mujoco_logs_into_no_file_once_it_is_quiet(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     old = ARM.replace("<worldbody>", '<compiler settotalmass="3"/><worldbody>')
     old = old.format(upper=2, lower=1)
-    with quiet_compiler():
-        mujoco.MjModel.from_xml_string(old)
-    assert list(tmp_path.iterdir()) == []
     mujoco.MjModel.from_xml_string(old)
     assert [path.name for path in tmp_path.iterdir()] == ["MUJOCO_LOG.TXT"]
+    (tmp_path / "MUJOCO_LOG.TXT").unlink()
+    capfd.readouterr()
+    quiet_mujoco()
+    mujoco.MjModel.from_xml_string(old)
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr() == ("", "")

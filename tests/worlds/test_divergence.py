@@ -52,7 +52,7 @@ def test_a_state_that_is_no_number_ends_that_robot_alone(
     world.reset(poses)
     for tick in range(10):
         if tick == 5:
-            world._qvel[1, 9] = np.nan
+            world.qvel[1, 9] = np.nan
         observation = world.step(poses)
     assert world.ended == [End.NONE, End.DIVERGED, End.NONE]
     truth = world.truth()
@@ -62,14 +62,14 @@ def test_a_state_that_is_no_number_ends_that_robot_alone(
         np.testing.assert_array_equal(rows[1], undisturbed[name][5, 1])
 
 
-def test_a_process_reports_a_blow_up_as_such(make_world, poses, roll):
+def test_a_process_reports_a_blow_up_as_such(make_world, poses, roll, monkeypatch):
     """A pose that Bullet makes NaN of, past the check of `reset`."""
     world = make_world("real", n=3)
     undisturbed = roll(world, poses, [poses])
-    world.reset(poses)
+    monkeypatch.setattr("worlds.rollouts.MOST_RAD", np.inf)
     broken = poses.copy()
     broken[1, -1] = 1e300
-    world._start(broken)
+    world.reset(broken)
     observation = world.step(poses)
     assert world.ended == [End.NONE, End.DIVERGED, End.NONE]
     assert np.isfinite(observation.position_rad).all()

@@ -1,1 +1,25 @@
-"""Physics that a world can have and its nominal model lacks."""
+"""Physics that a world can have and its nominal model lacks: the truth of benchmarks.
+
+Example:
+  >>> from worlds.hidden import Hidden, hidden_plant
+  >>> Hidden.parse("coulomb_friction@swing:torque=0.1")["torque"]
+  0.1
+  >>> hidden_plant("pendulum").joints
+  ('swing',)
+"""
+
+from worlds.hidden.effects import KINDS, Hidden, HiddenKind, surroundings
+from worlds.hidden.plant import HiddenPlant, hidden_plant
+from worlds.hidden.setting import Scales, Setting, Spot
+
+__all__ = [
+    "KINDS",
+    "Hidden",
+    "HiddenKind",
+    "HiddenPlant",
+    "Scales",
+    "Setting",
+    "Spot",
+    "hidden_plant",
+    "surroundings",
+]

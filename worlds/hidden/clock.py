@@ -1,4 +1,4 @@
-"""When a hidden world's ticks happen, and how commands travel meanwhile."""
+"""When a hidden world's ticks happen, and how late commands reach the servos."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True, eq=False)
 class Clock:
-    """When ticks happen, in fine steps.
+    """The control ticks of a recording, counted in fine physics steps.
 
     Attributes:
       step_s: fine step.
@@ -42,9 +42,12 @@ class Clock:
         Args:
           step_s: fine step.
           rate_hz: ticks a second.
-          spans_s: how long before the recording, and how long it is.
-          jitter_s: most by which a tick is off.
-          rng: draws the jitter.
+          spans_s: time before the recording, and length of the recording.
+          jitter_s: largest deviation of a tick from even ticks.
+          rng: draws the deviations.
+
+        Raises:
+          BadValueError: the jitter is so large that ticks change their order.
         """
         first = round(spans_s[0] * rate_hz)
         rows = first + round(spans_s[1] * rate_hz) + 1
@@ -58,14 +61,20 @@ class Clock:
 
 
 _LEAD_STEPS = 0.5
-"""A leapfrog's force at a step's start stands for half a step before and after it."""
+"""Delay that every command has: in a leapfrog integration the force at the start of a
+step stands for half a step before and half a step after it."""
 
 
 class CommandLine:
     """Carries commands to the servos, late by any part of a fine step."""
 
     def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
-        """Nothing is under way; (j,) start_rad has arrived."""
+        """Begin with no command under way.
+
+        Args:
+          start_rad: (j,) command that has reached the servos.
+          delay_steps: delay of later commands, in fine steps.
+        """
         self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
         self._coming: deque[tuple[float, FloatArray]] = deque()
 

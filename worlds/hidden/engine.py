@@ -1,24 +1,54 @@
 """What a hidden world asks of a physics engine."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from terrain import Heightfield
-from worlds.hidden.body_sense import BodySense
-from worlds.hidden.effects import Hidden
-from worlds.hidden.model import hidden_model
+from worlds.hidden.effects.placed import Hidden
 from worlds.hidden.plant import HiddenPlant
 
+ENGINES = ("bullet", "mujoco")
+"""Names of the engines that compute hidden physics."""
 WATCH_STEPS = 8
-"""Forces and accelerations are means over so many fine steps."""
+"""Sensed forces and accelerations are means over this many fine steps: 2 to 4 ms, which
+is shorter than any tick and long enough for the noise of contacts to cancel."""
+
+
+@dataclass(frozen=True, eq=False)
+class BodySense:
+    """Readings of a robot's noiseless sensors, and where its base is.
+
+    In the frame of the ground or of a fixed base's mount. Zero where a robot lacks the
+    sensor.
+
+    Attributes:
+      gyroscope_rad_s, accelerometer_m_s2: (3,) base frame.
+      foot_force_n: (8,) as in `worlds.Observation`.
+      position_m: (3,) of the base.
+      orientation: (4,) quaternion w, x, y, z of the base.
+      linear_m_s: (3,) velocity of the base, ground frame.
+      angular_rad_s: (3,) turning rate of the base, base frame.
+    """
+
+    gyroscope_rad_s: FloatArray
+    accelerometer_m_s2: FloatArray
+    foot_force_n: FloatArray
+    position_m: FloatArray
+    orientation: FloatArray
+    linear_m_s: FloatArray
+    angular_rad_s: FloatArray
 
 
 class HiddenEngine(Protocol):
-    """One robot under joint torques, a fine step at a time."""
+    """One robot under joint torques, a fine step at a time.
+
+    Attributes:
+      position_rad, velocity_rad_s: (j,) of the joints, after the last step.
+    """
 
     position_rad: FloatArray
     velocity_rad_s: FloatArray
@@ -36,72 +66,42 @@ class HiddenEngine(Protocol):
         """(3,) velocity of a body's centre of mass [m/s]."""
 
     def watch(self) -> None:
-        """Take the sensors in; called after each of the last steps of a row."""
+        """Take the sensors in; called after each of the last steps of a tick."""
 
     def sense(self) -> BodySense:
-        """What the sensors say, as a mean of what was watched since last asked."""
+        """What the sensors say: means over the steps watched since the last call."""
 
     def close(self) -> None:
-        """Give back memory."""
-
-
-def hidden_engine(
-    name: str,
-    plant: HiddenPlant,
-    effects: Sequence[Hidden],
-    step_s: float,
-    ground: Heightfield | None,
-) -> HiddenEngine:
-    """An engine with the robot in it.
-
-    Raises:
-      BadValueError: the engine does not know one of the effects.
-    """
-    from worlds.hidden.mujoco_engine import HiddenMujoco
-    from worlds.real.bullet_engine import HiddenBullet
-
-    check_engine(name, effects)
-    model = hidden_model(plant, effects, step_s, ground)
-    if name == "mujoco":
-        return HiddenMujoco(plant, model)
-    return HiddenBullet(plant, model, effects, ground)
+        """Free memory."""
 
 
 def check_engine(name: str, effects: Sequence[Hidden]) -> None:
-    """Refuse what an engine does not know.
+    """Refuse effects that an engine cannot compute.
 
     Raises:
-      BadValueError: it is no engine, or has not one of the effects.
+      BadValueError: there is no such engine, or it lacks one of the effects.
     """
-    names = {effect.name for effect in effects}
-    if name not in ("bullet", "mujoco"):
-        raise BadValueError(f"engine is {name!r}; it must be bullet or mujoco")
-    if name == "mujoco" and "contact_compliance" in names:
-        raise BadValueError("contact_compliance is hidden in bullet only")
-    if name == "bullet" and "armature" in names:
-        raise BadValueError("armature is hidden in mujoco only; Bullet has none")
+    if name not in ENGINES:
+        raise BadValueError(f"engine is {name!r}; it must be {' or '.join(ENGINES)}")
+    for effect in effects:
+        if name not in effect.kind.engines:
+            only = " and ".join(effect.kind.engines)
+            raise BadValueError(f"{effect.name} needs the engine {only}, not {name}")
 
 
-def least_inertia_kg_m2(
-    plant: HiddenPlant, poses_rad: Sequence[FloatArray]
-) -> FloatArray:
-    """(j,) what a torque at each joint accelerates, all others free; the least.
+def least_inertia_kg_m2(plant: HiddenPlant, pose_rad: FloatArray) -> FloatArray:
+    """(j,) inertia that a torque at each joint accelerates with all other joints free.
 
     Args:
       plant: the nominal robot.
-      poses_rad: (j,) poses that it takes.
+      pose_rad: (j,) where the joints are.
     """
     import mujoco
 
     model = plant.make_spec().compile()
     data = mujoco.MjData(model)
-    free = 7 if plant.floating else 0
-    least = np.full(len(plant.joints), np.inf)
-    for pose in poses_rad:
-        data.qpos[free:] = pose
-        mujoco.mj_forward(model, data)
-        mass = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(model, data, mass)
-        inverse = np.diag(np.linalg.inv(mass))[-len(plant.joints) :]
-        least = np.minimum(least, 1.0 / inverse)
-    return least
+    data.qpos[7 if plant.floating else 0 :] = pose_rad
+    mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    return np.asarray(1.0 / np.diag(np.linalg.inv(mass))[-len(plant.joints) :])

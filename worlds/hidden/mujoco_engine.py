@@ -1,11 +1,11 @@
-"""A hidden world in MuJoCo, at a fine step."""
+"""MuJoCo as the engine of a robot with hidden physics."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from worlds.hidden.body_sense import BodySense
+from worlds.hidden.engine import BodySense
 from worlds.hidden.plant import HiddenPlant
 from worlds.sim.model import ROOT_QPOS, ROOT_QVEL, touch_shares
 
@@ -94,4 +94,4 @@ class HiddenMujoco:
         )
 
     def close(self) -> None:
-        """Nothing to give back."""
+        """Nothing has to be freed."""

@@ -1,4 +1,4 @@
-"""What sensors make of a run with hidden physics: a recording."""
+"""Sensors: they turn a run with hidden physics into a recording."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from worlds.hidden.effects import Hidden
+from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.run import Run
 from worlds.recordings.columns import vector_columns
@@ -18,7 +18,7 @@ from worlds.recordings.recording import Recording
 
 @dataclass(frozen=True)
 class HiddenSensors:
-    """Standard deviations and quanta.
+    """Standard deviations of the sensors' noise, and their resolution.
 
     Attributes:
       quantum_rad: resolution of the encoders; 12 bits a turn.
@@ -26,10 +26,10 @@ class HiddenSensors:
       gyroscope_rad_s: noise of each axis.
       accelerometer_m_s2: noise of each axis.
       foot_force_n: noise of each foot's sum.
-      place_m: of the base, as cameras see it.
-      turn_rad: of the base, likewise.
-      linear_m_s: of the base's velocity.
-      angular_rad_s: of the base's turning rate.
+      place_m: noise of each coordinate of the base, as motion capture measures it.
+      turn_rad: noise of the base's orientation about each axis.
+      linear_m_s: noise of each component of the base's velocity.
+      angular_rad_s: noise of each component of the base's turning rate.
     """
 
     quantum_rad: float = 2 * math.pi / 4096
@@ -57,17 +57,17 @@ def hidden_recording(
     rng: np.random.Generator,
     metadata: RecordingMetadata,
 ) -> Recording:
-    """What is written down: encoders, their differences, and what the base carries.
+    """A run as its sensors measure it, from the beginning of the recording on.
 
-    Velocities are differences of the encoders' numbers, as cheap servos give them.
+    Velocities are differences of the encoders' readings, as cheap servos give them.
 
     Args:
       plant: the robot.
-      run: what really happened.
-      effects: what is hidden; the gyroscope's bias is one.
+      run: the true motion.
+      effects: what is hidden; one of them may bias the gyroscope.
       sensors: how good the sensors are.
       rng: draws the noise.
-      metadata: of the recording.
+      metadata: goes into the recording as it is.
     """
     first = run.clock.first
     measured = run.encoder_rad + sensors.encoder_rad * rng.standard_normal(
@@ -86,7 +86,8 @@ def hidden_recording(
         for name, values in zip(plant.joints, table.T, strict=True):
             columns[f"{quantity}.{name}"] = values
     if plant.description is not None:
-        columns |= _inertial(run, effects, sensors, rng)
+        bias = surroundings(effects).gyroscope_bias_rad_s
+        columns |= _inertial(run, bias, sensors, rng)
     if plant.floating:
         columns |= _base(run, sensors, rng)
     return Recording({name: v[first:] for name, v in columns.items()}, metadata)
@@ -97,14 +98,9 @@ def _vector(name: str, table: FloatArray) -> dict[str, FloatArray]:
 
 
 def _inertial(
-    run: Run,
-    effects: Sequence[Hidden],
-    sensors: HiddenSensors,
-    rng: np.random.Generator,
+    run: Run, bias: FloatArray, sensors: HiddenSensors, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
-    bias = np.zeros(3)
-    for effect in (e for e in effects if e.name == "gyro_bias"):
-        bias += [effect[axis] for axis in "xyz"]
+    """Gyroscope and accelerometer."""
     rate, felt = run.sense["gyroscope_rad_s"], run.sense["accelerometer_m_s2"]
     noise = rng.standard_normal((2, *rate.shape))
     return _vector(
@@ -115,6 +111,7 @@ def _inertial(
 def _base(
     run: Run, sensors: HiddenSensors, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
+    """Foot forces, and pose and velocities of the base."""
     sense, rows = run.sense, len(run.command_rad)
 
     def noisy(name: str, spread: float) -> FloatArray:

@@ -1,38 +1,39 @@
-"""One recording of a robot with hidden physics: fine steps between ticks."""
+"""Lets a robot with hidden physics follow commands: the run behind one recording."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from worlds.hidden.body_sense import BodySense
+from terrain import Heightfield
+from worlds.falls import fallen
 from worlds.hidden.clock import Clock
 from worlds.hidden.drive import HiddenDrive
-from worlds.hidden.effects import Hidden
-from worlds.hidden.engine import HiddenEngine, hidden_engine
-from worlds.hidden.model import hidden_ground, tilt
+from worlds.hidden.effects.placed import Hidden, surroundings
+from worlds.hidden.engine import BodySense, HiddenEngine
 from worlds.hidden.plant import HiddenPlant
+from worlds.observation import up_z
+from worlds.real.engines import hidden_engine
 from worlds.sim.start_height import Standing
 
 Feed = Callable[[int, BodySense], FloatArray]
-"""(j,) command of a tick, from its number and what is felt then."""
-_FALLEN_UP = 0.5
-"""Cosine between the base's up axis and the vertical: 60 degrees."""
-_FALLEN_HEIGHT = 0.5
+"""(j,) command of a tick, from the tick's number and the sensors' readings."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What really happened, without noise; rows are the clock's ticks.
+    """The true motion, without noise; rows are the clock's ticks.
 
     Attributes:
       clock: the ticks.
       command_rad: (rows, j) sent at each tick.
-      encoder_rad: (rows, j) what perfect encoders say, offsets and delays included.
+      encoder_rad: (rows, j) readings of noiseless encoders, offsets and delays
+        included.
       position_rad: (rows, j) of the joints.
-      sense: arrays (rows, ...) by `BodySense`'s names, in the true vertical's frame.
-      ok: whether the physics stayed sound and a floating base upright.
+      sense: arrays (rows, ...) by `BodySense`'s names; the base's motion is in a frame
+        whose z axis is the true vertical.
+      ok: whether all numbers are finite and a floating base has not fallen.
     """
 
     clock: Clock
@@ -61,12 +62,13 @@ def run_hidden(
       clock: when commands are sent and sensors read.
       feed: the commands.
       start_rad: (j,) pose at the first tick, where the robot rests.
-      seed: of uneven ground.
+      seed: of the bumps of uneven ground.
 
     Raises:
       GroundwalkError: a place is unknown, or the engine lacks an effect.
     """
-    ground = hidden_ground(effects, seed) if plant.floating else None
+    around = surroundings(effects)
+    ground = around.ground(seed) if plant.floating else None
     world = hidden_engine(engine, plant, effects, clock.step_s, ground)
     height_m = 0.0
     if plant.description is not None and ground is not None:
@@ -76,19 +78,18 @@ def run_hidden(
     world.reset(start_rad, height_m)
     try:
         drive = HiddenDrive(plant, effects, world, clock.step_s, start_rad)
-        return _recorded(world, drive, effects, clock, feed)
+        run = _recorded(world, drive, clock, feed)
     finally:
         world.close()
+    return replace(
+        run,
+        sense=_upright(run.sense, around.tilt()),
+        ok=run.ok and (ground is None or _stands(run.sense, ground)),
+    )
 
 
-def _recorded(
-    world: HiddenEngine,
-    drive: HiddenDrive,
-    effects: Sequence[Hidden],
-    clock: Clock,
-    feed: Feed,
-) -> Run:
-    """All ticks; commands stop where the physics has blown up."""
+def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed) -> Run:
+    """All ticks, in the frame of the ground; no more commands once numbers blow up."""
     ticks, zero = clock.ticks, int(clock.ticks[clock.first])
     commands, encoders, positions, senses = [], [], [], []
     ok = True
@@ -111,21 +112,28 @@ def _recorded(
         command_rad=np.stack(commands),
         encoder_rad=np.stack(encoders),
         position_rad=np.stack(positions),
-        sense=_upright(felt, tilt(effects)),
-        ok=ok and _stands(felt),
+        sense=felt,
+        ok=ok,
     )
 
 
-def _stands(felt: dict[str, FloatArray]) -> bool:
-    """Whether a base has stayed upright; one that is fixed has."""
-    _, x, y, _ = felt["orientation"].T
-    height_m = felt["position_m"][:, 2]
-    up = bool((1 - 2 * (x * x + y * y) > _FALLEN_UP).all())
-    return up and bool((height_m >= _FALLEN_HEIGHT * height_m[0]).all())
+def _stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
+    """Whether a floating base has numbers and has not fallen, in the ground's frame."""
+    place_m, turn = felt["position_m"], felt["orientation"]
+    if not (np.isfinite(place_m).all() and np.isfinite(turn).all()):
+        return False
+    x, y, z = place_m.T
+    height_m = z - ground.height_at(x, y)
+    return not bool(fallen(up_z(turn), height_m, float(height_m[0])).any())
 
 
 def _upright(felt: dict[str, FloatArray], turn: FloatArray) -> dict[str, FloatArray]:
-    """The base's motion as seen from a frame whose z is the true vertical."""
+    """The base's motion in a frame whose z axis is the true vertical.
+
+    Args:
+      felt: arrays (rows, ...) by `BodySense`'s names, in the ground's frame.
+      turn: (3, 3) rotation from the ground's frame to the upright one.
+    """
     import mujoco
 
     if np.array_equal(turn, np.eye(3)):

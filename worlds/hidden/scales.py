@@ -1,50 +1,25 @@
-"""How large the nominal robot's own torques, speeds and masses are in a motion."""
+"""Measures what the nominal robot does in a motion: `worlds.hidden.setting.Scales`."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray
-from worlds.hidden.bodies import Bodies, bodies
+from groundwalk.arrays import BoolArray, FloatArray
 from worlds.hidden.engine import least_inertia_kg_m2
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.run import Run
+from worlds.hidden.servos import servo_torque_nm
+from worlds.hidden.setting import Bodies, Scales
 
 _MOSTLY = 95
-
-
-@dataclass(frozen=True, eq=False)
-class Scales:
-    """Arrays (j,) over joints; what hidden sizes are parts of.
-
-    Attributes:
-      torque_nm: that the servos mostly stay below.
-      peak_nm: most torque.
-      peak_rad_s: highest speed of a command.
-      reach_rad: (j, 2) lowest and highest position.
-      asked_rad: how far apart its commands are.
-      inertia_kg_m2: what a joint moves.
-      carried_kg: mass of all that hangs on a joint.
-      axis: (j, 3) in the frame of that body.
-      moving_kg: all that moves.
-      bodies: how far they move, and their weights' levers.
-    """
-
-    torque_nm: FloatArray
-    peak_nm: FloatArray
-    peak_rad_s: FloatArray
-    reach_rad: FloatArray
-    asked_rad: FloatArray
-    inertia_kg_m2: FloatArray
-    carried_kg: FloatArray
-    axis: FloatArray
-    moving_kg: float
-    bodies: Bodies
+"""Percentile of a servo's torque that stands for its usual torque: single peaks at the
+start of a motion do not count."""
+_POSES = 100
+"""Poses of each run in which bodies are measured; runs of 10 s at 10 poses a second."""
 
 
 def scales(plant: HiddenPlant, runs: Sequence[Run]) -> Scales:
-    """Measured on runs of the nominal robot; the largest of them counts.
+    """Measure runs of the nominal robot; where they differ the largest value counts.
 
     Args:
       plant: the robot.
@@ -70,18 +45,113 @@ def scales(plant: HiddenPlant, runs: Sequence[Run]) -> Scales:
         peak_rad_s=np.concatenate(asked).max(axis=0),
         reach_rad=np.stack([places.min(axis=0), places.max(axis=0)], axis=1),
         asked_rad=np.ptp(commands, axis=0),
-        inertia_kg_m2=least_inertia_kg_m2(plant, [runs[0].position_rad[0]]),
+        inertia_kg_m2=least_inertia_kg_m2(plant, runs[0].position_rad[0]),
         carried_kg=np.array(carried),
         axis=np.array([model.jnt_axis[joint.id] for joint in joints]),
         moving_kg=float(sum(masses)) + base_kg,
-        bodies=bodies(plant, runs),
+        bodies=_bodies(plant, runs),
     )
 
 
 def _servo_nm(plant: HiddenPlant, run: Run) -> FloatArray:
-    """(rows, j) sizes of the servos' torques."""
+    """(rows, j) absolute torques of the servos [N m]."""
     speed = np.gradient(run.position_rad, run.clock.time_s, axis=0)
-    error = run.command_rad - run.position_rad
-    wanted = plant.kp_nm_rad * error - plant.kd_nm_s_rad * speed
-    held = np.clip(wanted, -plant.max_torque_nm, plant.max_torque_nm)
-    return np.asarray(np.abs(held - plant.back_emf_nm_s_rad * speed))
+    gains = (
+        plant.kp_nm_rad,
+        plant.kd_nm_s_rad,
+        plant.back_emf_nm_s_rad,
+        plant.max_torque_nm,
+    )
+    return np.abs(servo_torque_nm(gains, run.command_rad - run.position_rad, speed))
+
+
+def _bodies(plant: HiddenPlant, runs: Sequence[Run]) -> Bodies:
+    """Measure the bodies in some poses of each run."""
+    names = plant.links
+    if plant.floating and plant.description is not None:
+        names = (*names, plant.description.root.name)
+    probe = _Probe(plant, names)
+    views = [probe.view(pose) for pose in _poses(plant, runs)]
+    centres, levers, branches, carried = (
+        np.array(part) for part in zip(*views, strict=True)
+    )
+    return Bodies(
+        names=names,
+        moved_m=np.linalg.norm(np.ptp(centres, axis=0), axis=1),
+        carried_by=np.asarray(np.any(carried, axis=0)),
+        lever_m=levers.max(axis=0),
+        branch_lever_m=branches.max(axis=0),
+        arm_m=probe.arm_m(),
+    )
+
+
+class _Probe:
+    """Looks at the nominal robot's b bodies and j joints in one pose after another."""
+
+    def __init__(self, plant: HiddenPlant, names: Sequence[str]) -> None:
+        import mujoco
+
+        self._mujoco = mujoco
+        self._model = model = plant.make_spec().compile()
+        self._data = mujoco.MjData(model)
+        self._bodies = [int(model.body(name).id) for name in names]
+        self._joints = [int(model.joint(name).id) for name in plant.joints]
+        self._dofs = model.jnt_dofadr[self._joints]
+
+    def view(
+        self, qpos: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+        """Measure one pose.
+
+        Returns:
+          Centres of mass (b, 3) [m], their levers (b, j) [m], the levers of whole
+          branches (j,) [m], and whether a joint carries a body (b, j).
+        """
+        self._data.qpos[:] = qpos
+        self._mujoco.mj_kinematics(self._model, self._data)
+        self._mujoco.mj_comPos(self._model, self._data)
+        turns = [self._jacobians(body) for body in self._bodies]
+        # Gravity's lever is the rate at which a joint's turn lifts the centre of mass.
+        return (
+            self._data.xipos[self._bodies],
+            np.array([np.abs(linear[2]) for linear, _ in turns]),
+            self._branch_levers(),
+            np.array([np.any(angular != 0, axis=0) for _, angular in turns]),
+        )
+
+    def _jacobians(self, body: int) -> tuple[FloatArray, FloatArray]:
+        linear = np.zeros((3, self._model.nv))
+        angular = np.zeros_like(linear)
+        self._mujoco.mj_jacBodyCom(self._model, self._data, linear, angular, body)
+        return linear[:, self._dofs], angular[:, self._dofs]
+
+    def _branch_levers(self) -> FloatArray:
+        levers = np.zeros(len(self._dofs))
+        jacobian = np.zeros((3, self._model.nv))
+        for joint, dof in enumerate(self._dofs):
+            body = self._bodies[joint]
+            self._mujoco.mj_jacSubtreeCom(self._model, self._data, jacobian, body)
+            levers[joint] = abs(jacobian[2, dof])
+        return levers
+
+    def arm_m(self) -> FloatArray:
+        """(j, 3) from each joint's axis to its link's centre of mass."""
+        own = self._bodies[: len(self._joints)]
+        axis = self._model.jnt_axis[self._joints]
+        away = self._model.body_ipos[own] - self._model.jnt_pos[self._joints]
+        along = np.sum(away * axis, axis=1, keepdims=True)
+        return np.asarray(away - along * axis)
+
+
+def _poses(plant: HiddenPlant, runs: Sequence[Run]) -> list[FloatArray]:
+    """Position vectors (q,) of the model at evenly spaced rows of each run."""
+    poses = []
+    for run in runs:
+        first, rows = run.clock.first, len(run.position_rad)
+        for row in np.linspace(first, rows - 1, _POSES).astype(int):
+            parts = [run.position_rad[row]]
+            if plant.floating:
+                base = run.sense
+                parts = [base["position_m"][row], base["orientation"][row], *parts]
+            poses.append(np.concatenate(parts))
+    return poses

@@ -1,4 +1,4 @@
-"""What is between a motor and its joint when it is not rigid."""
+"""A spring with play between a motor and its joint."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,9 @@ class Transmission:
 
     The rotor's inertia is part of the link in the nominal models, so the motor itself
     is taken as massless: its torque and that of the spring are in balance at all
-    times. The servo closes its loop on the motor's side. With u the motor's torque,
+    times. The servo closes its loop on the motor's side. Its law is that of
+    `servos.servo_torque_nm`, solved together with the spring's. With u the motor's
+    torque,
       u = clip(kp (command - m) - kd dm/dt, +-most) - back_emf dm/dt,
       u = stiffness dead_zone(m - q, play / 2) + damping (dm/dt - dq/dt in contact),
     the motor's angle m follows by one implicit Euler step.
@@ -18,6 +20,7 @@ class Transmission:
       stiffness_nm_rad, damping_nm_s_rad: of the spring.
       gap_rad: total play.
       step_s: time step.
+      encoder_at_motor: whether the encoder reads the motor's angle, not the joint's.
       motor_rad: the motor's angle; None before the first step.
     """
 
@@ -25,6 +28,7 @@ class Transmission:
     damping_nm_s_rad: float
     gap_rad: float
     step_s: float
+    encoder_at_motor: bool = False
     motor_rad: float | None = None
 
     def torque(

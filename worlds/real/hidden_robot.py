@@ -1,4 +1,4 @@
-"""One robot of the real world with hidden physics, in one PyBullet client."""
+"""One robot of the real world with hidden physics."""
 
 from collections.abc import Sequence
 from math import ceil
@@ -8,23 +8,23 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from robots.description import Description
 from terrain import Heightfield
-from worlds.hidden.body_sense import BodySense
 from worlds.hidden.drive import HiddenDrive
-from worlds.hidden.effects import Hidden
-from worlds.hidden.engine import check_engine, hidden_engine
+from worlds.hidden.effects.placed import Hidden, surroundings
+from worlds.hidden.engine import BodySense, check_engine
 from worlds.hidden.joints import HiddenJoints
 from worlds.hidden.model import hidden_model
 from worlds.hidden.plant import described_hidden_plant
-from worlds.real.bullet_robot import BulletState
+from worlds.real.engines import hidden_engine
+from worlds.real.robot import OUT_OF_REACH_M, BulletState
 from worlds.world import WorldOptions
 
 FINE_STEP_S = 0.0005
-"""Longest step: the servo law of hidden physics is explicit."""
-_OUT_OF_REACH_M = 100.0
+"""Longest physics step [s]: the servo law of hidden physics is explicit, and unstable
+at steps some times as long."""
 
 
 class HiddenRobot:
-    """A robot on its ground; what it answers is `BulletRobot`'s."""
+    """A robot on its ground, with the same methods as `BulletRobot`."""
 
     def __init__(
         self, description: Description, ground: Heightfield, options: WorldOptions
@@ -42,13 +42,12 @@ class HiddenRobot:
         self._world = hidden_engine(
             "bullet", self._plant, self._effects, self._step_s, under
         )
-        biases = [e for e in options.hidden if e.name == "gyro_bias"]
-        self._bias_rad_s = np.array([sum(e[axis] for e in biases) for axis in "xyz"])
+        self._bias_rad_s = surroundings(options.hidden).gyroscope_bias_rad_s
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:
         """Put the robot upright at the origin, its torso at a height, at rest."""
         # One step out of reach first: contacts of the last rollout would linger.
-        self._world.reset(pose_rad, height_m + _OUT_OF_REACH_M)
+        self._world.reset(pose_rad, height_m + OUT_OF_REACH_M)
         self._world.step(np.zeros(len(pose_rad)))
         self._world.reset(pose_rad, height_m)
         self._drive = HiddenDrive(
@@ -96,6 +95,6 @@ def check_hidden(description: Description, options: WorldOptions) -> None:
 
 
 def _effects(options: WorldOptions) -> tuple[Hidden, ...]:
-    """The options' own friction is first: one that is hidden takes its stead."""
+    """The options' own friction, then the hidden effects, which may override it."""
     sole = Hidden("contact_friction", "feet", {"coefficient": options.friction})
     return (sole, *options.hidden)

@@ -1,14 +1,14 @@
-"""A process that computes some robots of the real world."""
+"""The process that computes some robots of the real world."""
 
-import importlib
 import os
 from multiprocessing.connection import Connection
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from worlds.real.bullet_robot import BulletRobot, BulletState
+from worlds.real.body import import_bullet
 from worlds.real.hidden_robot import HiddenRobot
+from worlds.real.robot import BulletRobot, BulletState
 
 STATE_FIELDS = (
     ("base_pose", 7),
@@ -19,11 +19,11 @@ STATE_FIELDS = (
     ("position_rad", None),
     ("velocity_rad_s", None),
 )
-"""What a row of a worker's answer holds, and how many numbers; None: one a joint."""
+"""Columns of a worker's answer and their widths; None stands for one column a joint."""
 
 
 def state_columns(joints: int) -> dict[str, slice]:
-    """Where each field of `BulletState` stands in a row."""
+    """Columns of each field of `BulletState` in a worker's answer, by name."""
     columns, start = {}, 0
     for name, width in STATE_FIELDS:
         end = start + (joints if width is None else width)
@@ -35,12 +35,18 @@ def state_columns(joints: int) -> dict[str, slice]:
 def serve(connection: Connection) -> None:
     """Compute robots until told to stop.
 
-    Messages in: first (description, grounds, options), which has no answer, then
-    ("start", poses, heights), ("step", active, schedule), ("stop",). The answer to
-    start and step: one row a robot, in the order of `STATE_FIELDS`; NaN for one that
-    has blown up, the old row for one that is not active.
+    The first message is (description, grounds, options) and has no answer. Then come
+    ("start", poses, heights), ("step", active, schedule) or ("stop",). The answer to
+    "start" and "step" is an array (robots, numbers) with the columns of `STATE_FIELDS`;
+    NaN for a robot whose physics has blown up, the old row for one that is not active.
+
+    Args:
+      connection: to the process of the world.
     """
-    _import_bullet_in_silence()
+    # Standard output is for results; Bullet prints to it from C at any time.
+    with open(os.devnull, "w") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+    import_bullet()
     description, grounds, options = connection.recv()
     kind = HiddenRobot if options.hidden else BulletRobot
     robots = [kind(description, ground, options) for ground in grounds]
@@ -68,16 +74,3 @@ def serve(connection: Connection) -> None:
 
 def _row(state: BulletState) -> FloatArray:
     return np.concatenate([getattr(state, name) for name, _ in STATE_FIELDS])
-
-
-def _import_bullet_in_silence() -> None:
-    """PyBullet greets from C; standard output is for results, for good."""
-    with open(os.devnull, "w") as nowhere:
-        os.dup2(nowhere.fileno(), 1)
-        stderr = os.dup(2)
-        os.dup2(nowhere.fileno(), 2)
-        try:
-            importlib.import_module("pybullet")
-        finally:
-            os.dup2(stderr, 2)
-            os.close(stderr)

@@ -19,6 +19,7 @@ from worlds.sim.start_height import Standing
 from worlds.world import TICK_S, WorldOptions
 
 _PATIENCE_S = 5.0
+"""Time that a process gets to end by itself; it needs some milliseconds."""
 
 
 class RealWorld(RolloutWorld):
@@ -26,6 +27,9 @@ class RealWorld(RolloutWorld):
 
     The motors are the sim's (`ServoTwin`), unless the options hide physics. Robot i's
     rollout has the same bits whatever n is and however many processes run.
+
+    Attributes:
+      processes: that compute the robots; none once the world is closed.
     """
 
     def __init__(
@@ -42,14 +46,14 @@ class RealWorld(RolloutWorld):
         self._shares = np.array_split(np.arange(self.n), workers)
         context = multiprocessing.get_context("spawn")
         self._connections = []
-        self._processes = []
+        self.processes = []
         for _ in self._shares:
             here, there = context.Pipe()
             process = context.Process(target=serve, args=(there,), daemon=True)
             process.start()
             there.close()
             self._connections.append(here)
-            self._processes.append(process)
+            self.processes.append(process)
         # Not as arguments: `start` hangs if a process ends before it has read them.
         self._send(
             [
@@ -66,11 +70,11 @@ class RealWorld(RolloutWorld):
             with contextlib.suppress(OSError):
                 connection.send(("stop",))
             connection.close()
-        for process in self._processes:
+        for process in self.processes:
             process.join(_PATIENCE_S)
             if process.is_alive():
                 process.kill()
-        self._connections, self._processes = [], []
+        self._connections, self.processes = [], []
 
     def _start(self, pose_rad: FloatArray) -> None:
         heights_m = self._standing.heights_m(pose_rad, self._grounds)

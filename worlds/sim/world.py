@@ -28,6 +28,9 @@ class SimWorld(RolloutWorld):
     """n robots in `mujoco.batch.Batch`, each on its own ground.
 
     Robot i's rollout has the same bits whatever n is and however many threads run.
+
+    Attributes:
+      qvel: (n, v) velocities of all degrees of freedom, a live view of the batch.
     """
 
     def __init__(
@@ -43,7 +46,7 @@ class SimWorld(RolloutWorld):
         super().__init__(description, grounds, seeds, options)
         self._batch = self._made_batch()
         self._qpos = self._batch.bind("qpos")
-        self._qvel = self._batch.bind("qvel")
+        self.qvel = self._batch.bind("qvel")
         self._ctrl = self._batch.bind("ctrl")
         self._sensors = self._batch.bind("sensordata")
         self._shares = touch_shares(description)
@@ -102,7 +105,7 @@ class SimWorld(RolloutWorld):
         observation = Observation(
             time_s=self._ticks * TICK_S,
             position_rad=self._qpos[:, self._joints].copy(),
-            velocity_rad_s=self._qvel[:, self._speeds].copy(),
+            velocity_rad_s=self.qvel[:, self._speeds].copy(),
             gyroscope_rad_s=truth.base_angular_velocity_rad_s.copy(),
             accelerometer_m_s2=self._sensors[:, touch + 3 : touch + 6].copy(),
             foot_force_n=np.maximum(self._foot_forces(), 0.0),
@@ -119,8 +122,8 @@ class SimWorld(RolloutWorld):
         return Truth(
             base_position_m=self._qpos[:, :3].copy(),
             base_orientation=self._qpos[:, 3:7].copy(),
-            base_linear_velocity_m_s=self._qvel[:, :3].copy(),
-            base_angular_velocity_rad_s=self._qvel[:, 3:6].copy(),
+            base_linear_velocity_m_s=self.qvel[:, :3].copy(),
+            base_angular_velocity_rad_s=self.qvel[:, 3:6].copy(),
         )
 
     def _foot_forces(self) -> FloatArray:

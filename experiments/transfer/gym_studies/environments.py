@@ -7,7 +7,8 @@ import gymnasium as gym
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.heavier_bodies import quiet_compiler, scale_mass
+from robots.heavier_bodies import scale_mass
+from robots.mjcf import quiet_mujoco
 from sgat.gym.grounded_env import GroundedEnv, RewardOf
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.action_transformer import Transformer
@@ -70,8 +71,8 @@ class Domain:
         return space.low.astype(float), space.high.astype(float)
 
     def _plain(self) -> Environment:
-        with quiet_compiler():
-            return gym.make(self.environment, disable_env_checker=True)
+        quiet_mujoco()  # of attributes that MuJoCo 4 calls deprecated
+        return gym.make(self.environment, disable_env_checker=True)
 
     def _noise(self, noise: float) -> ActionNoise:
         low, high = self.bounds()

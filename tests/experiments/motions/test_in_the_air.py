@@ -9,7 +9,7 @@ from experiments.motions.on_feet import (
     walking_feed,
 )
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden.body_sense import BodySense
+from worlds.hidden.engine import BodySense
 
 TIME_S = np.arange(1001) * 0.01
 RANGE = np.array([[-1.0, 1.0], [0.0, 0.3], [-2.0, 2.0]])

@@ -12,7 +12,7 @@ from experiments.transfer.gym_studies.environments import (
     NOISY_REAL,
     NOISY_SIM,
 )
-from robots.heavier_bodies import quiet_compiler
+from robots.mjcf import quiet_mujoco
 
 ASSETS = Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets"
 DOMAINS = pytest.mark.parametrize("domain", [INVERTED_PENDULUM, HALF_CHEETAH])
@@ -22,8 +22,8 @@ def edited(name, old, new):
     """A model from Gymnasium's own file with one edit."""
     text = (ASSETS / name).read_text()
     assert len(re.findall(old, text)) == 1
-    with quiet_compiler():
-        return mujoco.MjModel.from_xml_string(re.sub(old, new, text))
+    quiet_mujoco()
+    return mujoco.MjModel.from_xml_string(re.sub(old, new, text))
 
 
 def free_run(model):

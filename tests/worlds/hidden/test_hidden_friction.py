@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from worlds.hidden.friction import DryFriction, LugreHysteresis
-from worlds.hidden.torques import rigid_nm_rad
+from worlds.hidden.effects.dry_friction import DryFriction
+from worlds.hidden.effects.kind import StiffContact
+from worlds.hidden.effects.lugre_hysteresis import SoftBristles
 
 INERTIA, STEP_S = 0.05, 0.00025
-STIFFNESS = rigid_nm_rad(INERTIA, STEP_S)
-DAMPING = 2 * math.sqrt(STIFFNESS * INERTIA)
+CONTACT = StiffContact(INERTIA, STEP_S)
 
 
 def slide(friction, pull, seconds, speed=0.0, servo=0.0):
@@ -23,7 +23,7 @@ def slide(friction, pull, seconds, speed=0.0, servo=0.0):
 
 
 def rough(**values):
-    return DryFriction(STIFFNESS, DAMPING, **values)
+    return DryFriction.of(CONTACT, **values)
 
 
 def test_below_breakaway_it_holds():
@@ -65,7 +65,7 @@ def test_load_friction_follows_the_servo():
 
 
 def test_lugre_hysteresis_is_a_spring_at_first_and_dry_friction_after_long_sliding():
-    bristles = LugreHysteresis(0.2, 4.0, STEP_S)
+    bristles = SoftBristles(0.2, 4.0, STEP_S)
     small = [bristles.torque(0.0, 0.0, 0.004, 0.0) for _ in range(250)][-1]
     assert small == pytest.approx(-4.0 * 0.004 * 250 * STEP_S, rel=1e-2)
     large = [bristles.torque(0.0, 0.0, 1.0, 0.0) for _ in range(8000)][-1]

@@ -8,8 +8,8 @@ import robots
 from groundwalk.errors import BadValueError, UnknownNameError
 from robots.model_urdf import model_urdf
 from worlds.hidden.clock import Clock
-from worlds.hidden.effects import Hidden
-from worlds.hidden.model import hidden_ground, hidden_model, tilt, tilted_gravity
+from worlds.hidden.effects import Hidden, surroundings
+from worlds.hidden.model import hidden_model
 from worlds.hidden.plant import SO101_ROTOR_KG_M2, hidden_plant
 from worlds.hidden.run import run_hidden
 
@@ -83,23 +83,23 @@ def test_both_engines_move_the_arm_alike():
 
 def test_a_tilted_mount_turns_gravity():
     nose_down = [Hidden("ground_slope", "world", {"pitch": 0.1, "roll": 0.0})]
-    pull = tilted_gravity(nose_down)
+    pull = surroundings(nose_down).gravity_m_s2()
     assert pull == pytest.approx([9.81 * np.sin(0.1), 0, -9.81 * np.cos(0.1)])
     left_up = [Hidden("ground_slope", "world", {"pitch": 0.0, "roll": 0.1})]
-    assert tilted_gravity(left_up)[1] == pytest.approx(-9.81 * np.sin(0.1))
-    assert np.array_equal(tilt([]), np.eye(3))
+    assert surroundings(left_up).gravity_m_s2()[1] == pytest.approx(-9.81 * np.sin(0.1))
+    assert np.array_equal(surroundings([]).tilt(), np.eye(3))
 
 
 def test_bumps_begin_at_once_and_are_as_high_as_said():
     bumps = [Hidden("uneven_ground", "world", {"height": 0.005})]
-    heights = hidden_ground(bumps, NOBODY).heights_m
+    heights = surroundings(bumps).ground(NOBODY).heights_m
     assert np.quantile(np.abs(heights), 0.99) == pytest.approx(0.005, rel=0.15)
-    assert hidden_ground([], NOBODY).is_flat
+    assert surroundings([]).ground(NOBODY).is_flat
 
 
 def test_an_effect_changes_the_soles_only_if_it_is_there():
     plant = hidden_plant("nao", floating=True)
-    ground = hidden_ground([], NOBODY)
+    ground = surroundings([]).ground(NOBODY)
     ice = [Hidden("contact_friction", "feet", {"coefficient": 0.3})]
     for effects, friction in ((ice, 0.3), ([], 0.8)):
         model = hidden_model(plant, effects, 0.0005, ground)

@@ -194,7 +194,7 @@ def test_unknown_places_and_engines_are_refused():
         run(Hidden("backlash", "sving", {"gap": 0.1}))
     with pytest.raises(UnknownNameError, match="link"):
         run(Hidden("payload_mass", "lnk", {"mass": 0.1}))
-    with pytest.raises(BadValueError, match="mujoco only"):
+    with pytest.raises(BadValueError, match="needs the engine mujoco"):
         run(Hidden("armature", JOINT, {"inertia": 0.1}), engine="bullet")
     with pytest.raises(BadValueError, match="engine"):
         run(engine="chrono")

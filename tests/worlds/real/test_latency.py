@@ -6,7 +6,7 @@ import pytest
 
 from worlds import WorldOptions
 from worlds.latency import DelayLine
-from worlds.real.bullet_robot import BulletRobot
+from worlds.real.robot import BulletRobot
 from worlds.sim.model import mujoco_model
 
 TICKS = 12

@@ -17,7 +17,7 @@ from groundwalk.errors import GroundwalkError
 from robots import biped
 from walk_engine import Velocity, WalkEngine, gaits
 from worlds import End, WorldOptions
-from worlds.real.bullet_robot import BulletRobot
+from worlds.real.robot import BulletRobot
 
 PATIENCE_S = 120
 
@@ -60,7 +60,7 @@ def test_a_dead_process_is_an_error(make_world, crouch, moment):
     pose = np.tile(crouch, (2, 1))
     world.reset(pose)
     world.step(pose)
-    processes = list(world._processes)
+    processes = list(world.processes)
     assert len(processes) == 2
     os.kill(processes[1].pid, signal.SIGKILL)
     processes[1].join(PATIENCE_S)
@@ -75,7 +75,7 @@ def test_a_process_that_dies_at_work_is_an_error(make_world, crouch):
     """Stopped first, so that the message is out and the answer is waited for."""
     world = make_world("real", n=1)
     world.reset(crouch[None])
-    (process,) = world._processes
+    (process,) = world.processes
     os.kill(process.pid, signal.SIGSTOP)
     threading.Timer(0.2, os.kill, (process.pid, signal.SIGKILL)).start()
     assert isinstance(soon(world.step, crouch[None]), GroundwalkError)
@@ -83,14 +83,14 @@ def test_a_process_that_dies_at_work_is_an_error(make_world, crouch):
 
 def test_processes_end_with_the_world(make_world):
     world = make_world("real", n=3, threads=2)
-    processes = list(world._processes)
+    processes = list(world.processes)
     world.close()
     assert [process.exitcode for process in processes] == [0, 0]
     world.close()  # does no harm
 
 
 def test_no_more_processes_than_robots(make_world):
-    assert len(make_world("real", n=1, threads=8)._processes) == 1
+    assert len(make_world("real", n=1, threads=8).processes) == 1
 
 
 @pytest.mark.slow
@@ -139,7 +139,9 @@ def test_pose_is_that_of_the_torso_frame(robot, nao, crouch):
     state = robot.reset(crouch, 0.5)
     np.testing.assert_allclose(state.base_pose, [0, 0, 0.5, 1, 0, 0, 0], atol=1e-12)
     np.testing.assert_allclose(state.base_velocity, 0, atol=1e-12)
-    place, _ = pybullet.getBasePositionAndOrientation(robot._body, **robot._client)
+    place, _ = pybullet.getBasePositionAndOrientation(
+        robot.body.number, **robot.body.client
+    )
     np.testing.assert_allclose(
         np.array(place) - [0, 0, 0.5], nao.root.inertial.com_m, atol=1e-12
     )
@@ -148,8 +150,10 @@ def test_pose_is_that_of_the_torso_frame(robot, nao, crouch):
 def test_velocity_is_that_of_the_torso_frame(robot, crouch):
     """Flung into the air, its path and its turning say how fast it is."""
     robot.reset(crouch, 0.9)
-    pybullet.resetBaseVelocity(robot._body, [0.3, -0.2, 2], [2, 3, 4], **robot._client)
-    robot._read()
+    bullet = robot.body
+    pybullet.resetBaseVelocity(
+        bullet.number, [0.3, -0.2, 2], [2, 3, 4], **bullet.client
+    )
     robot.step([(crouch, 100)])
     states = [robot.step([(crouch, 1)]) for _ in range(3)]
     poses = np.array([state.base_pose for state in states])
@@ -169,7 +173,7 @@ def test_limbs_pass_through_each_other(robot, nao, crouch):
         pose[nao.joints.index(f"{side}HipRoll")] = roll
     robot.reset(pose, 0.6)
     robot.step([(pose, 5)])
-    assert pybullet.getContactPoints(bodyA=robot._body, **robot._client) == ()
+    assert pybullet.getContactPoints(bodyA=robot.body.number, **robot.body.client) == ()
 
 
 def test_a_robot_that_blew_up_starts_again_as_new(nao, crouch, lumpy):
@@ -181,8 +185,7 @@ def test_a_robot_that_blew_up_starts_again_as_new(nao, crouch, lumpy):
     try:
         expected = roll(fresh)
         used.reset(crouch, 0.316)
-        pybullet.resetBaseVelocity(used._body, [1e300, 0, 0], **used._client)
-        used._read()
+        pybullet.resetBaseVelocity(used.body.number, [1e300, 0, 0], **used.body.client)
         assert [used.step([(crouch, 5)]) for _ in range(2)] == [None, None]
         np.testing.assert_array_equal(roll(used), expected)
     finally:

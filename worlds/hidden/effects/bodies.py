@@ -1,0 +1,116 @@
+"""Hidden physics of bodies: their inertia, mass and centre of mass."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
+
+if TYPE_CHECKING:
+    from worlds.hidden.plant import HiddenPlant
+
+_KINDS = frozenset({"payload_mass", "com_offset", "armature"})
+
+
+def _others(plant: "HiddenPlant", name: str) -> frozenset[str]:
+    """The other kinds of this file where a robot has one joint.
+
+    A single joint only shows one weight and one inertia.
+    """
+    return _KINDS - {name} if len(plant.joints) == 1 else frozenset()
+
+
+def _weight_shows(plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+    """Whether the motion shows a change of a body's weight.
+
+    What does not move on a floating base is carried by the ground. On a fixed base some
+    joint has to carry the weight: otherwise it acts as an encoder's offset, or not at
+    all.
+    """
+    if plant.floating:
+        return scales.moves(spot.body)
+    return scales.feels_weight(spot.body)
+
+
+class Armature(HiddenKind):
+    """A rotor behind the gear adds to the joint's inertia."""
+
+    name = "armature"
+    rank = 15
+    quantities = (Quantity("inertia", "kg m^2", 0.0),)
+    engines = ("mujoco",)
+    needs_motion = True
+
+    def change_part(self, part: Any, values: Values) -> None:
+        """Add to the joint's armature; Bullet's joints have none."""
+        part.armature += values["inertia"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.1 to 3 times the inertia that the joint moves."""
+        return {"inertia": s.part(3, 0.1) * float(s.scales.inertia_kg_m2[s.joint])}
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """A single joint only shows one weight and one inertia."""
+        return _others(plant, self.name)
+
+
+class PayloadMass(HiddenKind):
+    """A body carries an extra mass at its centre of mass."""
+
+    name = "payload_mass"
+    rank = 16
+    place = "body"
+    quantities = (Quantity("mass", "kg", 0.0, 1000.0),)
+
+    def change_part(self, part: Any, values: Values) -> None:
+        """Add to the body's mass."""
+        part.mass += values["mass"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 1 % to 30 % of the mass that hangs on the joint."""
+        return {"mass": s.part(0.3, 0.01) * float(s.scales.carried_kg[s.joint])}
+
+    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+        """The weight has to be felt."""
+        return _weight_shows(plant, scales, spot)
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """A single joint only shows one weight and one inertia."""
+        return _others(plant, self.name)
+
+
+class ComOffset(HiddenKind):
+    """A body's centre of mass is not where the model has it."""
+
+    name = "com_offset"
+    rank = 17
+    place = "body"
+    quantities = tuple(Quantity(axis, "m", -1.0, 1.0) for axis in "xyz")
+
+    def change_part(self, part: Any, values: Values) -> None:
+        """Shift the centre of mass in the body's frame."""
+        part.ipos = part.ipos + np.array([values[axis] for axis in "xyz"])
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 3 to 50 mm across the joint's axis.
+
+        A shift along the axis would change nothing for the joint. The last body of a
+        chain gets longer or shorter: a shift to the side would act as a turn of the
+        whole link does, and thus as an encoder's offset.
+        """
+        size_m, arm_m = s.part(0.05, 0.003), s.scales.bodies.arm_m[s.joint]
+        length_m = float(np.linalg.norm(arm_m))
+        if s.at_end and length_m >= LEAST_LEVER_M:
+            shift = s.sign * size_m * arm_m / length_m
+        else:
+            shift = size_m * s.across
+        return dict(zip("xyz", shift.tolist(), strict=True))
+
+    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+        """The weight has to be felt."""
+        return _weight_shows(plant, scales, spot)
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """A single joint only shows one weight and one inertia."""
+        return _others(plant, self.name)

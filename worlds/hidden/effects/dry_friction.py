@@ -1,0 +1,147 @@
+"""Dry friction with true sticking: Coulomb's, Stribeck's, and that of a loaded gear."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from worlds.hidden.effects.kind import (
+    HiddenKind,
+    JointTorque,
+    Quantity,
+    StiffContact,
+    Values,
+)
+from worlds.hidden.setting import Setting
+
+if TYPE_CHECKING:
+    from worlds.hidden.plant import HiddenPlant
+
+RIGID_NM_RAD = 3000.0
+"""Stiffness of surfaces that stick and of gear teeth that touch: under a servo's torque
+of a few N m they give less than 0.001 rad, which is below an encoder's resolution."""
+
+
+@dataclass
+class DryFriction:
+    """Friction that holds still below breakaway and slides above.
+
+    A very stiff bristle between the two surfaces bends with the motion until it
+    carries the sliding torque, and then slips (elastic-plastic return mapping;
+    Dupont, Hayward, Armstrong, Altpeter 2002, with the plastic branch entered at
+    once). While the bristle sticks it is damped, so that it does not ring.
+
+    Attributes:
+      stiffness_nm_rad, damping_nm_s_rad: of the bristle, as stiff as steps allow.
+      coulomb_nm: sliding torque.
+      extra_nm, speed_rad_s: Stribeck: extra exp(-(v / speed)^2) more near standstill.
+      load_share: share of the servo's torque that adds to the sliding torque.
+    """
+
+    stiffness_nm_rad: float
+    damping_nm_s_rad: float
+    coulomb_nm: float = 0.0
+    extra_nm: float = 0.0
+    speed_rad_s: float = 1.0
+    load_share: float = 0.0
+    _bend_rad: float = 0.0
+    _last_rad: float | None = None
+
+    @classmethod
+    def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
+        """With a bristle that is rigid, or as stiff as the time step allows."""
+        stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
+        return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
+
+    def torque(
+        self, time_s: float, angle_rad: float, speed_rad_s: float, servo_nm: float
+    ) -> float:
+        """Friction torque on the joint for the next step [N m]."""
+        most = self.coulomb_nm + self.load_share * abs(servo_nm)
+        if self.extra_nm:
+            most += self.extra_nm * math.exp(-((speed_rad_s / self.speed_rad_s) ** 2))
+        if self._last_rad is not None:
+            self._bend_rad += angle_rad - self._last_rad
+        self._last_rad = angle_rad
+        elastic = self.stiffness_nm_rad * self._bend_rad
+        if abs(elastic) > most:
+            elastic = math.copysign(most, elastic)
+            self._bend_rad = elastic / self.stiffness_nm_rad
+        total = elastic + self.damping_nm_s_rad * speed_rad_s
+        return -max(-most, min(most, total))
+
+
+class CoulombFriction(HiddenKind):
+    """Friction torque of constant size against the motion, with sticking."""
+
+    name = "coulomb_friction"
+    rank = 2
+    quantities = (Quantity("torque", "N m", 0.0),)
+    needs_motion = True
+
+    def torque(self, values: Values, contact: StiffContact) -> JointTorque:
+        """Constant while the joint slides."""
+        return DryFriction.of(contact, coulomb_nm=values["torque"]).torque
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 1 % to 15 % of the servo's torque."""
+        return {"torque": s.part(0.15, 0.01) * s.torque_nm}
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """Stribeck friction has a Coulomb part of its own."""
+        return frozenset({"stribeck_friction"})
+
+
+class StribeckFriction(HiddenKind):
+    """Coulomb friction that is larger near standstill."""
+
+    name = "stribeck_friction"
+    rank = 3
+    quantities = (
+        Quantity("coulomb_torque", "N m", 0.0),
+        Quantity("extra_torque", "N m", 0.0),
+        Quantity("speed", "rad/s", 0.0),
+    )
+    needs_motion = True
+
+    def torque(self, values: Values, contact: StiffContact) -> JointTorque:
+        """Sliding torque coulomb + extra exp(-(v / speed)^2)."""
+        return DryFriction.of(
+            contact,
+            coulomb_nm=values["coulomb_torque"],
+            extra_nm=values["extra_torque"],
+            speed_rad_s=values["speed"],
+        ).torque
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 2 % to 10 % of the servo's torque, and half to 1.5 times as much more.
+
+        The peak is at speeds that the joint passes: at much lower speeds the friction
+        could not be distinguished from Coulomb's.
+        """
+        coulomb = s.part(0.1, 0.02) * s.torque_nm
+        part = s.rng.uniform(math.log(0.03), math.log(0.3))
+        return {
+            "coulomb_torque": coulomb,
+            "extra_torque": float(s.rng.uniform(0.5, 1.5)) * coulomb,
+            "speed": math.exp(part) * s.speed_rad_s,
+        }
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """Coulomb friction is a part of it."""
+        return frozenset({"coulomb_friction"})
+
+
+class LoadFriction(HiddenKind):
+    """Dry friction in proportion to the torque that the servo transmits."""
+
+    name = "load_friction"
+    rank = 4
+    quantities = (Quantity("share", "1", 0.0, 1.0),)
+
+    def torque(self, values: Values, contact: StiffContact) -> JointTorque:
+        """Sliding torque share |servo torque|."""
+        return DryFriction.of(contact, load_share=values["share"]).torque
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 3 % to 30 %."""
+        return {"share": s.part(0.3, 0.03)}

@@ -1,0 +1,87 @@
+"""Hidden physics that is a force on one body."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
+from worlds.hidden.effects.kind import HiddenKind, Push, Quantity, Values
+from worlds.hidden.setting import Scales, Setting, Spot
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from worlds.hidden.plant import HiddenPlant
+
+_LASTING_SHARE = 0.3
+"""Share of drawn forces that act during the whole recording."""
+
+
+class ExternalForce(HiddenKind):
+    """A constant force pushes a body's centre of mass for some time."""
+
+    name = "external_force"
+    rank = 25
+    place = "body"
+    quantities = (
+        *(Quantity(axis, "N") for axis in "xyz"),
+        Quantity("start", "s"),
+        Quantity("duration", "s", 0.0),
+    )
+
+    def push(self, values: Values) -> Push:
+        """The force [N], in the frame of the world, during its time."""
+        force_n = np.array([values[axis] for axis in "xyz"])
+        start_s, duration_s = values["start"], values["duration"]
+
+        def force(
+            time_s: float, velocity: "Callable[[], FloatArray]"
+        ) -> FloatArray | None:
+            return force_n if 0 <= time_s - start_s < duration_s else None
+
+        return force
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.5 % to 10 % of the moving weight, mostly for 0.05 to 0.5 s.
+
+        A force that lasts is only drawn where several joints move the body: on a single
+        link it could not be distinguished from another weight.
+        """
+        weight_n = s.scales.moving_kg * GRAVITY_M_S2
+        way = s.across if s.one_joint else s.direction
+        force = s.part(0.1, 0.005) * weight_n * way
+        if s.many_joints and s.rng.uniform() < _LASTING_SHARE:
+            span = {"start": 0.0, "duration": 1.5 * s.duration_s}
+        else:
+            start = s.rng.uniform(0.15, 0.8) * s.duration_s
+            span = {"start": float(start), "duration": float(s.rng.uniform(0.05, 0.5))}
+        return dict(zip("xyz", force.tolist(), strict=True)) | span
+
+    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+        """A body that never moves does not show a force."""
+        return scales.moves(spot.body)
+
+
+class Drag(HiddenKind):
+    """A force on a body against its velocity and proportional to it."""
+
+    name = "drag"
+    rank = 26
+    place = "body"
+    quantities = (Quantity("coefficient", "N s/m", 0.0),)
+
+    def push(self, values: Values) -> Push:
+        """-coefficient times the velocity of the centre of mass."""
+        coefficient = values["coefficient"]
+        return lambda time_s, velocity: -coefficient * velocity()
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 2 % to 40 % of the moving weight at 1 m/s."""
+        weight_n = s.scales.moving_kg * GRAVITY_M_S2
+        return {"coefficient": s.part(0.4, 0.02) * weight_n}
+
+    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+        """On a body that one joint moves, drag acts as viscous friction there."""
+        many = plant.floating or scales.carriers(spot.body) > 1
+        return scales.moves(spot.body) and many

@@ -1,0 +1,109 @@
+"""Hidden physics of the ground: its friction, softness, slope and bumps."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.setting import Setting
+from worlds.hidden.surroundings import Surroundings
+from worlds.soft_ground import DAMPING_RATIO, FootSpring
+
+if TYPE_CHECKING:
+    from worlds.hidden.plant import HiddenPlant
+
+
+class _UnderFeet(HiddenKind):
+    """A kind that only a robot on its feet can have."""
+
+    def possible(self, plant: "HiddenPlant") -> bool:
+        """The base has to be free."""
+        return plant.floating
+
+
+class ContactFriction(_UnderFeet):
+    """The friction coefficient between soles and ground."""
+
+    name = "contact_friction"
+    rank = 21
+    place = "feet"
+    quantities = (Quantity("coefficient", "1", 0.0, 10.0),)
+
+    def sole_friction(self, values: Values) -> float:
+        """The coefficient."""
+        return values["coefficient"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.6 down to 0.2, where robots slip."""
+        return {"coefficient": s.part(0.2, 0.6)}
+
+
+class ContactCompliance(_UnderFeet):
+    """Soft ground: a spring and damper under each foot."""
+
+    name = "contact_compliance"
+    rank = 22
+    place = "feet"
+    quantities = (
+        Quantity("stiffness", "N/m", 1.0),
+        Quantity("damping", "N s/m", 0.0, default=math.nan),
+    )
+    engines = ("bullet",)
+
+    def foot_spring(self, values: Values, mass_kg: float) -> FootSpring:
+        """The spring; where no damping is given, a tenth of the critical one."""
+        stiffness, damping = values["stiffness"], values["damping"]
+        if math.isnan(damping):
+            # Each foot carries half of the robot.
+            damping = DAMPING_RATIO * 2 * np.sqrt(stiffness * (mass_kg / 2))
+        return FootSpring(stiffness, float(damping))
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 40000 down to 3000 N/m."""
+        return {"stiffness": s.part(3000.0, 40000.0)}
+
+
+class GroundSlope(HiddenKind):
+    """The ground, or a fixed base's mount, is tilted."""
+
+    name = "ground_slope"
+    rank = 23
+    place = "world"
+    quantities = (
+        Quantity("pitch", "rad", -math.pi, math.pi),
+        Quantity("roll", "rad", -math.pi, math.pi),
+    )
+
+    def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
+        """Add to pitch and roll."""
+        surroundings.pitch_rad += values["pitch"]
+        surroundings.roll_rad += values["roll"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.5 degrees to 4 on feet and 8 on a fixed base, in any direction."""
+        most_deg = 4.0 if s.plant.floating else 8.0
+        tilt = math.radians(s.part(most_deg, 0.5))
+        way = s.rng.uniform(0, 2 * math.pi)
+        return {"pitch": tilt * math.cos(way), "roll": tilt * math.sin(way)}
+
+    def possible(self, plant: "HiddenPlant") -> bool:
+        """With a single joint it cannot be distinguished from an encoder's offset."""
+        return len(plant.joints) > 1
+
+
+class UnevenGround(_UnderFeet):
+    """The ground has bumps."""
+
+    name = "uneven_ground"
+    rank = 24
+    place = "world"
+    quantities = (Quantity("height", "m", 0.0, 0.1),)
+
+    def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
+        """Bumps of this height, or those that are there if they are higher."""
+        surroundings.bumps_m = max(surroundings.bumps_m, values["height"])
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.7 to 8 mm."""
+        return {"height": s.part(0.008, 0.0007)}

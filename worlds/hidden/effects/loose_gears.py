@@ -1,0 +1,67 @@
+"""Hidden physics between a motor and its joint: play and elasticity."""
+
+import math
+from typing import TYPE_CHECKING
+
+from worlds.hidden.effects.dry_friction import RIGID_NM_RAD
+from worlds.hidden.effects.kind import HiddenKind, Quantity, StiffContact, Values
+from worlds.hidden.setting import Setting
+from worlds.hidden.transmission import Transmission
+
+if TYPE_CHECKING:
+    from worlds.hidden.plant import HiddenPlant
+
+
+class Backlash(HiddenKind):
+    """Play between gear teeth; the encoder is at the joint."""
+
+    name = "backlash"
+    rank = 5
+    quantities = (Quantity("gap", "rad", 0.0, 0.5),)
+
+    def transmission(self, values: Values, contact: StiffContact) -> Transmission:
+        """Teeth that are rigid, or as stiff as the time step allows."""
+        stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
+        return Transmission(stiffness, 0.0, values["gap"], contact.step_s)
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.003 to 0.06 rad."""
+        return {"gap": s.part(0.06, 0.003)}
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """A joint has play or a spring."""
+        return frozenset({"joint_elasticity"})
+
+
+class JointElasticity(HiddenKind):
+    """A spring and damper between motor and joint; the encoder is at the motor."""
+
+    name = "joint_elasticity"
+    rank = 6
+    quantities = (
+        Quantity("stiffness", "N m/rad", 0.0),
+        Quantity("damping", "N m s/rad", 0.0),
+    )
+
+    def transmission(self, values: Values, contact: StiffContact) -> Transmission:
+        """A spring without play."""
+        return Transmission(
+            values["stiffness"],
+            values["damping"],
+            0.0,
+            contact.step_s,
+            encoder_at_motor=True,
+        )
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 2000 to 50 N m/rad, damped by 1 % to 5 % of the critical damping."""
+        stiffness = s.part(50.0, 2000.0)
+        critical = 2 * math.sqrt(stiffness * float(s.scales.inertia_kg_m2[s.joint]))
+        return {
+            "stiffness": stiffness,
+            "damping": float(s.rng.uniform(0.01, 0.05) * critical),
+        }
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """A joint has play or a spring."""
+        return frozenset({"backlash"})

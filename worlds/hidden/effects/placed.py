@@ -1,0 +1,146 @@
+"""One hidden effect at its place, and the list of all kinds."""
+
+import importlib
+import math
+import pkgutil
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from groundwalk.errors import BadValueError, UnknownNameError
+from worlds.hidden.effects.kind import HiddenKind
+from worlds.hidden.setting import Setting
+from worlds.hidden.surroundings import Surroundings
+
+
+def _found() -> Iterator[HiddenKind]:
+    """One object of each kind that a module of this package defines."""
+    for module in pkgutil.iter_modules([str(Path(__file__).parent)]):
+        name = f"{__package__}.{module.name}"
+        if name in (__name__, HiddenKind.__module__):
+            continue
+        for value in vars(importlib.import_module(name)).values():
+            if not (isinstance(value, type) and issubclass(value, HiddenKind)):
+                continue
+            if value.__module__ == name and hasattr(value, "name"):
+                yield value()
+
+
+KINDS: Mapping[str, HiddenKind] = {
+    kind.name: kind for kind in sorted(_found(), key=lambda one: (one.rank, one.name))
+}
+"""All kinds by name, in the order from which concealed cases draw."""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """One effect at its place.
+
+    Attributes:
+      name: one of `KINDS`.
+      place: a joint, a body, or the kind's only place.
+      parameters: values in SI units by name; optional ones may be missing.
+
+    Example:
+      >>> Hidden("backlash", "LKneePitch", {"gap": 0.02}).to_text()
+      'backlash@LKneePitch:gap=0.02'
+    """
+
+    name: str
+    place: str
+    parameters: Mapping[str, float]
+
+    def __post_init__(self) -> None:
+        """Refuse unknown names, and values that are missing or make no sense."""
+        if self.name not in KINDS:
+            raise UnknownNameError("effect", self.name, KINDS)
+        known = self.kind.parameters
+        for name in self.parameters:
+            if name not in known:
+                raise UnknownNameError(f"parameter of {self.name}", name, known)
+        for name, quantity in known.items():
+            if name in self.parameters:
+                self._check(name, float(self.parameters[name]))
+            elif quantity.default is None:
+                raise BadValueError(f"{self.name} needs a value of {name}")
+        own = self.kind.place
+        if own not in ("joint", "body") and self.place != own:
+            raise BadValueError(
+                f"{self.name} belongs to {own!r}, not to {self.place!r}"
+            )
+
+    def _check(self, name: str, value: float) -> None:
+        if not math.isfinite(value):
+            raise BadValueError(f"{self.name}: {name} is {value}")
+        quantity = self.kind.parameters[name]
+        if not quantity.low <= value <= quantity.high:
+            raise BadValueError(
+                f"{self.name}: {name} is {value:g} {quantity.unit}; it must be "
+                f"{quantity.range_text}"
+            )
+
+    @property
+    def kind(self) -> HiddenKind:
+        """Physics, units and places of effects of this name."""
+        return KINDS[self.name]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Value of every parameter, optional ones included."""
+        return {name: self[name] for name in self.kind.parameters}
+
+    def __getitem__(self, parameter: str) -> float:
+        """Value of a parameter; NaN for an optional one that has no default number."""
+        if parameter in self.parameters:
+            return float(self.parameters[parameter])
+        default = self.kind.parameters[parameter].default
+        return math.nan if default is None else default
+
+    def to_text(self) -> str:
+        """`name@place:parameter=value,...`, which `parse` reads."""
+        values = ",".join(f"{key}={value:g}" for key, value in self.parameters.items())
+        return f"{self.name}@{self.place}:{values}"
+
+    @classmethod
+    def parse(cls, text: str) -> "Hidden":
+        """Read `name@place:parameter=value,...`.
+
+        Raises:
+          GroundwalkError: the text is not of this form, or a name in it is unknown.
+        """
+        head, _, tail = text.partition(":")
+        name, at, place = head.partition("@")
+        if name not in KINDS:
+            raise UnknownNameError("effect", name, KINDS)
+        if not at and KINDS[name].place in ("joint", "body"):
+            raise BadValueError(
+                f"{text}: say where, as in {name}@PLACE:parameter=value"
+            )
+        values = {}
+        for item in filter(None, tail.split(",")):
+            key, _, number = item.partition("=")
+            try:
+                values[key] = float(number)
+            except ValueError:
+                raise BadValueError(
+                    f"{text}: {item!r} must be parameter=number"
+                ) from None
+        return cls(name, place or KINDS[name].place, values)
+
+    @classmethod
+    def sized(cls, name: str, setting: Setting) -> "Hidden":
+        """The effect at a setting's spot, as easy to see as the setting says."""
+        kind = KINDS[name]
+        at = {
+            "joint": setting.plant.joints[setting.joint],
+            "body": setting.spot.body,
+        }.get(kind.place, kind.place)
+        return cls(name, at, kind.size(setting))
+
+
+def surroundings(effects: Iterable[Hidden]) -> Surroundings:
+    """What effects change in the robot's signals and ground, all together."""
+    changed = Surroundings()
+    for effect in effects:
+        effect.kind.change_surroundings(changed, effect.values)
+    return changed

@@ -1,0 +1,170 @@
+"""Hidden physics of a servo: its gains, limits, encoder and wiring."""
+
+from typing import TYPE_CHECKING
+
+from groundwalk.errors import BadValueError
+from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.servos import Servos
+from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
+
+if TYPE_CHECKING:
+    from worlds.hidden.plant import HiddenPlant
+
+_LEAST_EFFORT = 0.06
+"""A joint whose servo needs a smaller share of its largest torque does not show a
+torque limit. Insensitive within a factor of two."""
+
+
+class EncoderOffset(HiddenKind):
+    """The encoder reads a constant angle too much."""
+
+    name = "encoder_offset"
+    rank = 9
+    quantities = (Quantity("offset", "rad", -1.0, 1.0),)
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Shift the readings, and with them the angle that the servo controls."""
+        servos.offset_rad[joint] += values["offset"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.005 to 0.1 rad, to either side."""
+        return {"offset": s.sign * s.part(0.1, 0.005)}
+
+    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+        """On a fixed base only gravity distinguishes one angle from another."""
+        lever_m = scales.bodies.branch_lever_m[spot.joint]
+        return plant.floating or bool(lever_m >= LEAST_LEVER_M)
+
+
+class TorqueLimit(HiddenKind):
+    """The servo's largest torque is smaller than the nominal one."""
+
+    name = "torque_limit"
+    rank = 11
+    quantities = (Quantity("torque", "N m", 0.0),)
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Lower the limit; a higher one than the nominal changes nothing."""
+        most = servos.max_torque_nm
+        most[joint] = min(most[joint], values["torque"])
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.9 to 0.4 times the largest torque of the nominal motion."""
+        return {"torque": s.part(0.4, 0.9) * float(s.scales.peak_nm[s.joint])}
+
+    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+        """A joint that hardly needs its servo's torque does not miss it."""
+        effort = scales.peak_nm[spot.joint] / plant.max_torque_nm[spot.joint]
+        return bool(effort >= _LEAST_EFFORT)
+
+
+class SpeedLimit(HiddenKind):
+    """The servo's set-point follows its command at a limited speed."""
+
+    name = "speed_limit"
+    rank = 12
+    quantities = (Quantity("speed", "rad/s", 0.0),)
+    needs_motion = True
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Lower the speed at which the set-point follows."""
+        most = servos.max_speed_rad_s
+        most[joint] = min(most[joint], values["speed"])
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 0.9 to 0.4 times the highest speed of the command."""
+        return {"speed": s.part(0.4, 0.9) * s.speed_rad_s}
+
+
+class ServoGain(HiddenKind):
+    """The servo's stiffness is the nominal one times a factor."""
+
+    name = "servo_gain"
+    rank = 13
+    quantities = (Quantity("factor", "1", 0.0, 10.0),)
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Multiply kp."""
+        servos.kp_nm_rad[joint] *= values["factor"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 3 % to 40 % more or less."""
+        return {"factor": 1.0 + s.sign * s.part(0.4, 0.03)}
+
+
+class ServoDamping(HiddenKind):
+    """The servo's damping and back-EMF are the nominal ones times a factor."""
+
+    name = "servo_damping"
+    rank = 14
+    quantities = (Quantity("factor", "1", 0.0, 10.0),)
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Multiply kd and the back-EMF constant."""
+        servos.kd_nm_s_rad[joint] *= values["factor"]
+        servos.back_emf_nm_s_rad[joint] *= values["factor"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 5 % to 40 %; only less where all damping is back-EMF.
+
+        More back-EMF cannot be distinguished from viscous friction.
+        """
+        part = s.part(0.4, 0.05)
+        sign = s.sign if s.plant.kd_nm_s_rad[s.joint] > 0 else -1.0
+        return {"factor": 1.0 + sign * part}
+
+    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+        """Where all damping is back-EMF, less of it and viscous friction cancel."""
+        cancel = not plant.kd_nm_s_rad.any()
+        return frozenset({"viscous_friction"} if cancel else ())
+
+
+class ServoFade(HiddenKind):
+    """The servo loses a constant share of its stiffness in every second."""
+
+    name = "servo_fade"
+    rank = 20
+    quantities = (Quantity("rate", "1/s", 0.0, 10.0),)
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Let kp fade from the beginning of the recording."""
+        servos.fade_1_s[joint] += values["rate"]
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 3 % to 25 % over the recording."""
+        return {"rate": s.part(0.25, 0.03) / s.duration_s}
+
+
+class JointCrosstalk(HiddenKind):
+    """A share of another joint's command is added to this joint's."""
+
+    name = "joint_crosstalk"
+    rank = 29
+    quantities = (
+        Quantity("source", "1", 0.0),
+        Quantity("share", "1", -1.0, 1.0),
+    )
+    outside = True
+
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
+        """Add a leak; `source` is the other joint's column.
+
+        Raises:
+          BadValueError: the source is not the number of another joint.
+        """
+        source, joints = int(values["source"]), len(servos.kp_nm_rad)
+        if not (0 <= source < joints and source != joint):
+            raise BadValueError(f"joint_crosstalk: {source} is no other joint")
+        servos.leaks.append((joint, source, values["share"]))
+
+    def size(self, s: Setting) -> dict[str, float]:
+        """From 1 % to 20 % of any other joint's command, of either sign."""
+        others = [i for i in range(len(s.plant.joints)) if i != s.joint]
+        return {
+            "source": float(s.rng.choice(others)),
+            "share": s.sign * s.part(0.2, 0.01),
+        }
+
+    def possible(self, plant: "HiddenPlant") -> bool:
+        """Another joint is needed."""
+        return len(plant.joints) > 1

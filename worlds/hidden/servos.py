@@ -1,0 +1,104 @@
+"""The servos of a robot with hidden physics: their law, and what effects change."""
+
+from functools import cached_property
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from worlds.hidden.plant import HiddenPlant
+
+
+def servo_torque_nm(
+    gains: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    error_rad: FloatArray,
+    speed_rad_s: FloatArray,
+) -> FloatArray:
+    """Joint torques (..., j) of servos: clip(kp error - kd v, +-max) - back_emf v.
+
+    Args:
+      gains: kp [N m/rad], kd [N m s/rad], back-EMF [N m s/rad] and largest torque
+        [N m], each (j,).
+      error_rad: (..., j) set-point less position.
+      speed_rad_s: (..., j) of the joints.
+    """
+    kp, kd, back_emf, most = gains
+    torque = kp * error_rad - kd * speed_rad_s
+    held = np.minimum(np.maximum(torque, -most), most)
+    return np.asarray(held - back_emf * speed_rad_s)
+
+
+class Servos:
+    """Numbers of a robot's servos, and the set-points that they follow.
+
+    Effects change the arrays before the first step; all are (j,) and in the plant's
+    order.
+
+    Attributes:
+      kp_nm_rad, kd_nm_s_rad, back_emf_nm_s_rad, max_torque_nm: see `servo_torque_nm`.
+      max_speed_rad_s: at which a set-point follows its command at most.
+      fade_1_s: share of kp that is lost in each second.
+      offset_rad: measured less true angle.
+      leaks: (to, from, share): a share of one joint's command is added to another's.
+    """
+
+    def __init__(self, plant: HiddenPlant, step_s: float) -> None:
+        """Begin with the nominal servos.
+
+        Args:
+          plant: the nominal robot.
+          step_s: time step.
+        """
+        j = len(plant.joints)
+        self.kp_nm_rad = plant.kp_nm_rad.copy()
+        self.kd_nm_s_rad = plant.kd_nm_s_rad.copy()
+        self.back_emf_nm_s_rad = plant.back_emf_nm_s_rad.copy()
+        self.max_torque_nm = plant.max_torque_nm.copy()
+        self.max_speed_rad_s = np.full(j, np.inf)
+        self.fade_1_s = np.zeros(j)
+        self.offset_rad = np.zeros(j)
+        self.leaks: list[tuple[int, int, float]] = []
+        self._step_s = step_s
+        self._target: FloatArray | None = None
+
+    @cached_property
+    def _fades(self) -> bool:
+        return bool(self.fade_1_s.any())
+
+    @cached_property
+    def _slews(self) -> bool:
+        return bool(np.isfinite(self.max_speed_rad_s).any())
+
+    def gains(
+        self, time_s: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """kp, kd, back-EMF and largest torque (j,) at a time of the recording."""
+        kp = self.kp_nm_rad
+        if self._fades:
+            kp = kp * np.maximum(1.0 - self.fade_1_s * max(time_s, 0.0), 0.0)
+        return kp, self.kd_nm_s_rad, self.back_emf_nm_s_rad, self.max_torque_nm
+
+    def set_point(self, command_rad: FloatArray) -> FloatArray:
+        """(j,) angles that the servos aim at in the next step.
+
+        Args:
+          command_rad: (j,) commands that have reached the servos.
+        """
+        target = command_rad
+        if self.leaks:
+            target = target.copy()
+            for joint, source, share in self.leaks:
+                target[joint] += share * command_rad[source]
+        if self._slews:
+            target = self._slewed(target)
+        return target - self.offset_rad
+
+    def _slewed(self, target: FloatArray) -> FloatArray:
+        """Set-points of limited speed, which begin at the first command."""
+        if self._target is None:
+            self._target = target
+        most, now = self.max_speed_rad_s * self._step_s, self._target
+        change = target - now
+        self._target = now + np.clip(change, -most, most)
+        # At the beginning of the step a ramp is at `now`. A set-point below the limit
+        # is a mean over the step already.
+        return np.where(np.abs(change) > most, now, self._target)

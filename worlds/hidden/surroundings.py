@@ -1,0 +1,82 @@
+"""What hidden physics changes around a robot's body: its signals and its ground."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
+from terrain import Heightfield, Lumps
+
+_HALF_SIDE_M = 3.0
+"""Half the side of the square ground; recordings of 6 s stay well within it."""
+_BUMP_WAVELENGTH_M = 0.2
+"""Shortest wavelength of bumps: about the length of a NAO's foot."""
+_BUMP_BLEND_M = 0.05
+
+
+@dataclass(eq=False)
+class Surroundings:
+    """Delays and bias of signals, and the ground; all zero where nothing is hidden.
+
+    Attributes:
+      command_delay_s: until a command reaches the servos.
+      encoder_delay_s: by which the encoders' readings are late.
+      gyroscope_bias_rad_s: (3,) constant error of the gyroscope, base frame.
+      pitch_rad: dip of the ground, or of a fixed base's mount, towards the front (x).
+      roll_rad: rise of the ground or mount towards the left (y).
+      bumps_m: height of the bumps under a floating robot.
+    """
+
+    command_delay_s: float = 0.0
+    encoder_delay_s: float = 0.0
+    gyroscope_bias_rad_s: FloatArray = field(default_factory=lambda: np.zeros(3))
+    pitch_rad: float = 0.0
+    roll_rad: float = 0.0
+    bumps_m: float = 0.0
+
+    def tilt(self) -> FloatArray:
+        """(3, 3) rotation from the frame of mount or ground to the upright world.
+
+        R = R_y(pitch) R_x(roll).
+        """
+        pitch, roll = self.pitch_rad, self.roll_rad
+        about_y = np.array(
+            [
+                [math.cos(pitch), 0, math.sin(pitch)],
+                [0, 1, 0],
+                [-math.sin(pitch), 0, math.cos(pitch)],
+            ]
+        )
+        about_x = np.array(
+            [
+                [1, 0, 0],
+                [0, math.cos(roll), -math.sin(roll)],
+                [0, math.sin(roll), math.cos(roll)],
+            ]
+        )
+        return np.asarray(about_y @ about_x)
+
+    def gravity_m_s2(self) -> FloatArray:
+        """(3,) gravity in the frame of the mount or the ground."""
+        return np.asarray(self.tilt().T @ np.array([0, 0, -GRAVITY_M_S2]))
+
+    def ground(self, seed: np.random.SeedSequence) -> Heightfield:
+        """What a floating robot stands on: level ground, or bumps from the start on.
+
+        Args:
+          seed: of the bumps.
+        """
+        low, high = -_HALF_SIDE_M, _HALF_SIDE_M
+        if self.bumps_m == 0:
+            return Heightfield(np.zeros((2, 2)), (low, low), high - low)
+        lumps = Lumps(
+            amplitude_m=self.bumps_m,
+            wavelength_m=_BUMP_WAVELENGTH_M,
+            x_range_m=(low, high),
+            y_range_m=(low, high),
+            start_radius_m=0.0,
+            blend_m=_BUMP_BLEND_M,
+        )
+        return lumps.make(seed)

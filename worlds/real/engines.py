@@ -1,0 +1,110 @@
+"""The engines of robots with hidden physics: MuJoCo, and a body in PyBullet."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from robots.model_urdf import model_urdf
+from terrain import Heightfield
+from worlds.hidden.effects.placed import Hidden
+from worlds.hidden.engine import BodySense, HiddenEngine, check_engine
+from worlds.hidden.model import hidden_model
+from worlds.hidden.mujoco_engine import HiddenMujoco
+from worlds.hidden.plant import HiddenPlant
+from worlds.real.body import BodySetup, BulletBody
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+def hidden_engine(
+    name: str,
+    plant: HiddenPlant,
+    effects: Sequence[Hidden],
+    step_s: float,
+    ground: Heightfield | None,
+) -> HiddenEngine:
+    """An engine with the robot in it.
+
+    Args:
+      name: "bullet" or "mujoco".
+      plant: the nominal robot.
+      effects: what is hidden.
+      step_s: fine step.
+      ground: what it stands on; None for a fixed base.
+
+    Raises:
+      GroundwalkError: the engine lacks an effect, or a place is unknown.
+    """
+    check_engine(name, effects)
+    model = hidden_model(plant, effects, step_s, ground)
+    if name == "mujoco":
+        return HiddenMujoco(plant, model)
+    return HiddenBullet(plant, model, effects, ground)
+
+
+class HiddenBullet(BulletBody):
+    """A robot with hidden physics in PyBullet; see `HiddenEngine`.
+
+    It is made from the MuJoCo model, so that both engines compute the same bodies under
+    the same gravity.
+    """
+
+    def __init__(
+        self,
+        plant: HiddenPlant,
+        model: "mujoco.MjModel",
+        effects: Sequence[Hidden],
+        ground: Heightfield | None,
+    ) -> None:
+        """Load robot and ground; soft ground is set here, all else is in the model."""
+        soles = np.flatnonzero(model.geom_contype == 1)
+        description = plant.description
+        springs = []
+        if description is not None:
+            mass_kg = description.mass_kg
+            found = [e.kind.foot_spring(e.values, mass_kg) for e in effects]
+            springs = [spring for spring in found if spring is not None]
+        super().__init__(
+            BodySetup(
+                urdf=model_urdf(model, plant.name),
+                joints=plant.joints,
+                floating=plant.floating,
+                step_s=float(model.opt.timestep),
+                gravity_m_s2=model.opt.gravity.copy(),
+                friction=float(model.geom_friction[soles[0], 0]) if soles.size else 0.0,
+                description=description,
+                springs=springs,
+                ground=ground,
+            )
+        )
+        self._forget()
+
+    def _forget(self) -> None:
+        self._watched, self._feet = 0, np.zeros(8)
+        self._earlier: FloatArray | None = None
+
+    def watch(self) -> None:
+        """Take the sensors in; see `HiddenEngine`."""
+        if not self.setup.floating:
+            return
+        if self._earlier is None:
+            self._earlier = self.base_motion()[1]
+        self._watched += 1
+        self._feet += self.foot_forces()
+
+    def sense(self) -> BodySense:
+        """What the sensors say; see `HiddenEngine`."""
+        if not self.setup.floating:
+            zero, up = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
+            felt = -self.setup.gravity_m_s2 if self.setup.description else zero
+            return BodySense(zero, felt, np.zeros(8), zero, up, zero, zero)
+        pose, now = self.base_motion()
+        earlier = now if self._earlier is None else self._earlier
+        seconds = max(self._watched - 1, 1) * self.setup.step_s
+        felt = self.specific_force(pose, earlier, now, seconds)
+        feet = np.maximum(self._feet / max(self._watched, 1), 0.0)
+        self._forget()
+        return BodySense(now[3:], felt, feet, pose[:3], pose[3:], now[:3], now[3:])

@@ -1,0 +1,132 @@
+"""One robot of the real world: a body in PyBullet with the sim's servos."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from groundwalk.gravity import GRAVITY_M_S2
+from robots.description import Description
+from robots.urdf import urdf
+from terrain import Heightfield
+from worlds.real.body import BodySetup, BulletBody
+from worlds.real.servo_twin import ServoTwin
+from worlds.soft_ground import FootSpring
+from worlds.world import WorldOptions
+
+OUT_OF_REACH_M = 100.0
+"""Height above the ground at which nothing touches it."""
+
+
+@dataclass(frozen=True, eq=False)
+class BulletState:
+    """A robot after a tick.
+
+    Attributes:
+      base_pose: (7,) torso position [m] and quaternion w, x, y, z.
+      base_velocity: (6,) linear [m/s] in the world, angular [rad/s] in the torso frame.
+      position_rad, velocity_rad_s: (joints,).
+      gyroscope_rad_s: (3,) torso frame.
+      accelerometer_m_s2: (3,) torso frame, over the last physics step.
+      foot_force_n: (8,) over the last physics step.
+    """
+
+    base_pose: FloatArray
+    base_velocity: FloatArray
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+    gyroscope_rad_s: FloatArray
+    accelerometer_m_s2: FloatArray
+    foot_force_n: FloatArray
+
+
+class BulletRobot:
+    """A robot on its ground, with the sim's motors (`ServoTwin`).
+
+    Attributes:
+      body: the robot in its PyBullet client.
+    """
+
+    def __init__(
+        self, description: Description, ground: Heightfield, options: WorldOptions
+    ) -> None:
+        """Connect a client of its own and load robot and ground."""
+        springs = []
+        if options.sinkage_m:
+            springs = [FootSpring.sinking(description, options.sinkage_m)]
+        self.body = BulletBody(
+            BodySetup(
+                urdf=urdf(description),
+                joints=description.joints,
+                floating=not options.fixed_base,
+                step_s=options.timestep_s,
+                gravity_m_s2=np.array([0.0, 0.0, -GRAVITY_M_S2]),
+                friction=options.friction,
+                description=description,
+                springs=springs,
+                ground=None if options.fixed_base else ground,
+            )
+        )
+        self._step_s = options.timestep_s
+        self._servo = ServoTwin(description, options)
+
+    def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:
+        """Put the robot upright at the origin, its torso at a height, at rest.
+
+        Args:
+          pose_rad: (joints,) joint positions.
+          height_m: of the torso above the origin.
+        """
+        # One step out of reach first: contacts of the last rollout would linger.
+        self.body.reset(pose_rad, height_m + OUT_OF_REACH_M)
+        self.body.step(np.zeros(len(pose_rad)))
+        self.body.reset(pose_rad, height_m)
+        self._servo.reset()
+        pose, velocity = self.body.base_motion()
+        return self._state(pose, velocity, velocity)
+
+    def step(self, schedule: Sequence[tuple[FloatArray, int]]) -> BulletState | None:
+        """Advance by one tick.
+
+        Args:
+          schedule: command [rad] (joints,) and for how many physics steps it acts.
+
+        Returns:
+          The state after the tick, or None if the physics has blown up.
+        """
+        body = self.body
+        pose, velocity = body.base_motion()
+        before = velocity
+        for command, steps in schedule:
+            for _ in range(steps):
+                torque = self._servo.torque(
+                    pose, velocity, body.position_rad, body.velocity_rad_s, command
+                )
+                if not np.isfinite(torque).all():
+                    return None
+                body.step(torque)
+                before = velocity
+                pose, velocity = body.base_motion()
+        return self._state(pose, velocity, before)
+
+    def close(self) -> None:
+        """Disconnect the client."""
+        self.body.close()
+
+    def _state(
+        self, pose: FloatArray, velocity: FloatArray, before: FloatArray
+    ) -> BulletState:
+        """All that is measured, from the torso's motion now and a step before."""
+        body = self.body
+        return BulletState(
+            base_pose=pose,
+            base_velocity=velocity,
+            position_rad=body.position_rad,
+            velocity_rad_s=body.velocity_rad_s,
+            gyroscope_rad_s=velocity[3:],
+            accelerometer_m_s2=body.specific_force(
+                pose, before, velocity, self._step_s
+            ),
+            foot_force_n=np.maximum(body.foot_forces(), 0.0),
+        )
