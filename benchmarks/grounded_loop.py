@@ -17,7 +17,7 @@ import worlds
 from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
 from experiments.grounded_walks.courses import SimPlace
-from experiments.grounded_walks.data import GaitCloud, leg_senses, walk
+from experiments.grounded_walks.data import walk
 from experiments.walking.trials import TrialRules, walk_trials
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
@@ -25,7 +25,9 @@ from sgat.models.inverse_model import InverseModel
 from sgat.models.network_config import NetworkConfig
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.block_noise import BlockNoise
+from sgat.walks.gait_cloud import GaitCloud
 from sgat.walks.grounded_world import GroundedWorld
+from sgat.walks.walk_senses import leg_senses
 from walk_engine import gaits
 
 ROBOTS = 150

@@ -1,8 +1,8 @@
-"""Standardised noise, tick by tick, for n robots that do not know of each other.
+"""Standardised noise, tick by tick, for n robots that are independent of each other.
 
-A noise law says what the noise of one robot is like: mean 0 and variance 1 in each
-dimension, and whatever memory, tails and correlation it claims. A law is a plain value:
-it can be shared and sent to other processes. A stream draws from it.
+A noise law describes the noise of one robot: mean 0 and variance 1 in each dimension,
+with a memory, tails and correlations of the law's own. A law is a plain value, so it
+can be shared and sent to other processes. A stream draws from a law.
 """
 
 from collections.abc import Sequence
@@ -15,60 +15,70 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 
 CHUNK_TICKS = 64
-"""About so many ticks of a robot are drawn at once: one call for all is far cheaper."""
+"""Ticks of noise that are drawn in one call: far cheaper than a call for each tick."""
 
 Generators = Sequence[np.random.Generator]
 
 
 class NoiseLaw(Protocol):
-    """What the noise of one robot is like."""
+    """Describes the noise of one robot; a law of your own needs these two members."""
 
     @property
     def dimensions(self) -> int:
-        """How many numbers a tick has."""
+        """d, the numbers that are drawn for a robot at each tick."""
 
     def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """(ticks, n, d) of the next ticks.
+        """Noise of the next ticks.
 
-        What a robot gets depends on its own generator and its own past alone, to the
-        bit: not on how many others there are.
+        A robot's noise depends only on its own generator and its own past, to the last
+        bit, and not on the number of other robots.
 
         Args:
-          generators: n, one per robot.
-          last: (n, d) of the tick before, or None at the start.
+          generators: n random generators, one for each robot.
+          last: (n, d) noise of the tick before, or None at the start.
+
+        Returns:
+          (ticks, n, d) noise without a unit; the law chooses the number of ticks.
         """
 
 
 @dataclass(frozen=True)
 class WhiteNoise:
-    """Independent normal numbers: what the paper's model assumes.
+    """Independent standard normal numbers, as the SGAT paper's model assumes.
 
     Attributes:
-      dimensions: how many numbers a tick has.
+      dimensions: d, the numbers that are drawn for a robot at each tick.
+
+    Example:
+      >>> noise, choice = NoiseStream(WhiteNoise(3), seeds).draw()
     """
 
     dimensions: int
 
     def __post_init__(self) -> None:
-        """Refuse nothing at all."""
+        """Refuse noise without dimensions."""
         if self.dimensions < 1:
             raise BadValueError(f"dimensions is {self.dimensions}; give at least 1")
 
     def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """See `NoiseLaw`."""
+        """The next `CHUNK_TICKS` ticks of noise; see `NoiseLaw.chunk`."""
         shape = (CHUNK_TICKS, self.dimensions)
         return np.stack([g.standard_normal(shape) for g in generators], axis=1)
 
 
 class NoiseStream:
-    """The noise of n robots through one episode, each from its own seed."""
+    """Draws the noise of n robots through one episode, each from its own seed.
+
+    Example:
+      See `WhiteNoise`.
+    """
 
     def __init__(self, law: NoiseLaw, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode.
 
         Args:
-          law: what the noise is like.
-          seeds: one per robot.
+          law: describes the noise of each robot.
+          seeds: n, one for each robot.
         """
         self._law = law
         self._generators = [np.random.default_rng(seed) for seed in seeds]
@@ -79,13 +89,15 @@ class NoiseStream:
 
     @property
     def n(self) -> int:
-        """How many robots."""
+        """Number of robots."""
         return len(self._generators)
 
     def draw(self) -> tuple[FloatArray, FloatArray]:
-        """This tick's noise (n, d), and an independent uniform number for each robot.
+        """Go on by one tick.
 
-        The uniform numbers (n,) choose among a mixture's components.
+        Returns:
+          (n, d) standardised noise, and (n,) independent numbers, uniform from 0 to 1,
+          which choose among the components of a mixture.
         """
         if self._tick == len(self._noise):
             last = self._noise[-1] if len(self._noise) else None
@@ -97,5 +109,24 @@ class NoiseStream:
         return self._noise[self._tick - 1], self._choice[self._tick - 1]
 
     def member(self) -> FloatArray:
-        """(n,) uniform numbers that stay for the episode: of an ensemble's member."""
+        """(n,) uniform numbers, constant for the episode, that choose a network.
+
+        An ensemble lets each robot keep one of its networks for a whole episode.
+        """
         return self._member
+
+
+def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
+    """A seed for one use, always the same for the same parent and number.
+
+    `SeedSequence.spawn` would count up in the parent and answer differently each time.
+
+    Args:
+      seed: the parent, which stays as it is.
+      use: number of the use, 0 or more.
+
+    Example:
+      >>> child_of(np.random.SeedSequence(1), 2).spawn_key
+      (2,)
+    """
+    return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))

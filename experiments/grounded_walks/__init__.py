@@ -1,1 +1,28 @@
-"""A NAO's walks in sims grounded on walks of the real world, and searches in them."""
+"""The NAO's walks in sims that are grounded on real walks, and what rates gaits there.
+
+It is here and not in `sgat`, because it combines rooms: trials of gaits, grounding, and
+sims that a diagnosis has corrected.
+"""
+
+from experiments.grounded_walks.courses import (
+    Places,
+    RealCourse,
+    SimPlace,
+    noisy_sim,
+)
+from experiments.grounded_walks.data import walk
+from experiments.grounded_walks.models import WalkModels
+from experiments.grounded_walks.sim import GroundedSim, walk_in_sim
+from experiments.grounded_walks.step import GroundingStep
+
+__all__ = [
+    "GroundedSim",
+    "GroundingStep",
+    "Places",
+    "RealCourse",
+    "SimPlace",
+    "WalkModels",
+    "noisy_sim",
+    "walk",
+    "walk_in_sim",
+]

@@ -1,8 +1,7 @@
-"""What the models of a grounding learn from: walks in either world."""
+"""Walks in either world, with the transitions that a grounding learns from."""
 
 import contextlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
@@ -11,55 +10,21 @@ from experiments.grounded_walks.courses import RealCourse, SimPlace, world_at
 from experiments.walking.evaluation import MOST_AT_ONCE
 from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
-from robots import Description, biped
+from robots import Description
 from sgat.transitions import Transitions
-from sgat.walks.walk_senses import WalkSenses
+from sgat.walks.walk_senses import leg_senses
 from sgat.walks.watched_world import WatchedWorld
-from walk_engine import Gait
-from walk_engine.gait import NAMES, from_unit, to_unit
 
 WALK = TrialRules(limit_s=7.5, start_spread_rad=0.01)
-"""A walk of the paper's length, from a start pose that spreads."""
-
-
-@dataclass(frozen=True)
-class GaitCloud:
-    """Random gaits around one, at speeds of their own.
-
-    Attributes:
-      spread: standard deviation, as a part of each parameter's range.
-      slowest_m_s: least speed asked for.
-      fastest_m_s: largest speed asked for.
-    """
-
-    spread: float = 0.12
-    slowest_m_s: float = 0.12
-    fastest_m_s: float = 0.40
-
-    def draw(
-        self, around: Gait, count: int, seed: np.random.SeedSequence
-    ) -> FloatArray:
-        """(count, 16) gait vectors."""
-        rng = np.random.default_rng(seed)
-        unit = to_unit(around.to_vector()) + rng.normal(0, self.spread, (count, 16))
-        vectors = from_unit(np.clip(unit, 0.02, 0.98))
-        speeds = rng.uniform(self.slowest_m_s, self.fastest_m_s, count)
-        vectors[:, NAMES.index("max_forward")] = speeds
-        return vectors
-
-
-def leg_senses(description: Description) -> WalkSenses:
-    """Senses that ground the legs: arms hardly matter, and their data cost."""
-    legs = biped(description)
-    return WalkSenses([*legs.left_leg, *legs.right_leg])
-
+"""A walk of 7.5 s, as in the SGAT paper; start poses vary by 0.01 rad per joint."""
 
 ON_COURSE = TrialRules(limit_s=15.0, start_spread_rad=0.01)
-"""As long as a course of 3 m takes."""
+"""A walk of 15 s: the time that a course of 3 m takes."""
 
 FLAT_TICKS = 300
-"""The ground around the start is flat: what a robot does there says nothing of lumps,
-and a grounding that averages over both falls too seldom."""
+"""Ticks (3 s) at the start of a walk on lumps that are not used. The ground around the
+start is flat and shows nothing of the lumps; a grounding that averages over both falls
+less often than the real robot."""
 
 
 def walk(
@@ -70,15 +35,19 @@ def walk(
     exploration_rad: Sequence[float] = (0.0,),
     rules: TrialRules = WALK,
 ) -> tuple[Trials, Transitions]:
-    """Each gait walks once, on ground of its own; everything is noted.
+    """Let each gait walk once, on ground of its own, and note all transitions.
 
     Args:
       place: the world and its grounds.
       description: the robot.
-      vectors: (n, 16) gaits.
-      seed: of grounds, noise, start poses and exploration.
-      exploration_rad: noise on the commands; the gaits get them in turn.
+      vectors: (n, 16) gaits, in the units of `walk_engine.PARAMETERS`.
+      seed: of grounds, sensor noise, start poses and exploration.
+      exploration_rad: standard deviations [rad] of noise on the joint commands; the
+        gaits get them in turn.
       rules: when a walk is over.
+
+    Returns:
+      How the n walks went, and their transitions in the same order.
     """
     levels = np.resize(np.asarray(exploration_rad, float), (len(vectors), 1))
     trials, noted = [], []
@@ -99,6 +68,6 @@ def walk(
 
 
 def on_lumps(walks: Transitions) -> Transitions:
-    """Walks without what was noted on the flat ground that they start from."""
+    """Walks without their first `FLAT_TICKS` ticks, which are on flat ground."""
     first = np.searchsorted(walks.episode, walks.episode)
     return walks.subset(np.arange(walks.n) - first >= FLAT_TICKS)

@@ -10,18 +10,27 @@ from experiments.grounded_walks.courses import LUMPS_M, Places, RealCourse
 from experiments.grounded_walks.data import ON_COURSE, on_lumps, walk
 from experiments.grounded_walks.sim import ROBOT
 from groundwalk.arrays import BoolArray, FloatArray
+from sgat.noise import child_of
 from sgat.transitions import Transitions
 
 EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
-"""Noise on the commands of the sim's walks: it shows what an action does."""
+"""Standard deviations [rad] of the noise on commands in the sim, one walk each in turn:
+without noise, data do not show the effect of a single action."""
 
 REAL_EXPLORATION_RAD = (0.0, 0.03)
-"""Noise on every second real walk. Commands that all change smoothly do not tell which
-of them acts: without it the roll joints' latency came out at half its length."""
+"""The same for the real world: noise on every second walk. A gait changes all commands
+smoothly, and from its data alone the latency of the roll joints was learned at half its
+length."""
 
 
 class RealWalks(NamedTuple):
-    """Walks of the real world; see `WalkRecords`."""
+    """Walks of the real world.
+
+    Attributes:
+      noted: transitions on the lumps, without the flat start.
+      vectors: (n, 16) gaits that walked without exploration.
+      fell: (n,) whether each of these fell.
+    """
 
     noted: Transitions
     vectors: FloatArray
@@ -30,14 +39,15 @@ class RealWalks(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class WalkRecords:
-    """What was noted, and which gaits fell.
+    """Walks of both worlds.
 
     Attributes:
-      real: on the real world's lumps.
-      sim: on the flat.
-      uneven: of the sim on lumps of all sizes, its sensors as noisy as real's.
+      real: transitions on the real world's lumps.
+      sim: transitions of the flat sim.
+      uneven: transitions of the sim on lumps of all sizes, with sensors as noisy as the
+        real world's.
       vectors: (n, 16) gaits of the real walks without exploration.
-      fell: (n,) whether they fell.
+      fell: (n,) whether each of these fell.
     """
 
     real: Transitions
@@ -47,7 +57,7 @@ class WalkRecords:
     fell: BoolArray
 
     def joined(self, other: "WalkRecords") -> "WalkRecords":
-        """These walks and then the others."""
+        """These walks, followed by those of another step."""
         return WalkRecords(
             self.real.joined(other.real),
             self.sim.joined(other.sim),
@@ -60,7 +70,13 @@ class WalkRecords:
 def record_real(
     vectors: FloatArray, seed: np.random.SeedSequence, course: RealCourse
 ) -> RealWalks:
-    """Let gaits (n, 16) walk in the real world."""
+    """Let gaits walk in the real world.
+
+    Args:
+      vectors: (n, 16) gaits, in the units of `walk_engine.PARAMETERS`.
+      seed: of everything random in the walks.
+      course: the ground, and the physics that the sim lacks.
+    """
     exploration, robot = REAL_EXPLORATION_RAD, robots.get(ROBOT)
     trials, real = walk(
         course, robot, vectors, child_of(seed, 0), exploration, ON_COURSE
@@ -75,15 +91,17 @@ def record_walks(
     seed: np.random.SeedSequence,
     places: Places,
 ) -> WalkRecords:
-    """Let gaits (n, 16) walk in the sim, twice, and put real's walks beside them."""
+    """Let gaits walk in the flat and in the uneven sim, and add the real walks.
+
+    Args:
+      real: walks of the real world.
+      of_sim: (n, 16) gaits for the sims, in the units of `walk_engine.PARAMETERS`.
+      seed: of everything random in the walks.
+      places: makes the sims.
+    """
     robot, in_sim, on_uneven = robots.get(ROBOT), child_of(seed, 1), child_of(seed, 2)
     flat, uneven = (
         walk(place, robot, of_sim, child, EXPLORATION_RAD)[1]
         for place, child in ((places.sim(), in_sim), (places.sim(LUMPS_M), on_uneven))
     )
     return WalkRecords(real.noted, flat, uneven, real.vectors, real.fell)
-
-
-def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
-    """The random numbers of one use, the same however often they are asked for."""
-    return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))

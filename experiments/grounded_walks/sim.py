@@ -1,18 +1,21 @@
-"""The sim that gaits walk in, behind a transformer where it is grounded."""
+"""The sim that gaits walk in, behind an action transformer if it is grounded."""
 
+import contextlib
 from dataclasses import dataclass, field
 
 import numpy as np
 
 import robots
 from experiments.grounded_walks.courses import SimPlace, world_at
-from experiments.grounded_walks.data import WALK, leg_senses
+from experiments.grounded_walks.data import WALK
 from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
-from sgat.transformers.action_transformer import Transformer
+from sgat.transformers.transformer import Transformer
 from sgat.walks.grounded_world import GroundedWorld
+from sgat.walks.walk_senses import leg_senses
 
 ROBOT = "nao"
+"""The robot of all studies of this folder."""
 
 
 @dataclass(frozen=True)
@@ -20,8 +23,11 @@ class GroundedSim:
     """The sim that gaits walk in.
 
     Attributes:
-      transformer: of the commands; None for the sim as it is.
-      place: the sim behind it.
+      transformer: changes the joint commands; None leaves the sim as it is.
+      place: the sim behind the transformer.
+
+    Example:
+      See docs/python.md, "Learn with Gymnasium".
     """
 
     transformer: Transformer | None = None
@@ -36,17 +42,21 @@ def walk_in_sim(
     rules: TrialRules = WALK,
     own_seeds: bool = False,
 ) -> Trials:
-    """Each gait walks several times in the grounded sim, gait by gait.
+    """Let each gait walk several times in a sim.
 
-    All gaits get the same random numbers, so that differences are the gaits' own.
+    By default all gaits get the same random numbers, so that differences between their
+    results come from the gaits alone.
 
     Args:
       sim: grounded or not.
-      vectors: (gaits, 16).
+      vectors: (gaits, 16) in the units of `walk_engine.PARAMETERS`.
       repeats: walks of each gait.
       seed: of grounds, start poses and the transformer's noise.
       rules: when a walk is over.
-      own_seeds: every gait gets random numbers of its own instead.
+      own_seeds: give every gait random numbers of its own instead.
+
+    Returns:
+      gaits * repeats trials; those of one gait follow each other.
     """
     if own_seeds:
         seeds = seed.spawn(repeats * len(vectors))
@@ -59,4 +69,5 @@ def walk_in_sim(
     if sim.transformer is not None:
         senses = leg_senses(world.description)
         world = GroundedWorld(world, senses, sim.transformer, seeds)
-    return walk_trials(world, np.repeat(vectors, repeats, axis=0), rules, seeds)
+    with contextlib.closing(world):
+        return walk_trials(world, np.repeat(vectors, repeats, axis=0), rules, seeds)

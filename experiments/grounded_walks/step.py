@@ -1,4 +1,4 @@
-"""The grounding steps that a search may walk in."""
+"""One grounding step: walks in both worlds, models of them, a sim to search in."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -6,25 +6,32 @@ from functools import cached_property
 import numpy as np
 
 from experiments.grounded_walks.courses import SHORT_START_M, Places
-from experiments.grounded_walks.data import ON_COURSE, GaitCloud
-from experiments.grounded_walks.methods import GROUNDINGS, UNEVEN, WalkModels
+from experiments.grounded_walks.data import ON_COURSE
+from experiments.grounded_walks.models import WalkModels
 from experiments.grounded_walks.raters import RATED, GroundedRater
 from experiments.grounded_walks.records import (
     RealWalks,
     WalkRecords,
-    child_of,
     record_real,
     record_walks,
 )
+from sgat.noise import child_of
+from sgat.transformers.catalogue import grounding
+from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import Gait
 
 LUMPS_MARGIN = 1.2
-"""A search's lumps are higher than real's by this. Gaits tuned on lumps as high as
-those lie where falls begin, and fell on 10 and 15 of 40 real courses."""
+"""Height of a search's lumps over the height that matches real falls. Gaits tuned on
+lumps of the matching height are at the edge of falling: two of them fell on 10 and on
+15 of 40 real courses."""
 
 
-class Grounding:
-    """The data of one grounding step and the models learned from them, when asked."""
+class GroundingStep:
+    """One grounding step: its data, and the models learned from them when asked for.
+
+    Example:
+      See docs/python.md, "Learn with Gymnasium".
+    """
 
     def __init__(
         self,
@@ -32,20 +39,21 @@ class Grounding:
         cloud: GaitCloud,
         walks: tuple[int, int],
         seed: np.random.SeedSequence,
-        before: "Grounding | None" = None,
+        before: "GroundingStep | None" = None,
         places: Places | None = None,
-        beside: "Grounding | None" = None,
+        beside: "GroundingStep | None" = None,
     ) -> None:
-        """Say what shall be walked.
+        """Describe the step; nothing walks yet.
 
         Args:
-          around: the gait that the data are about.
-          cloud: of the gaits that walk.
-          walks: in the real world and in the sim.
+          around: the gait in the middle of those that walk.
+          cloud: draws the gaits that walk.
+          walks: numbers of walks in the real world and in the sim.
           seed: of gaits, walks and trainings.
-          before: the step before, whose data count as well.
-          places: the two worlds; the plain ones where None.
-          beside: a step from the same gait and seed, whose real walks are these, too.
+          before: the previous step, whose data are used as well.
+          places: the two worlds; by default the real world's own terrain, and the sim
+            without a diagnosis.
+          beside: a step with the same gait and seed, whose real walks are shared.
         """
         self._around, self._cloud, self._walks = around, cloud, walks
         self._seeds = [child_of(seed, use) for use in range(4)]
@@ -54,7 +62,7 @@ class Grounding:
 
     @cached_property
     def real(self) -> RealWalks:
-        """This step's walks of the real world."""
+        """This step's walks in the real world."""
         if self._beside is not None:
             return self._beside.real
         vectors = self._cloud.draw(self._around, self._walks[0], self._seeds[0])
@@ -62,29 +70,30 @@ class Grounding:
 
     @cached_property
     def records(self) -> WalkRecords:
-        """All walks so far."""
+        """The walks of this step and of all steps before it."""
         of_sim = self._cloud.draw(self._around, self._walks[1], self._seeds[1])
         new = record_walks(self.real, of_sim, self._seeds[2], self._places)
         return new if self._before is None else self._before.records.joined(new)
 
     @cached_property
     def models(self) -> WalkModels:
-        """Fitted to all data so far."""
+        """Models of both worlds, learned from `records`."""
         return WalkModels(self.records, self._seeds[3], self._places)
 
-    def rater(self, grounding: str, repeats: int) -> GroundedRater:
-        """The sim behind one of `GROUNDINGS`."""
-        assert grounding in GROUNDINGS
-        sim = self.models.grounded(grounding)
-        if grounding == UNEVEN:
+    def rater(self, name: str, repeats: int) -> GroundedRater:
+        """Rates gaits in the sim as one grounding makes it.
+
+        Args:
+          name: name or title of a grounding in `sgat.transformers`.
+          repeats: walks of each gait.
+
+        Raises:
+          UnknownNameError: there is no such grounding; nothing has walked then.
+        """
+        uneven = grounding(name).uneven_sim
+        sim = self.models.grounded(name)
+        if uneven:
             lumps_m = LUMPS_MARGIN * self.models.lumps_m
             sim = replace(sim, place=self._places.sim(lumps_m, SHORT_START_M))
-        # Where lumps make a robot fall, a walk tells the more the longer it is.
-        rules = ON_COURSE if grounding == UNEVEN else RATED
-        return GroundedRater(sim, repeats, rules)
-
-
-def cloud_around(gait: Gait) -> GaitCloud:
-    """Gaits near a tuned one, from half to a little above its speed."""
-    fastest_m_s = gait["max_forward"]
-    return GaitCloud(0.06, 0.5 * fastest_m_s, min(1.1 * fastest_m_s, 0.45))
+        # Where lumps make a robot fall, a longer walk shows more.
+        return GroundedRater(sim, repeats, ON_COURSE if uneven else RATED)

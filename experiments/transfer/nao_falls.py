@@ -9,8 +9,8 @@ import numpy as np
 import robots
 from experiments.command_line import run_verb
 from experiments.grounded_walks.courses import Places, RealCourse
-from experiments.grounded_walks.data import GaitCloud, walk
-from experiments.grounded_walks.methods import GROUNDINGS, WalkModels
+from experiments.grounded_walks.data import walk
+from experiments.grounded_walks.models import WalkModels
 from experiments.grounded_walks.records import record_real, record_walks
 from experiments.grounded_walks.sim import ROBOT, walk_in_sim
 from experiments.reports.tables import print_folder, print_json, print_table
@@ -20,6 +20,7 @@ from experiments.runs.options import RunOptions
 from experiments.runs.progress import progress
 from experiments.transfer.nao_studies.falls_figure import FIGURE, draw_falls
 from experiments.transfer.nao_studies.falls_measures import (
+    GROUNDINGS,
     MEASURES_FIGURE,
     draw_measures,
     measures_of,
@@ -33,6 +34,7 @@ from experiments.transfer.nao_studies.falls_page import (
 )
 from experiments.walking.trials import Trials
 from groundwalk.errors import BadValueError
+from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import gaits
 
 VERB = "transfer-nao-falls"

@@ -14,7 +14,7 @@ from terrain import Heightfield, TerrainSpec, parse
 from worlds import World, WorldOptions
 
 if TYPE_CHECKING:
-    from sgat.transformers.action_transformer import Transformer
+    from sgat.transformers.transformer import Transformer
 
 WorldName = Literal["sim", "real", "grounded"]
 
@@ -73,8 +73,8 @@ class EnvWorld:
         world = worlds.make(self.inner, robot, grounds, seeds, self.options)
         if self.transformer is None:
             return world
-        from experiments.grounded_walks.data import leg_senses
         from sgat.walks.grounded_world import GroundedWorld
+        from sgat.walks.walk_senses import leg_senses
 
         assert not isinstance(self.transformer, str | Path)
         senses = leg_senses(self.description)

@@ -9,7 +9,7 @@ from gymnasium.spaces import Box
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from sgat.transformers.action_transformer import Transformer
+from sgat.transformers.transformer import Transformer
 
 Wrapper: TypeAlias = gym.Wrapper[FloatArray, FloatArray, FloatArray, FloatArray]
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]

@@ -1,7 +1,8 @@
-"""g(s, a): the action that makes the sim do what the real world would."""
+"""g(s, a) through two models: the transformer of GAT and SGAT."""
 
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -10,26 +11,30 @@ from groundwalk.errors import BadValueError
 from sgat.models.distributional_inverse import DistributionalInverse
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.noise import NoiseLaw, NoiseStream
+from sgat.noise import NoiseLaw, NoiseStream, WhiteNoise
+from sgat.transformers.catalogue import file_kind
+
+FORWARD, INVERSE = "forward.pt", "inverse.pt"
+"""Files of the two models in a transformer's folder."""
 
 
-class Transformer(Protocol):
-    """Anything that stands between a policy and n robots of a world."""
-
-    def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode of n robots, each with its own seed."""
-
-    def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) actions for the world, of states (n, s) and the policy's (n, a)."""
-
-
+@file_kind
 class ActionTransformer:
     """g(s, a) = f_inv(s, f_real(s, a)) for n robots in one call.
 
-    Without noise f_real answers its mean: GAT (Hanna and Stone 2017). With noise it
-    answers a sample: SGAT. Both are clipped to the action's bounds, as whatever the
-    sim would do with an action beyond them is not what the models learned.
+    g gives the action that makes the sim do what the real world would do. Without
+    noise, f_real predicts the mean next state: GAT (Hanna and Stone 2017). With noise
+    it predicts a sample: SGAT (Desai et al. 2020). The result is clipped to the
+    action's bounds, because the models have learned nothing about actions beyond them.
+
+    Example:
+      >>> noise = WhiteNoise(forward.outcomes)
+      >>> g = ActionTransformer(forward, inverse, low, high, noise)
+      >>> g.reset(seeds)
+      >>> transformed = g(state, action)
     """
+
+    kind: ClassVar[str] = "through models"
 
     def __init__(
         self,
@@ -41,19 +46,24 @@ class ActionTransformer:
         smoothing: float = 1.0,
         inverse_columns: int | None = None,
     ) -> None:
-        """Put the models together.
+        """Join two fitted models.
 
         Args:
-          forward: of the real world.
-          inverse: of the sim; a `DistributionalInverse` if the sim is stochastic.
+          forward: f_real, the forward model of the real world.
+          inverse: f_inv, the inverse model of the sim; a `DistributionalInverse` if the
+            sim is stochastic.
           low: (a,) least action.
           high: (a,) largest action.
-          noise: None for GAT; for SGAT the law of the standardised residuals, of as
-            many dimensions as a next state has, or as an action has where the
-            inverse is distributional.
-          smoothing: share of the transformed action; the rest is the policy's.
-          inverse_columns: the inverse model sees the first columns of a state; all
-            where None.
+          noise: None for GAT. For SGAT the law of the standardised noise, with as many
+            dimensions as a next state, or as an action if the inverse model is
+            distributional.
+          smoothing: share of the transformed action in the result, from 0 to 1; the
+            remainder is the policy's action.
+          inverse_columns: number of first columns of a state that the inverse model
+            sees; all if None.
+
+        Raises:
+          BadValueError: smoothing or the noise's dimensions do not fit.
         """
         if not 0 <= smoothing <= 1:
             raise BadValueError(f"smoothing is {smoothing}; it must be from 0 to 1")
@@ -78,23 +88,68 @@ class ActionTransformer:
 
     @property
     def inverse_columns(self) -> int | None:
-        """How many columns of a state the inverse model sees; None for all."""
+        """Number of first columns of a state that the inverse model sees; None: all."""
         columns: int | None = self._columns.stop
         return columns
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode of n robots, each with noise from its own seed."""
+        """Start an episode.
+
+        Args:
+          seeds: n seeds of the robots' noise.
+        """
         if self.noise is not None:
             self._stream = NoiseStream(self.noise, seeds)
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) transformed actions of states (n, s) and the policy's actions (n, a).
+        """Transform the actions of one tick; with noise, call it once per tick.
 
-        With noise this is one tick: call it once for each, after `reset`.
+        Args:
+          state: (n, s) states.
+          action: (n, a) actions that the policy asks for.
+
+        Returns:
+          (n, a) actions for the sim, within the bounds.
         """
         found = self._find(state, action)
         found = action + self.smoothing * (found - action)
         return np.clip(found, self._low, self._high)
+
+    def save(self, folder: Path) -> dict[str, Any]:
+        """Write both models into a folder; see `KeptTransformer.save`.
+
+        Raises:
+          BadValueError: the noise is not white; other laws hold data.
+        """
+        noise = self.noise
+        if not (noise is None or isinstance(noise, WhiteNoise)):
+            kind = type(noise).__name__
+            raise BadValueError(f"the noise is {kind}; only white noise can be written")
+        self.forward.save(folder / FORWARD)
+        self.inverse.save(folder / INVERSE)
+        return {
+            "distributional": isinstance(self.inverse, DistributionalInverse),
+            "noise_dimensions": noise and noise.dimensions,
+            "smoothing": self.smoothing,
+            "inverse_columns": self.inverse_columns,
+        }
+
+    @classmethod
+    def load(
+        cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
+    ) -> Self:
+        """Read both models back; see `KeptTransformer.load`."""
+        kind = DistributionalInverse if header["distributional"] else InverseModel
+        white = header["noise_dimensions"]
+        return cls(
+            ForwardModel.load(folder / FORWARD),
+            kind.load(folder / INVERSE),
+            low,
+            high,
+            None if white is None else WhiteNoise(white),
+            header["smoothing"],
+            header["inverse_columns"],
+        )
 
     def _find(self, state: FloatArray, action: FloatArray) -> FloatArray:
         if isinstance(self.inverse, DistributionalInverse):

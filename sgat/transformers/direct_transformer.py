@@ -1,8 +1,9 @@
-"""g(s, a) in one network, without an inverse model."""
+"""g(s, a) in one network, without an inverse model, and the grounding that uses it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import torch
@@ -10,44 +11,63 @@ from torch import Tensor
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError, BadValueError
+from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.model_file import read_model, write_model
 from sgat.models.network_config import NetworkConfig
 from sgat.models.scaled_network import ScaledNetwork
 from sgat.models.scaling import Scaling
 from sgat.models.training import Examples, Loss, Stage, train
+from sgat.noise import child_of
+from sgat.transformers.catalogue import add_grounding, file_kind
+from sgat.transformers.grounding import (
+    OF_DIRECT,
+    OF_SIM_MODEL,
+    Grounding,
+    GroundingData,
+)
 from sgat.transitions import Transitions, held_out_rows
+
+DIRECT = "direct.pt"
+"""File of the network in a transformer's folder."""
 
 _KIND = "direct transformer"
 
 
+@file_kind
 class DirectTransformer:
-    """The action after which the sim does what the real world did.
+    """A network that gives the action after which the sim does what real did.
 
-    With f a forward model of the sim, r the standard deviation of its residuals, and
-    (s, a, s') what happened in the real world, g is the network that makes
+    Let f be a forward model of the sim, r the standard deviation of its residuals and
+    (s, a, s') a transition of the real world. The network g minimises
 
-        mean over all dimensions and transitions of ((f(s, g(s, a)) - s') / r)^2
+        mean over all dimensions and transitions of ((f(s, g(s, a)) - s') / r)^2.
 
-    small. An `ActionTransformer` goes through f_inv instead, and that hurts where one
-    tick of an action moves the state little: f_inv is a regression on next states, so
-    what it answers is drawn towards the actions that the sim's own policy takes in s,
-    away from those that real's latency asks for; and errors of the predicted next state
-    come out many times larger. Here the noise of s' is averaged over, and f errs in
-    the same way with the sensors' noise in both worlds as long as both have it.
+    An `ActionTransformer` uses an inverse model f_inv instead. That is inaccurate where
+    the action of a single tick moves the state little. First, f_inv is a regression on
+    next states: its answers are biased towards the actions that were common in the
+    sim's data, and away from those that reproduce the real world's latency. Second, it
+    magnifies errors of the predicted next state. Here the noise of s' averages out, and
+    if both worlds have the same sensor noise, f has the same bias in both.
 
-    It is deterministic: use it with a sim that is as random as real, or for GAT.
+    The transformer is deterministic. Use it with a sim that is as random as the real
+    world, or in place of GAT.
+
+    Example:
+      >>> g = DirectTransformer(low, high).fit(real, sim_model, sim_walks, seed)
     """
+
+    kind: ClassVar[str] = "direct"
 
     def __init__(
         self, low: FloatArray, high: FloatArray, config: NetworkConfig | None = None
     ) -> None:
-        """Only remember what to fit.
+        """Prepare a transformer; `fit` or `load` gives it its network.
 
         Args:
           low: (a,) least action.
           high: (a,) largest action.
-          config: of the network.
+          config: shape and training of the network.
         """
         self.config = NetworkConfig() if config is None else config
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
@@ -60,13 +80,18 @@ class DirectTransformer:
         tried: Transitions,
         seed: np.random.SeedSequence,
     ) -> Self:
-        """Learn from at least two episodes of real; the same seed gives the same bits.
+        """Fit the network; the same seed gives the same bits.
 
         Args:
-          real: what the real world did.
-          sim: the sim's dynamics, of next states as wide as real's.
-          tried: what it was fitted to; its states are the first columns of real's.
+          real: transitions of the real world, of at least two episodes.
+          sim: forward model of the sim, whose next states are as wide as those of
+            `real`.
+          tried: transitions that `sim` was fitted to; their states are the first
+            columns of those of `real`.
           seed: of the training.
+
+        Returns:
+          This transformer.
         """
         rng = np.random.default_rng(seed)
         held_out = held_out_rows(real.episode, self.config.validation_share, rng)
@@ -93,26 +118,38 @@ class DirectTransformer:
         return self._low, self._high
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode; nothing here is random."""
+        """Start an episode; the seeds are not used, since nothing here is random."""
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) actions for the sim, of states (n, s) and the policy's (n, a)."""
+        """The actions for the sim.
+
+        Args:
+          state: (n, s) states.
+          action: (n, a) actions that the policy asks for.
+
+        Returns:
+          (n, a) actions within the bounds.
+        """
         network = self._network
         member = np.zeros(len(state), np.intp)
         raw = network.raw(np.hstack([state, action]), member)
         return np.clip(network.targets.from_scaled(raw), self._low, self._high)
 
-    def save(self, path: Path) -> None:
-        """Write everything but the bounds to one file."""
-        write_model(path, _KIND, self.config, self._network)
+    def save(self, folder: Path) -> dict[str, Any]:
+        """Write the network into a folder; see `KeptTransformer.save`."""
+        write_model(folder / DIRECT, _KIND, self.config, self._network)
+        return {}
 
     @classmethod
-    def load(cls, path: Path, low: FloatArray, high: FloatArray) -> Self:
-        """Read back what `save` has written, to the same bits.
+    def load(
+        cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
+    ) -> Self:
+        """Read the network back; see `KeptTransformer.load`.
 
         Raises:
-          BadModelError: the file holds no direct transformer.
+          BadModelError: the folder holds no direct transformer.
         """
+        path = folder / DIRECT
         config, network = read_model(path, _KIND, NetworkConfig)
         if network.network.outputs != len(network.targets.mean):
             raise BadModelError(f"{path} is no model file, or a damaged one")
@@ -128,7 +165,7 @@ class DirectTransformer:
 
 
 def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArray:
-    """(N, columns + p) in the sim model's units: states, and how they changed."""
+    """(N, columns + p) states and changes of `real`, scaled as the sim's model does."""
     inputs, targets = sim.scalings
     columns = slice(tried.state.shape[1])
     state = real.state[:, columns] - inputs.mean[columns]
@@ -136,7 +173,7 @@ def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArra
 
 
 def _loss(sim: ForwardModel, tried: Transitions, outputs: Scaling) -> Loss:
-    """How far, in residuals of the sim's model, an action leads from what real did."""
+    """The loss of g: squared misses of the sim's model, in units of its residuals."""
     inputs, targets = sim.scalings
     columns, actions = tried.state.shape[1], tried.action.shape[1]
     off = sim.predict(tried.state, tried.action) - tried.next_state
@@ -155,3 +192,49 @@ def _loss(sim: ForwardModel, tried: Transitions, outputs: Scaling) -> Loss:
 
 def _tensor(values: FloatArray) -> Tensor:
     return torch.tensor(values, dtype=torch.float32)
+
+
+class UnevenSim(Grounding):
+    """A direct transformer before a sim with uneven ground and noisy sensors."""
+
+    name = "sgat-uneven"
+    title = "SGAT, uneven sim"
+    uneven_sim = True
+    means = (
+        "SGAT, uneven sim: randomness is modelled where it arises. The sim has lumps",
+        "of its own, so high that the gaits of the real walks fall as often as they",
+        "did on real ground, and sensors with the real ones' noise; commands alone",
+        "cannot make a robot trip on flat ground. The remaining gap, in the joints, is",
+        "closed by one network. It is fitted as a whole so that, after its commands, a",
+        "model of the sim predicts the joint positions measured in the real world.",
+    )
+
+    def transformer(self, data: GroundingData) -> DirectTransformer:
+        """The transformer, fitted at the first call; see `Grounding`.
+
+        It learns from the directly moved columns of next states, such as the joints':
+        the sim's own lumps move the torso.
+
+        Raises:
+          BadValueError: there are no transitions of an uneven sim.
+        """
+        return data.once(self.name, lambda: _fit_direct(data))
+
+
+def _fit_direct(data: GroundingData) -> DirectTransformer:
+    if data.uneven is None:
+        raise BadValueError("this grounding needs transitions of an uneven sim")
+    moved = slice(data.direct_columns)
+    real = replace(data.real, next_state=data.real.next_state[:, moved])
+    tried = replace(
+        data.uneven,
+        state=data.uneven.state[:, : data.sim_columns],
+        next_state=data.uneven.next_state[:, moved],
+    )
+    config = ForwardConfig(beta=1.0)
+    sim = ForwardModel(config).fit(tried, child_of(data.seed, OF_SIM_MODEL))
+    transformer = DirectTransformer(data.low, data.high)
+    return transformer.fit(real, sim, tried, child_of(data.seed, OF_DIRECT))
+
+
+add_grounding(UnevenSim())

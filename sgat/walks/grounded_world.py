@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from sgat.transformers.action_transformer import Transformer
+from sgat.transformers.transformer import Transformer
 from sgat.walks.walk_senses import WalkSenses
 from sgat.walks.world_wrapper import WorldWrapper
 from worlds import Observation, World

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from groundwalk.arrays import FloatArray
+from robots import Description, biped
 from worlds import TICK_S, Observation
 
 HISTORY_TICKS = 5
@@ -89,6 +90,18 @@ class WalkSenses:
     def remember(self, command_rad: FloatArray) -> None:
         """Take in the command that was given at this tick."""
         self._past.append(command_rad[:, self.joints])
+
+
+def leg_senses(description: Description) -> WalkSenses:
+    """Senses that ground the two legs of a robot.
+
+    Arms hardly matter to a walk, and grounding them would need more data.
+
+    Raises:
+      BadValueError: the robot has no two legs.
+    """
+    legs = biped(description)
+    return WalkSenses([*legs.left_leg, *legs.right_leg])
 
 
 def tilted(

@@ -10,7 +10,7 @@ from experiments.walking.trials import TrialRules
 
 SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
 TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
-"""What is learned of real begins after 3 s: see `walk_data.FLAT_TICKS`."""
+"""What is learned of real begins after 3 s: see `grounded_walks.data.FLAT_TICKS`."""
 
 
 @pytest.fixture
@@ -34,12 +34,12 @@ def short_walks(monkeypatch):
     short = {
         "grounded_walks.records.ON_COURSE": TO_THE_LUMPS,
         "grounded_walks.records.walk": short_walk,
-        "grounded_walks.groundings.ON_COURSE": SHORT,
-        "grounded_walks.grounding.ON_COURSE": SHORT,
-        "grounded_walks.grounding.RATED": SHORT,
+        "grounded_walks.models.ON_COURSE": SHORT,
+        "grounded_walks.step.ON_COURSE": SHORT,
+        "grounded_walks.step.RATED": SHORT,
         "transfer.nao_falls.walk": short_walk,
         "transfer.nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
-        "transfer.nao_study.Study": partial(Study, rules=SHORT),
+        "transfer.nao_studies.study.Study": partial(Study, rules=SHORT),
     }
     for name, value in short.items():
         monkeypatch.setattr(f"experiments.{name}", value)

@@ -11,7 +11,7 @@ from robots.heavier_bodies import scale_mass
 from robots.mjcf import quiet_mujoco
 from sgat.gym.grounded_env import GroundedEnv, RewardOf
 from sgat.transformers.action_noise import ActionNoise
-from sgat.transformers.action_transformer import Transformer
+from sgat.transformers.transformer import Transformer
 
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 

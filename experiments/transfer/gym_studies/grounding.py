@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,32 +10,37 @@ import numpy as np
 from experiments.transfer.gym_studies.environments import Domain, Environment
 from experiments.transfer.gym_studies.training import exploring
 from sgat.gym.collect import collect
-from sgat.models.forward_config import ForwardConfig, HeadName
-from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.noise import WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
+from sgat.transformers.catalogue import grounding
+from sgat.transformers.grounding import GroundingData
+from sgat.transformers.transformer import KeptTransformer, Transformer
 from sgat.transitions import Transitions
 
 if TYPE_CHECKING:
     from sb3_contrib import TRPO
 
 REAL_EXPLORATION, SIM_EXPLORATION = 0.1, 0.5
-"""Shares of random actions while collecting: the inverse model needs varied ones."""
+"""Shares of random actions while data are collected in the real world and in the sim:
+the inverse model of the sim needs varied actions."""
+
 LOOKED_AT = 500
-"""Real transitions on which the transformed actions are measured."""
+"""Largest number of real transitions on which transformed actions are measured."""
+
 HELD_OUT = 0.2
+"""Share of the data that models do not learn from, for their measures."""
+
 STRETCH = 50
-"""Steps of an episode that stay together when data are held out."""
+"""Consecutive steps that are held out together."""
 
 
 @dataclass(frozen=True)
 class GroundingConfig:
-    """How much data.
+    """How much data a grounding step collects.
 
     Attributes:
-      real_steps: transitions of the real world.
-      sim_steps: transitions of the sim.
+      real_steps: number of transitions of the real world.
+      sim_steps: number of transitions of the sim.
     """
 
     real_steps: int
@@ -42,16 +48,16 @@ class GroundingConfig:
 
 
 @dataclass(frozen=True, eq=False)
-class Grounding:
-    """Models of both worlds, and how good they are.
+class GroundedStep:
+    """The result of a grounding step.
 
     Attributes:
-      transformer: makes a new action transformer.
-      measures: of the models, and of the actions that a transformer makes of those in
-        real data.
+      transformer: makes a new action transformer from the fitted models.
+      measures: numbers on how good the models and the transformed actions are, on real
+        data that were held out.
     """
 
-    transformer: Callable[[], ActionTransformer]
+    transformer: Callable[[], KeptTransformer]
     measures: dict[str, float]
 
 
@@ -60,43 +66,38 @@ def ground(
     domain: Domain,
     real: tuple[str, float],
     config: GroundingConfig,
-    head: HeadName | None,
+    name: str,
     seed: np.random.SeedSequence,
-) -> Grounding:
+) -> GroundedStep:
     """Collect data in both worlds with a policy, and fit the models.
 
     Args:
-      model: the policy that the sim has taught so far.
+      model: the policy, trained in the sim so far.
       domain: the environment.
-      real: setting and noise of the real world.
-      config: of the grounding.
-      head: the distribution from which SGAT samples the next state; None for GAT,
-        which takes the mean of the Gaussian one.
-      seed: of everything, but for the policy's own luck.
+      real: setting and noise of the real world; see `Domain.real`.
+      config: how much data.
+      name: of a grounding in `sgat.transformers`.
+      seed: of everything except the policy's own random actions.
     """
     low, high = domain.bounds()
-    of_real, of_sim, of_forward, of_inverse, of_look = seed.spawn(5)
+    of_real, of_sim, of_forward, of_inverse, of_look, of_more = seed.spawn(6)
     seen, held_out = _collect(
         model, domain.real(*real), config.real_steps, REAL_EXPLORATION, of_real
     )
     tried, spare = _collect(
         model, domain.sim(), config.sim_steps, SIM_EXPLORATION, of_sim
     )
-    forward = ForwardModel(ForwardConfig(head=head or "gaussian")).fit(seen, of_forward)
-    inverse = InverseModel().fit(tried, of_inverse)
-    noise = WhiteNoise(forward.outcomes) if head else None
-
-    def transformer() -> ActionTransformer:
-        return ActionTransformer(forward, inverse, low, high, noise)
-
-    measures = {
-        "forward_log_likelihood": forward.score(held_out),
-        "inverse_r_squared": float(inverse.score(spare).mean()),
-        **_actions(transformer(), held_out, of_look),
-    }
-    if head:
-        measures["noise_ratio"] = noise_ratio(transformer(), inverse, held_out, of_look)
-    return Grounding(transformer, measures)
+    data = GroundingData(seen, tried, low, high, of_inverse, of_forward, of_more)
+    transformer = partial(grounding(name).transformer, data)
+    one, inverse = transformer(), data.inverse()
+    measures = {}
+    if isinstance(one, ActionTransformer):
+        measures["forward_log_likelihood"] = one.forward.score(held_out)
+        measures["inverse_r_squared"] = float(inverse.score(spare).mean())
+    measures |= _actions(one, held_out, of_look)
+    if isinstance(one, ActionTransformer) and one.noise is not None:
+        measures["noise_ratio"] = noise_ratio(one, inverse, held_out, of_look)
+    return GroundedStep(transformer, measures)
 
 
 def _collect(
@@ -106,16 +107,17 @@ def _collect(
     exploration: float,
     seed: np.random.SeedSequence,
 ) -> tuple[Transitions, Transitions]:
-    """Transitions to learn from, and some that are held out."""
+    """Transitions to learn from, and transitions that are held out."""
     rng = np.random.default_rng(seed)
     policy = exploring(model, env.action_space, exploration, rng)
     return in_stretches(collect(env, policy, steps, rng)).split(HELD_OUT, rng)
 
 
 def in_stretches(transitions: Transitions) -> Transitions:
-    """The same with each episode cut into several of at most `STRETCH` steps.
+    """Cut each episode into several of at most `STRETCH` steps.
 
-    A cheetah never falls: it would leave too few episodes to hold some out.
+    Whole episodes are held out, and a cheetah's never end early: without the cuts there
+    would be too few of them.
     """
     cut = np.diff(transitions.episode, prepend=transitions.episode[0]) != 0
     rows = np.arange(transitions.n)
@@ -125,9 +127,9 @@ def in_stretches(transitions: Transitions) -> Transitions:
 
 
 def _actions(
-    transformer: ActionTransformer, real: Transitions, seed: np.random.SeedSequence
+    transformer: Transformer, real: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, float]:
-    """Bias and spread of transformed less asked actions, in the action's units."""
+    """Mean and spread of what the transformer adds to actions, in the action's unit."""
     n = min(LOOKED_AT, real.n)
     transformer.reset(seed.spawn(n))
     asked = real.action[:n]
@@ -141,18 +143,19 @@ def noise_ratio(
     real: Transitions,
     seed: np.random.SeedSequence,
 ) -> float:
-    """Noise on a transformer's actions over the noise that real data show, both rms.
+    """Noise that a transformer adds to actions, relative to the real world's noise.
 
-    Real's noise is seen as the sim's actions: the one that would have led to what real
-    did, less the one for the mean of it. Below 1 the grounded sim is calmer than real.
-    A distribution with independent dimensions comes below 1 where one noise moves
-    several of them: what they disagree on, the inverse model averages away.
+    Both are root mean squares. The real world's noise is expressed as actions of the
+    sim: the action that leads to the real next state, minus the action that leads to
+    the predicted mean of it. Below 1 the grounded sim is less noisy than the real
+    world. That happens for distributions with independent dimensions if one noise moves
+    several dimensions: the inverse model averages out what the samples disagree on.
 
     Args:
-      transformer: with noise.
+      transformer: one that adds noise.
       inverse: its inverse model.
-      real: data that the models have not seen.
-      seed: of the noise.
+      real: transitions that the models have not seen.
+      seed: of the transformer's noise.
     """
     n = min(LOOKED_AT, real.n)
     state, asked = real.state[:n], real.action[:n]

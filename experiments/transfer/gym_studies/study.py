@@ -1,7 +1,6 @@
-"""The grid of a Gymnasium study: its policies, its cells, and how each is computed."""
+"""The grid of a Gymnasium study: its jobs, and how each policy and cell is computed."""
 
 import itertools
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -21,47 +20,43 @@ from experiments.transfer.gym_studies.training import (
     train,
 )
 from groundwalk.errors import BadValueError, UnknownNameError
-from sgat.models.forward_config import HeadName
 from sgat.models.training import one_thread
 
 NONE, GAT, SGAT, SGAT_FULL, ANE, REAL = METHODS = (
     "none", "gat", "sgat", "sgat-full", "ane", "real"
 )  # fmt: skip
-"""No grounding, the groundings, action noise envelope, training on real."""
-GROUNDINGS: Mapping[str, HeadName | None] = {
-    GAT: None,
-    SGAT: "gaussian",
-    SGAT_FULL: "full",
-    "sgat-low-rank": "low-rank",
-    "sgat-mixture": "mixture",
-}
-"""From which distribution each grounding samples; GAT takes the mean."""
-KNOWN = tuple(dict.fromkeys((*METHODS, *GROUNDINGS)))
+"""Methods that are compared by default: no grounding, three groundings by their names
+in `sgat.transformers`, action noise envelope, training in the real world."""
+
+KNOWN = (*METHODS, "sgat-low-rank", "sgat-mixture")
+"""Plan of the study: all methods that can be compared. To try another grounding, add
+its name here."""
 
 OF_SIM, OF_DATA, OF_TRAINING, OF_TRIALS, OF_SEARCH = range(5)
-"""Streams of random numbers; methods share them: what differs is what they do."""
+"""Numbers of the streams of random numbers; all methods share them, so that differences
+between results come from the methods."""
 
 Cell = dict[str, Any]
-"""What came of one method with one seed in one real world."""
+"""The result of one method with one seed in one real world."""
 
 
 @dataclass(frozen=True)
 class GymStudy:
-    """Everything that the results depend on.
+    """Everything that the results of a study depend on.
 
     Attributes:
       domain: the environment.
       settings: of the real world.
-      noises: see `Domain.real`.
-      methods: to compare.
-      seeds: trainings of each method.
-      timesteps: of each training.
-      episodes: on real, of each policy that was found; at least 2.
-      trpo: of the policies.
-      grounding: of the models.
-      envelopes: noise levels that ANE chooses from.
-      search_episodes: on real, for ANE to judge a level.
-      seed: every random number follows from it.
+      noises: of the real worlds' actions; see `Domain.real`.
+      methods: to compare, some of `KNOWN`.
+      seeds: number of trainings of each method, at least 2.
+      timesteps: environment steps in each training.
+      episodes: real episodes in which each policy is tried, at least 2.
+      trpo: parameters of the training algorithm.
+      grounding: how much data a grounding collects.
+      envelopes: noise levels that ANE chooses from; units as in `Domain.real`.
+      search_episodes: real episodes by which ANE judges a level.
+      seed: all random numbers follow from it.
     """
 
     domain: Domain
@@ -98,7 +93,7 @@ class GymStudy:
                 raise BadValueError(f"no {kind} is given; known are {known}")
 
     def stages(self) -> list[list["Job"]]:
-        """What to do; a stage needs the files of those before it."""
+        """All jobs in three stages; each stage needs the files of those before it."""
         every = range(self.seeds)
         sims = [Job(k, NONE) for k in every]
         levels = self.envelopes if ANE in self.methods else ()
@@ -108,19 +103,19 @@ class GymStudy:
         return [sims, around, cells]
 
     def seed_of(self, k: int, stream: int) -> np.random.SeedSequence:
-        """The random numbers of the training number k for some purpose."""
+        """The seed of training number `k` for one stream, such as `OF_DATA`."""
         return np.random.SeedSequence(self.seed, spawn_key=(k, stream))
 
 
 @dataclass(frozen=True)
 class Job:
-    """One piece of work, which leaves one file.
+    """One piece of work, which writes one file.
 
     Attributes:
-      k: which of the trainings.
-      method: what to do.
-      noise: of the real world; of the envelope if there is no real world.
-      setting: of the real world; none for a policy that never sees it.
+      k: number of the training, from 0.
+      method: one of `KNOWN`.
+      noise: of the real world, or of the envelope if there is no real world.
+      setting: of the real world; empty for a policy that never sees it.
     """
 
     k: int
@@ -130,7 +125,7 @@ class Job:
 
     @property
     def file(self) -> str:
-        """In the run's folder."""
+        """The file's path in the run's folder."""
         name = f"{self.method}_{self.noise:g}_s{self.k}"
         if self.setting:
             return f"cells/{self.setting}_{name}.json"
@@ -138,15 +133,16 @@ class Job:
 
 
 def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
-    """Train a policy for others and write it, or compute a cell.
+    """Train a policy that other jobs start from, or compute a cell.
 
     Args:
-      study: of which it is a part.
-      folder: with the policies of earlier stages.
+      study: the study that the job is a part of.
+      folder: of the run, with the policies of earlier stages.
       job: what to do.
 
     Returns:
-      A cell to be written into the job's file, or None if that is written already.
+      A cell, which the caller writes into the job's file; None if the job was to train
+      a policy, which is in its file already.
     """
     with one_thread():
         if job.setting:
@@ -164,7 +160,7 @@ def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
 
 
 def _cell(study: GymStudy, folder: Path, job: Job) -> Cell:
-    """Find the method's policy, and try it on real both ways."""
+    """Find the method's policy, and try its mean and its random actions on real."""
     found, facts = _policy(study, folder, job)
     cell: Cell = {
         "setting": job.setting,
@@ -185,7 +181,7 @@ def _cell(study: GymStudy, folder: Path, job: Job) -> Cell:
 
 
 def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, float]]:
-    """The policy of a cell's method, and what it took."""
+    """The policy of a cell's method, and numbers on how it was found."""
     start = folder / Job(job.k, NONE).file
     if job.method == NONE:
         return load(start), {"real_steps": 0}
@@ -202,7 +198,7 @@ def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, flo
         study.domain,
         (job.setting, job.noise),
         study.grounding,
-        GROUNDINGS[job.method],
+        job.method,
         study.seed_of(job.k, OF_DATA),
     )
     model = train(
@@ -218,7 +214,7 @@ def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, flo
 def _best_envelope(
     study: GymStudy, folder: Path, job: Job
 ) -> tuple[Any, dict[str, float]]:
-    """ANE's coarse grid search: the level whose policy returns most on real."""
+    """ANE: of the policies for all noise levels, the one that returns most on real."""
     seed = number(study.seed_of(job.k, OF_SEARCH))
     found, steps = [], 0
     for level in study.envelopes:
@@ -236,5 +232,5 @@ def _real(study: GymStudy, job: Job) -> MakeEnvironment:
 
 
 def number(seed: np.random.SeedSequence) -> int:
-    """A seed as the libraries want it."""
+    """A seed as one number from 0 to 2^31 - 1, as Gymnasium and torch take it."""
     return int(seed.generate_state(1)[0] >> 1)

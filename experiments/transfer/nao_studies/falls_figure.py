@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments.grounded_walks.methods import GROUNDINGS
 from experiments.reports.figure_file import write_figure
+from experiments.transfer.nao_studies.falls_measures import GROUNDINGS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

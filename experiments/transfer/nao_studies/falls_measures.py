@@ -8,24 +8,40 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import robots
-from experiments.grounded_walks.data import leg_senses
-from experiments.grounded_walks.methods import ENSEMBLE, SGAT, WalkModels
+from experiments.grounded_walks.models import (
+    ENSEMBLE,
+    GAT,
+    NONE,
+    SGAT,
+    UNEVEN,
+    WalkModels,
+)
 from experiments.grounded_walks.sim import ROBOT
 from experiments.reports.figure_file import write_figure
 from groundwalk.arrays import FloatArray
 from robots import biped
 from sgat.grounding_report import GroundingReport
+from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transitions import Transitions
+from sgat.walks.walk_senses import leg_senses
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MEASURES_FIGURE = "transfer_nao_falls_measures.png"
+GROUNDINGS = (NONE, GAT, SGAT, ENSEMBLE, UNEVEN)
+"""Plan of the study of falls: sims whose predictions are compared, by the titles of
+their groundings."""
+
 MEASURED = (SGAT, ENSEMBLE)
+"""Groundings whose models are measured: those that predict a distribution."""
+
 ROWS = 500
-"""States at which transformed actions are looked at."""
+"""Largest number of states at which transformed actions are looked at."""
 
 TICK_MS = 10
+"""Control tick [ms]."""
+
 MEASURE_HEADINGS = (
     "grounding",
     "R² joints",
@@ -46,29 +62,38 @@ Measures = Mapping[str, Mapping[str, Any]]
 def measures_of(
     models: WalkModels, unseen: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, dict[str, Any]]:
-    """By grounding, its models' measures on real walks that they have not seen."""
+    """Measure the models of the groundings `MEASURED` on held-out real walks.
+
+    Args:
+      models: learned from other walks.
+      unseen: transitions of real walks that the models have not seen.
+      seed: of the transformers' noise.
+
+    Returns:
+      For each grounding the fields of `GroundingReport`, and mean and spread of what
+      its transformer adds to the commands [rad, by joint].
+    """
     senses = leg_senses(robots.get(ROBOT))
     found = {}
     for name in MEASURED:
-        forward = models.ensemble if name == ENSEMBLE else models.forward
+        transformer = models.grounded(name).transformer
+        assert isinstance(transformer, ActionTransformer)
+        forward = transformer.forward
 
         def advance(state: FloatArray, action: FloatArray) -> FloatArray:
             outcome = forward.predict(state, action)  # noqa: B023
             return senses.advanced(state, action, outcome)
 
         report = GroundingReport.of(forward, unseen, advance)
-        found[name] = json.loads(report.to_json()) | _actions(
-            models, name, unseen, seed
-        )
+        added = _added(transformer, unseen, seed)
+        found[name] = json.loads(report.to_json()) | added
     return found
 
 
-def _actions(
-    models: WalkModels, name: str, unseen: Transitions, seed: np.random.SeedSequence
+def _added(
+    transformer: ActionTransformer, unseen: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, list[float]]:
-    """What the transformer adds to the commands of each joint, over many states."""
-    transformer = models.grounded(name).transformer
-    assert transformer is not None
+    """Mean and spread of what a transformer adds to each joint's command [rad]."""
     rows = np.random.default_rng(seed).choice(unseen.n, min(ROWS, unseen.n), False)
     transformer.reset(np.random.SeedSequence(seed.entropy).spawn(len(rows)))
     action = unseen.action[rows]
@@ -80,7 +105,7 @@ def _actions(
 
 
 def measure_rows(measures: Measures) -> list[list[str]]:
-    """A row for each grounding; medians over joints or dimensions."""
+    """A row of the table for each grounding: medians over joints or dimensions."""
     joints = _leg_joints()
     rows = []
     for name, found in measures.items():
@@ -112,7 +137,12 @@ def draw_measures(measures: Measures, path: Path) -> None:
 
 
 def measures_figure(measures: Measures) -> "Figure":
-    """What is predicted, how errors grow, how calibrated and how white the rest is."""
+    """Four panels on how good the models of each grounding are.
+
+    From left to right: share of one tick's change that is predicted; error of the
+    joints over the ticks predicted ahead; share of residuals within each interval;
+    correlation of residuals over time.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11.0, 3.4), dpi=160, layout="constrained")

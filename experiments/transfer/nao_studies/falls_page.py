@@ -5,19 +5,20 @@ from typing import Any
 
 import numpy as np
 
-from experiments.grounded_walks.groundings_words import UNEVEN_MEANS
-from experiments.grounded_walks.methods import ENSEMBLE, GROUNDINGS, SGAT, UNEVEN
+from experiments.grounded_walks.models import ENSEMBLE, SGAT, UNEVEN
 from experiments.reports.report import markdown_table
 from experiments.reports.statistics import NORMAL_95
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.falls_figure import FIGURE
 from experiments.transfer.nao_studies.falls_measures import (
+    GROUNDINGS,
     MEASURE_HEADINGS,
     MEASURES_FIGURE,
     measure_rows,
 )
 from groundwalk.arrays import FloatArray
+from sgat.transformers.catalogue import grounding
 
 GOAL = 0.7
 MEASURES = "measures"
@@ -117,9 +118,7 @@ def write_falls_page(
     ]
     body = [
         f"{count} gaits that no grounding has seen, each on {trials} real grounds.",
-        f"{ENSEMBLE}: four networks, one for a walk, and as noise blocks of half a",
-        "second of the real walks' residuals, instead of white noise.",
-        *UNEVEN_MEANS,
+        *(line for name in (ENSEMBLE, UNEVEN) for line in grounding(name).means),
         "",
         f"![Predicted against real]({FIGURE})",
         "",

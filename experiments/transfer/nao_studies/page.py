@@ -5,8 +5,7 @@ from typing import Any
 
 from experiments.grounded_walks.courses import RealCourse
 from experiments.grounded_walks.data import ON_COURSE
-from experiments.grounded_walks.groundings_words import UNEVEN_MEANS
-from experiments.grounded_walks.methods import GAT, NONE, SGAT, UNEVEN
+from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S, RATED
 from experiments.grounded_walks.step import LUMPS_MARGIN
 from experiments.reports.report import markdown_table
@@ -15,6 +14,7 @@ from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.figure import FIGURE
 from experiments.walking.search_run import RATINGS
+from sgat.transformers.catalogue import groundings
 from terrain import Flat, Lumps, configuration, parse
 
 CELLS = "cells"
@@ -147,7 +147,7 @@ def write_nao_page(
         *markdown_table(HEADINGS, table_of(cells)),
         "",
         f"{SGAT}'s noise is white, as in the paper.",
-        *_uneven(cells),
+        *_own_groundings(cells),
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
@@ -174,12 +174,18 @@ def _ground(course: RealCourse) -> str:
             return f"of `{course.terrain}`"
 
 
-def _uneven(cells: Sequence[Cell]) -> tuple[str, ...]:
-    """What the uneven sim is, where there is one."""
-    if not any(UNEVEN in cell["method"] for cell in cells):
-        return ()
-    margin = f"{LUMPS_MARGIN:g} times as high as that, for a margin."
-    return (*UNEVEN_MEANS, f"A search's lumps are {margin}")
+def _own_groundings(cells: Sequence[Cell]) -> list[str]:
+    """Explains the groundings among the cells that are not the SGAT paper's."""
+    lines: list[str] = []
+    for one in groundings().values():
+        if any(cell["method"].startswith(one.title) for cell in cells):
+            lines += one.means
+            if one.uneven_sim:
+                lines.append(
+                    f"In a search the lumps are {LUMPS_MARGIN:g} times as high, as a "
+                    "safety margin."
+                )
+    return lines
 
 
 def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:

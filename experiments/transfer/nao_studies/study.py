@@ -1,4 +1,8 @@
-"""The cells of the NAO study: how each finds its gait, and how that walks on real."""
+"""The cells of the NAO study: each finds a gait its own way and tries it on real.
+
+A cell is one method after one grounding step. To try another grounding of
+`sgat.transformers`, add its title to `PLAN`.
+"""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -9,8 +13,7 @@ import numpy as np
 
 import robots
 from experiments.grounded_walks.courses import Places, RealCourse
-from experiments.grounded_walks.data import GaitCloud
-from experiments.grounded_walks.methods import (
+from experiments.grounded_walks.models import (
     GAT,
     NONE,
     SGAT,
@@ -23,17 +26,23 @@ from experiments.grounded_walks.raters import (
     RealRater,
 )
 from experiments.grounded_walks.sim import ROBOT, GroundedSim
-from experiments.grounded_walks.step import Grounding, cloud_around
+from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao_studies.page import CELLS, DIAGNOSED, DIAGNOSED_SIM
 from experiments.walking.evaluation import Study, evaluate
+from experiments.walking.reward import FALL_PENALTY_CM_S
 from experiments.walking.tuning import Budget, Rater, tune
+from sgat.transformers.catalogue import grounding
+from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import Gait, gaits
 
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"
-DIAGNOSED_UNEVEN, DIAGNOSED_SGAT = (f"{name}, {DIAGNOSED}" for name in (UNEVEN, SGAT))
-ON_DIAGNOSED = {DIAGNOSED_UNEVEN: UNEVEN, DIAGNOSED_SGAT: SGAT}
-"""Groundings of a diagnosed sim."""
+"""Methods without a grounding: the gait that all searches start from; the action noise
+envelope; random dynamics in the sim; a search in the real world itself."""
+
+_ON_DIAGNOSED = f", {DIAGNOSED}"
+DIAGNOSED_UNEVEN, DIAGNOSED_SGAT = UNEVEN + _ON_DIAGNOSED, SGAT + _ON_DIAGNOSED
+"""Groundings of a sim that a diagnosis has corrected."""
 
 PLAN = (
     (START, 0),
@@ -55,16 +64,33 @@ PLAN = (
 )
 """Method and grounding step of every cell, in the order in which they are computed."""
 
-METHODS = (UNEVEN, SGAT, GAT, NONE, RANDOMISED, ANE, REAL)
+METHODS = tuple(
+    dict.fromkeys(name for name, _ in PLAN if name != START and DIAGNOSED not in name)
+)
+"""Methods that are compared by default if no diagnosis is given."""
+
 WITH_SIM = (NONE, UNEVEN, DIAGNOSED_SIM, DIAGNOSED_UNEVEN)
-"""What is compared by default, without and with a diagnosed sim, on uneven ground."""
+"""Methods that are compared by default with a diagnosed sim, on uneven real ground."""
 
 WITH_SIM_ON_FLAT = (NONE, SGAT, DIAGNOSED_SIM, DIAGNOSED_SGAT)
-"""The same where real is flat: what makes gaits fall there are no lumps."""
+"""Methods that are compared by default with a diagnosed sim, on flat real ground: lumps
+in the sim would not explain why gaits fall there."""
 
 ENVELOPES_RAD = (0.02, 0.05)
+"""Noise levels [rad] that ANE chooses from, a coarse grid."""
+
 ENVELOPE_WALKS = 12
+"""Real walks by which ANE judges each level."""
+
+ENVELOPE_FALL_COST_CM_S = FALL_PENALTY_CM_S
+"""What a fall costs [cm/s] where ANE chooses its level: the SGAT paper's 15. Searches
+in a grounded sim use `FALL_PENALTY_WALK_CM_S`, four times as much. The published
+results were made with 15 here, so it stays; with 12 walks a level, the choice is coarse
+anyway."""
+
 OF_DATA, OF_SEARCH, OF_TRIALS, OF_ENVELOPES = range(4)
+"""Numbers of the streams of random numbers; all cells share them, so that differences
+between cells come from their methods."""
 
 
 @dataclass(frozen=True)
@@ -72,12 +98,12 @@ class Effort:
     """How much is walked and searched.
 
     Attributes:
-      trials: of each gait found.
-      repeats: walks of each gait in a stochastic sim.
-      walks: real ones of the first grounding step, and of each further one.
-      sim_walks: of each grounding step.
-      sim: budget of searches in the sim.
-      real: budget of the search on real.
+      trials: real courses on which each cell's gait is tried.
+      repeats: walks of each gait, for its rating in a sim with random numbers.
+      walks: real walks for the first grounding step, and for each further step.
+      sim_walks: walks in the sim for each grounding step.
+      sim: size of a search in the sim.
+      real: size of the search in the real world.
     """
 
     trials: int
@@ -89,18 +115,22 @@ class Effort:
 
 
 class NaoStudy:
-    """The cells so far, and the groundings that several of them share."""
+    """Computes the cells one by one; several of them share a grounding step.
+
+    Attributes:
+      cells: all that are known so far, as plain values.
+    """
 
     def __init__(
         self, folder: RunFolder, effort: Effort, places: Places, seed: int
     ) -> None:
-        """Go on where the folder's run has ended.
+        """Start a study, or continue the one that the folder holds.
 
         Args:
-          folder: the run.
-          effort: how much to do.
-          places: the real course, and a sim that a diagnosis has corrected.
-          seed: every random number follows from it.
+          folder: of the run.
+          effort: how much is walked and searched.
+          places: the real course, and the diagnosis that corrects the sim.
+          seed: all random numbers follow from it.
         """
         self._folder, self._effort, self._entropy = folder, effort, seed
         self._diagnosed, self._plain = places, Places(places.real)
@@ -109,9 +139,11 @@ class NaoStudy:
         self._first = self._first_step(self._plain)
         self._first_diagnosed = self._first_step(places, self._first)
 
-    def _first_step(self, places: Places, beside: Grounding | None = None) -> Grounding:
+    def _first_step(
+        self, places: Places, beside: GroundingStep | None = None
+    ) -> GroundingStep:
         walks = self._effort.walks[0], self._effort.sim_walks
-        return Grounding(
+        return GroundingStep(
             gaits.get("start"),
             GaitCloud(),
             walks,
@@ -125,14 +157,14 @@ class NaoStudy:
         return self._plain.real
 
     def cell(self, method: str, step: int) -> Mapping[str, Any] | None:
-        """What is known of a cell."""
+        """A cell that has been computed, or None."""
         for cell in self.cells:
             if (cell["method"], cell["step"]) == (method, step):
                 return cell
         return None
 
     def compute(self, method: str, step: int) -> None:
-        """Find the cell's gait, try it on real, and write the cell down."""
+        """Find a cell's gait, try it in the real world, and write the cell down."""
         gait, facts = self._find(method, step)
         score = self._try(gait, self._effort.trials, OF_TRIALS)
         cell = {"method": method, "step": step, **score, **facts, "gait": dict(gait)}
@@ -162,12 +194,15 @@ class NaoStudy:
     def _grounded(
         self, checkpoint: Path, method: str, step: int
     ) -> tuple[Gait, dict[str, Any]]:
-        """Step 1 shares its data, as all methods begin at the start gait."""
+        """A gait tuned in a grounded sim, and the number of real walks it took.
+
+        All methods share the data of step 1, since all begin at the start gait.
+        """
         effort, start = self._effort, gaits.get("start")
-        name, grounding, places = method, self._first, self._plain
-        if method in ON_DIAGNOSED:
-            name, grounding = ON_DIAGNOSED[method], self._first_diagnosed
-            places = self._diagnosed
+        data, places = self._first, self._plain
+        name = method.removesuffix(_ON_DIAGNOSED)
+        if name != method:
+            data, places = self._first_diagnosed, self._diagnosed
         walks = effort.walks[0]
         if step == 2:
             before = self.cell(method, 1)
@@ -175,15 +210,16 @@ class NaoStudy:
             start = Gait.from_mapping(before["gait"])
             more = effort.walks[1], effort.sim_walks
             seed = self._seed(OF_DATA, step)
-            cloud = cloud_around(start)
-            grounding = Grounding(start, cloud, more, seed, grounding, places)
+            cloud = GaitCloud.near(start)
+            data = GroundingStep(start, cloud, more, seed, data, places)
             walks += effort.walks[1]
-        rater = grounding.rater(name, 1 if method == GAT else effort.repeats)
+        repeats = effort.repeats if grounding(name).is_random else 1
+        rater = data.rater(name, repeats)
         gait = self._tune(checkpoint, start, rater)
         return gait, {"real_walks": walks}
 
     def _best_envelope(self, checkpoint: Path) -> tuple[Gait, dict[str, Any]]:
-        """The coarse grid of ANE: the noise whose gait earns most on real."""
+        """The gait of ANE: tuned at each noise level, the best on real is taken."""
         found = []
         for level in ENVELOPES_RAD:
             path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.pkl")
@@ -191,8 +227,9 @@ class NaoStudy:
             rater = GroundedRater(envelope, self._effort.repeats)
             gait = self._tune(path, gaits.get("start"), rater)
             score = self._try(gait, ENVELOPE_WALKS, OF_ENVELOPES)
-            earned = score["speed_mean"] - 15 * score["falls"] / score["trials"]
-            found.append((earned, level, gait))
+            share = score["falls"] / score["trials"]
+            worth = score["speed_mean"] - ENVELOPE_FALL_COST_CM_S * share
+            found.append((worth, level, gait))
         _, level, gait = max(found, key=lambda entry: entry[:2])
         walks = ENVELOPE_WALKS * len(found)
         return gait, {"real_walks": walks, "envelope_rad": level}
@@ -206,9 +243,8 @@ class NaoStudy:
     def _try(self, gait: Gait, trials: int, use: int) -> dict[str, Any]:
         course = self._course
         study = Study("real", course.terrain, trials, hidden=course.hidden)
-        name = "gait"
-        outcome = evaluate(study, robots.get(ROBOT), {name: gait}, self._seed(use))
-        score = asdict(outcome[name].score)
+        outcome = evaluate(study, robots.get(ROBOT), {"gait": gait}, self._seed(use))
+        score = asdict(outcome["gait"].score)
         return {
             "speed_mean": score["speed_cm_s"],
             "speed_std": score["speed_std"],
@@ -217,5 +253,4 @@ class NaoStudy:
         }
 
     def _seed(self, *use: int) -> np.random.SeedSequence:
-        """The random numbers of one use, the same however often they are asked for."""
         return np.random.SeedSequence(self._entropy, spawn_key=use)

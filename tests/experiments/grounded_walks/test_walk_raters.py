@@ -5,7 +5,10 @@ from experiments.grounded_walks.raters import (
     GroundedRater,
     RandomisedRater,
 )
-from experiments.grounded_walks.sim import GroundedSim
+from experiments.grounded_walks.sim import GroundedSim, walk_in_sim
+from experiments.grounded_walks.step import GroundingStep
+from groundwalk.errors import UnknownNameError
+from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import gaits
 
 SEED = np.random.SeedSequence(4)
@@ -42,3 +45,33 @@ def test_dynamics_are_drawn_within_their_ranges():
     assert latencies.std() == pytest.approx(0.06 / np.sqrt(12), rel=0.2)
     assert frictions.min() >= 0.4
     assert frictions.max() <= 1.0
+
+
+def test_an_unknown_grounding_is_refused_before_anything_walks():
+    step = GroundingStep(gaits.get("start"), GaitCloud(), (2, 2), SEED)
+    with pytest.raises(UnknownNameError, match="did you mean 'sgat'"):
+        step.rater("SGATT", 1)
+    assert "records" not in vars(step)
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_worlds_are_closed_after_a_walk_and_after_an_error(monkeypatch, fails):
+    closed = []
+
+    class Inside:
+        def close(self):
+            closed.append(True)
+
+    def walked(*_):
+        if fails:
+            raise RuntimeError
+
+    name = "experiments.grounded_walks.sim."
+    monkeypatch.setattr(name + "world_at", lambda *_: Inside())
+    monkeypatch.setattr(name + "walk_trials", walked)
+    if fails:
+        with pytest.raises(RuntimeError):
+            walk_in_sim(GroundedSim(), vectors(0.1), 1, SEED)
+    else:
+        walk_in_sim(GroundedSim(), vectors(0.1), 1, SEED)
+    assert closed == [True]

@@ -14,10 +14,10 @@ from experiments.grounded_walks.courses import (
     SimPlace,
     world_at,
 )
-from experiments.grounded_walks.data import FLAT_TICKS, GaitCloud, on_lumps
-from experiments.grounded_walks.methods import GAT, NONE, SGAT, UNEVEN
+from experiments.grounded_walks.data import FLAT_TICKS, on_lumps
+from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.records import RealWalks
-from experiments.grounded_walks.step import Grounding
+from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao import TransferNao, main
 from experiments.transfer.nao_studies.figure import cells_figure
@@ -31,6 +31,7 @@ from experiments.transfer.nao_studies.page import (
 from experiments.transfer.nao_studies.study import START
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transitions import Transitions
+from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import gaits
 from worlds.sim.world import SimWorld
 
@@ -163,10 +164,11 @@ def test_grounds_are_drawn_unless_they_are_flat():
 
 def test_groundings_of_one_gait_share_their_real_walks():
     seed, start = np.random.SeedSequence(1), gaits.get("start")
-    plain = Grounding(start, GaitCloud(), (2, 2), seed)
+    plain = GroundingStep(start, GaitCloud(), (2, 2), seed)
     walked = RealWalks(None, np.zeros((2, 16)), np.zeros(2, bool))
     plain.__dict__["real"] = walked  # as if it had been walked
-    assert Grounding(start, GaitCloud(), (2, 2), seed, beside=plain).real is walked
+    beside = GroundingStep(start, GaitCloud(), (2, 2), seed, beside=plain)
+    assert beside.real is walked
 
 
 @pytest.mark.slow

@@ -3,12 +3,11 @@ import json
 import numpy as np
 import pytest
 
-from experiments.grounded_walks.data import GaitCloud
-from experiments.grounded_walks.methods import GAT, GROUNDINGS, NONE, SGAT, UNEVEN
+from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao_falls import TransferNaoFalls, main
 from experiments.transfer.nao_studies.falls_figure import FIGURE
-from experiments.transfer.nao_studies.falls_measures import MEASURES_FIGURE
+from experiments.transfer.nao_studies.falls_measures import GROUNDINGS, MEASURES_FIGURE
 from experiments.transfer.nao_studies.falls_page import (
     MEASURES,
     correlation,
@@ -16,6 +15,7 @@ from experiments.transfer.nao_studies.falls_page import (
     prediction_rows,
 )
 from groundwalk.errors import BadValueError
+from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import gaits
 from walk_engine.gait import NAMES
 

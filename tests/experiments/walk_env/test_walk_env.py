@@ -16,7 +16,7 @@ from stable_baselines3.common.env_checker import check_env as check_for_learners
 import robots
 import terrain
 import worlds
-from experiments.grounded_walks.methods import action_envelope
+from experiments.grounded_walks.models import action_envelope
 from experiments.walk_env.env import WalkEnv
 from experiments.walk_env.ids import IDS, register_envs
 from experiments.walk_env.world import episode_seeds

@@ -8,7 +8,7 @@ from groundwalk.errors import BadModelError, BadValueError
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.network_config import NetworkConfig
-from sgat.transformers.direct_transformer import DirectTransformer
+from sgat.transformers.direct_transformer import DIRECT, DirectTransformer
 from sgat.transitions import Transitions
 
 OFF = 0.02
@@ -80,17 +80,17 @@ def test_actions_stay_within_their_bounds(of_late):
 
 def test_saving_and_loading_gives_the_same_bits(of_late, tmp_path):
     unseen = walks(late=True, episodes=2, seed=8)
-    of_late.save(tmp_path / "direct.pt")
-    again = DirectTransformer.load(tmp_path / "direct.pt", LOW, HIGH)
+    header = of_late.save(tmp_path)
+    again = DirectTransformer.load(tmp_path, header, LOW, HIGH)
     assert (
         again(unseen.state, unseen.action) == of_late(unseen.state, unseen.action)
     ).all()
 
 
 def test_a_model_of_another_kind_is_refused(sim, tmp_path):
-    sim[0].save(tmp_path / "forward.pt")
+    sim[0].save(tmp_path / DIRECT)
     with pytest.raises(BadModelError, match="direct transformer"):
-        DirectTransformer.load(tmp_path / "forward.pt", LOW, HIGH)
+        DirectTransformer.load(tmp_path, {}, LOW, HIGH)
 
 
 def test_nothing_is_answered_before_it_is_fitted():

@@ -1,0 +1,124 @@
+"""Models of both worlds, learned from walks, and the grounded sims made from them."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+import robots
+from experiments.grounded_walks.courses import LUMPS_M, START_M, Places
+from experiments.grounded_walks.data import ON_COURSE
+from experiments.grounded_walks.records import WalkRecords
+from experiments.grounded_walks.sim import ROBOT, GroundedSim, walk_in_sim
+from groundwalk.arrays import FloatArray
+from sgat.models.forward_config import ForwardConfig
+from sgat.noise import child_of
+from sgat.transformers.action_noise import ActionNoise
+from sgat.transformers.catalogue import grounding
+from sgat.transformers.grounding import GroundingData
+from sgat.transformers.transformer import Transformer
+from sgat.walks.walk_senses import WalkSenses, leg_senses
+
+NONE = "no grounding"
+GAT, SGAT = "GAT", "SGAT"
+ENSEMBLE, UNEVEN = "SGAT, ensemble", "SGAT, uneven sim"
+"""Titles of groundings in `sgat.transformers`, by which the studies' pages call
+them."""
+
+LARGEST_ACTION_RAD = 1.0
+"""Bound of an action [rad], which is a joint command relative to the joint's position.
+It is wide: only extrapolations of a network are cut."""
+
+LOOKED_AT = 72
+"""Number of real walks that are repeated in the sim to match its lumps: enough to know
+a share of falls to about 6 % (one standard error)."""
+
+
+@dataclass(frozen=True, eq=False)
+class WalkModels:
+    """Models of both worlds, each fitted when it is first needed.
+
+    Attributes:
+      records: walks that the models learn from.
+      seed: of all trainings.
+      places: the two worlds of the walks.
+    """
+
+    records: WalkRecords
+    seed: np.random.SeedSequence
+    places: Places = field(default_factory=Places)
+
+    @cached_property
+    def data(self) -> GroundingData:
+        """The walks in the form that every grounding of `sgat` learns from."""
+        senses, bound = _senses(), _bound()
+        return GroundingData(
+            real=self.records.real,
+            sim=self.records.sim,
+            low=-bound,
+            high=bound,
+            inverse_seed=child_of(self.seed, 0),
+            forward_seed=child_of(self.seed, 1),
+            seed=self.seed,
+            network=ForwardConfig(beta=0.5),
+            uneven=self.records.uneven,
+            sim_columns=senses.sim_columns,
+            direct_columns=len(senses.joints),
+        )
+
+    @cached_property
+    def lumps_m(self) -> float:
+        """Amplitude [m] of lumps at which gaits fall as often in the sim as on real.
+
+        Looked for with the grounding `UNEVEN`, among the amplitudes `LUMPS_M`.
+        """
+        vectors = self.records.vectors[-LOOKED_AT:]
+        fell = self.records.fell[-LOOKED_AT:]
+        shares = []
+        for lumps_m in LUMPS_M:
+            place = self.places.sim(lumps_m, START_M)
+            sim = GroundedSim(self._transformer(UNEVEN), place)
+            seed = child_of(self.seed, 5)
+            trials = walk_in_sim(sim, vectors, 1, seed, ON_COURSE, True)
+            shares.append(trials.fell.mean())
+        rising = np.maximum.accumulate(shares)
+        return float(np.interp(fell.mean(), rising, LUMPS_M))
+
+    def grounded(self, name: str) -> GroundedSim:
+        """The sim as one grounding makes it.
+
+        Args:
+          name: name or title of a grounding in `sgat.transformers`, or `NONE` for the
+            sim as it is.
+
+        Raises:
+          UnknownNameError: there is no such grounding.
+        """
+        if name == NONE:
+            return GroundedSim(None, self.places.sim())
+        if grounding(name).uneven_sim:
+            place = self.places.sim(self.lumps_m, START_M)
+        else:
+            place = self.places.sim()
+        return GroundedSim(self._transformer(name), place)
+
+    def _transformer(self, name: str) -> Transformer:
+        return grounding(name).transformer(self.data)
+
+
+def action_envelope(deviation_rad: float) -> ActionNoise:
+    """White noise on the legs' commands: the method ANE, which needs no real data.
+
+    Args:
+      deviation_rad: standard deviation of the noise [rad].
+    """
+    bound = _bound()
+    return ActionNoise(deviation_rad, -bound, bound)
+
+
+def _senses() -> WalkSenses:
+    return leg_senses(robots.get(ROBOT))
+
+
+def _bound() -> FloatArray:
+    return np.full(len(_senses().joints), LARGEST_ACTION_RAD)

@@ -1,0 +1,104 @@
+"""What a grounding is: a way from transitions of two worlds to a transformer."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from groundwalk.arrays import FloatArray
+from sgat.models.forward_config import ForwardConfig
+from sgat.models.forward_model import ForwardModel
+from sgat.models.inverse_model import InverseModel
+from sgat.noise import child_of
+from sgat.transformers.transformer import KeptTransformer
+from sgat.transitions import Transitions
+
+T = TypeVar("T")
+
+OF_ENSEMBLE, OF_SIM_MODEL, OF_DIRECT = 2, 3, 4
+"""Numbers of the random streams, see `child_of`, for trainings that only some
+groundings need: an ensemble, a forward model of the sim, a direct transformer. 0 and 1
+belong to the inverse and the forward model where a study derives their seeds, too."""
+
+
+@dataclass(frozen=True, eq=False)
+class GroundingData:
+    """What groundings learn from, and the models that several of them share.
+
+    Attributes:
+      real: transitions of the real world.
+      sim: transitions of the deterministic sim.
+      low: (a,) least action.
+      high: (a,) largest action.
+      inverse_seed: of the inverse model's training.
+      forward_seed: of the training of a forward model that is a single network.
+      seed: all other trainings get children of it.
+      network: shape and training of forward models; a grounding sets the head and the
+        number of members.
+      uneven: transitions of a sim whose ground and sensors are as random as the real
+        world's, for groundings with `uneven_sim`.
+      sim_columns: how many of a state's first columns matter in the sim; all if None.
+      direct_columns: how many of a next state's first columns an action moves
+        directly, such as joint positions; all if None.
+    """
+
+    real: Transitions
+    sim: Transitions
+    low: FloatArray
+    high: FloatArray
+    inverse_seed: np.random.SeedSequence
+    forward_seed: np.random.SeedSequence
+    seed: np.random.SeedSequence
+    network: ForwardConfig = field(default_factory=ForwardConfig)
+    uneven: Transitions | None = None
+    sim_columns: int | None = None
+    direct_columns: int | None = None
+    _fitted: dict[Hashable, Any] = field(default_factory=dict, init=False)
+
+    def once(self, key: Hashable, fit: Callable[[], T]) -> T:
+        """What `fit` returned when it was called with this key for the first time."""
+        if key not in self._fitted:
+            self._fitted[key] = fit()
+        fitted: T = self._fitted[key]
+        return fitted
+
+    def inverse(self) -> InverseModel:
+        """The inverse model of the sim; fitted at the first call."""
+        sim = replace(self.sim, state=self.sim.state[:, : self.sim_columns])
+        return self.once("inverse", lambda: InverseModel().fit(sim, self.inverse_seed))
+
+    def forward(self, config: ForwardConfig) -> ForwardModel:
+        """A forward model of the real world; fitted at the first call for a config."""
+        seed = self.forward_seed
+        if config.members > 1:
+            seed = child_of(self.seed, OF_ENSEMBLE)
+        return self.once(config, lambda: ForwardModel(config).fit(self.real, seed))
+
+
+class Grounding(ABC):
+    """A named way to make an action transformer.
+
+    Attributes:
+      name: on command lines and in result files, for example "sgat-full".
+      title: in tables and on pages, for example "SGAT, uneven sim".
+      means: lines of Markdown that explain on pages how it differs from the SGAT
+        paper's methods; empty for the paper's own.
+      uneven_sim: whether the sim behind the transformer has uneven ground and noisy
+        sensors of its own, for which `GroundingData.uneven` is needed.
+    """
+
+    name: str
+    title: str
+    means: tuple[str, ...] = ()
+    uneven_sim: bool = False
+
+    @property
+    def is_random(self) -> bool:
+        """Whether rollouts of one policy differ in a grounded sim, if seeds do."""
+        return True
+
+    @abstractmethod
+    def transformer(self, data: GroundingData) -> KeptTransformer:
+        """A new transformer; models that `data` holds already are not fitted again."""

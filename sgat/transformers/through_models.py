@@ -1,0 +1,92 @@
+"""GAT, SGAT and their variants: groundings through a forward and an inverse model."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from sgat.models.forward_config import HeadName
+from sgat.models.forward_model import ForwardModel
+from sgat.noise import NoiseLaw, WhiteNoise
+from sgat.transformers.action_transformer import ActionTransformer
+from sgat.transformers.block_noise import BlockNoise
+from sgat.transformers.catalogue import add_grounding
+from sgat.transformers.grounding import Grounding, GroundingData
+
+BLOCK_TICKS = 50
+"""Length of a block of residuals [ticks of 10 ms]: two to three steps of a walk, since
+a bump pushes all joints one way for several ticks."""
+
+MEMBERS = 4
+"""Networks in the ensemble, so that a search cannot exploit the errors of one."""
+
+
+@dataclass(frozen=True)
+class ThroughModels(Grounding):
+    """Grounding by g(s, a) = f_inv(s, f_real(s, a)).
+
+    Attributes:
+      name: see `Grounding`.
+      title: see `Grounding`.
+      noise: "none": f_real answers its mean, as in GAT; "white": it answers a sample,
+        as in SGAT; "blocks": a sample made of consecutive residuals of real data.
+      head: family of the distributions that f_real predicts.
+      members: networks in f_real.
+      means: see `Grounding`.
+    """
+
+    name: str
+    title: str
+    noise: Literal["none", "white", "blocks"] = "white"
+    head: HeadName = "gaussian"
+    members: int = 1
+    means: tuple[str, ...] = ()
+
+    @property
+    def is_random(self) -> bool:
+        """Whether f_real answers samples; see `Grounding`."""
+        return self.noise != "none"
+
+    def transformer(self, data: GroundingData) -> ActionTransformer:
+        """A new transformer from shared models; see `Grounding`."""
+        beta = data.network.beta if self.head == "gaussian" else 0.0
+        forward = data.forward(
+            replace(data.network, head=self.head, members=self.members, beta=beta)
+        )
+        return ActionTransformer(
+            forward,
+            data.inverse(),
+            data.low,
+            data.high,
+            self._law(forward, data),
+            inverse_columns=data.sim_columns,
+        )
+
+    def _law(self, forward: ForwardModel, data: GroundingData) -> NoiseLaw | None:
+        match self.noise:
+            case "none":
+                return None
+            case "white":
+                return WhiteNoise(forward.outcomes)
+            case "blocks":
+                residuals = forward.residuals(data.real)
+                return BlockNoise(residuals, data.real.episode, BLOCK_TICKS)
+
+
+for _one in (
+    ThroughModels("gat", "GAT", "none"),
+    ThroughModels("sgat", "SGAT"),
+    ThroughModels("sgat-full", "SGAT, full covariance", head="full"),
+    ThroughModels("sgat-low-rank", "SGAT, low-rank covariance", head="low-rank"),
+    ThroughModels("sgat-mixture", "SGAT, mixture", head="mixture"),
+    ThroughModels(
+        "sgat-ensemble",
+        "SGAT, ensemble",
+        "blocks",
+        members=MEMBERS,
+        means=(
+            "SGAT, ensemble: four networks, of which each walk uses one; the noise is",
+            "made of blocks of half a second of the real walks' residuals, instead of",
+            "white noise.",
+        ),
+    ),
+):
+    add_grounding(_one)
