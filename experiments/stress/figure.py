@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 COMPARISON = "terrain_stress.png"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+_WIDTH_IN = 7.6
+"""Width of the pictures [inch]: that of a report's column of text, so that the letters
+are as large on the page as they are drawn."""
 _EDGE = 0.06
 """How far beyond the ladder's ends a half-fall severity is drawn that is not on it."""
 
@@ -48,9 +51,9 @@ def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
     settings = _settings(curves)
     ladders = [curve for curve in curves if curve["family"] != FLAT]
     families = _each(ladders, "family")
-    size = (5.2 * len(settings) + 1.2, 0.56 * len(families) + 1.3)
-    figure = Figure(figsize=size, dpi=130, layout="constrained")
-    panels = figure.subplots(1, len(settings), sharey=True, squeeze=False)[0]
+    size = (_WIDTH_IN, (0.42 * len(families) + 0.6) * len(settings) + 1.0)
+    figure = Figure(figsize=size, dpi=200, layout="constrained")
+    panels = figure.subplots(len(settings), 1, squeeze=False)[:, 0]
     image = None
     for panel, setting in zip(panels, settings, strict=True):
         own = [curve for curve in ladders if _setting(curve) == setting]
@@ -58,7 +61,9 @@ def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
         panel.set_title(_panel_title(curves, setting), fontsize=10)
         panel.set_yticks(range(len(families)), [family_text(name) for name in families])
     if image is not None:
-        bar = figure.colorbar(image, ax=list(panels), shrink=0.8)
+        bar = figure.colorbar(
+            image, ax=list(panels), location="bottom", shrink=0.6, aspect=40
+        )
         bar.set_label("share of trials that fall")
     figure.suptitle(f"{curves[0]['gait']}: falls on harder and harder ground")
     return figure
@@ -76,7 +81,7 @@ def _heat_map(panel: "Axes", curves: Sequence[Curve]) -> Any:
                 f"{rung['falls']}/{rung['trials']}\n{severity}",
                 ha="center",
                 va="center",
-                fontsize=7.5,
+                fontsize=8.5,
                 color="white" if rates[row][column] > 0.7 else "black",
             )
     panel.set_xticks([0, len(rates[0]) - 1], ["mild", "hard"])
@@ -96,8 +101,8 @@ def comparison_figure(curves: Sequence[Curve]) -> "Figure":
     settings, gaits = _settings(curves), _each(curves, "gait")
     ladders = [curve for curve in curves if curve["half"] is not None]
     families = _each(ladders, "family")
-    size = (4.6 * len(settings) + 1.4, 0.5 * len(families) + 1.4)
-    figure = Figure(figsize=size, dpi=150, layout="constrained")
+    size = (_WIDTH_IN, 0.5 * len(families) + 1.4)
+    figure = Figure(figsize=size, dpi=200, layout="constrained")
     panels = figure.subplots(1, len(settings), sharey=True, squeeze=False)[0]
     for panel, setting in zip(panels, settings, strict=True):
         for k, gait in enumerate(gaits):
