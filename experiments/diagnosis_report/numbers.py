@@ -12,16 +12,18 @@ _HANDY = {
     "m": (0.1, 1e3, "mm"),
     "1/s": (math.inf, 1e2, "% per second"),
 }
-"""Below the first number, times the second, in the third."""
+"""By SI unit: size below which values get another unit, the factor, that unit."""
 _ERRORS = {
     "rad": (0.1, 1e3, "mrad"),
     "m": (0.1, 1e3, "mm"),
     "rad/s": (0.1, 1e3, "mrad/s"),
 }
+"""By SI unit of an error: size below which it is printed in another unit, factor, that
+unit."""
 
 
 def estimate_text(estimate: Estimate) -> str:
-    """For example "0.030 rad (0.027 to 0.034)"."""
+    """A value with its interval, for example "0.030 rad (0.027 to 0.034)"."""
     size = max(abs(estimate.low), abs(estimate.high))
     factor, unit = _handy(_HANDY, estimate.unit, size)
     value, low, high = (
@@ -36,23 +38,23 @@ def estimate_text(estimate: Estimate) -> str:
 
 
 def amount_text(amount: Amount) -> str:
-    """For example "0.0042 rad"."""
+    """A size with two digits and its unit, for example "0.0042 rad"."""
     factor, unit = _handy(_HANDY, amount.unit, amount.value)
     return f"{_two_digits(factor * amount.value)} {unit}".rstrip()
 
 
 def error_unit(unit: str, largest: float) -> tuple[float, str]:
-    """By what to multiply errors of a unit, and the unit that they are then in.
+    """The factor that turns errors into a handy unit, and that unit.
 
     Args:
-      unit: SI.
-      largest: of all errors that stand together.
+      unit: SI unit of the errors.
+      largest: the largest of all errors that are printed side by side [unit].
     """
     return _handy(_ERRORS, unit, largest)
 
 
 def errors_text(errors: Iterable[float | None]) -> list[str]:
-    """Errors that stand together, with the same decimals; a dash for None."""
+    """Errors to be printed side by side, with equal decimals; a dash for None."""
     given = list(errors)
     known = [abs(error) for error in given if error]
     places = 0
@@ -63,7 +65,7 @@ def errors_text(errors: Iterable[float | None]) -> list[str]:
 
 
 def percent(part: float) -> str:
-    """For example "97 %"; never all of it if it is not."""
+    """A share as text, for example "97 %"; "100 %" only where it is exactly 1."""
     text = f"{100 * part:.0f} %"
     if text == "100 %" and part < 1:
         return "over 99 %"
@@ -71,7 +73,7 @@ def percent(part: float) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """A unit as it is printed."""
+    """A unit as it is printed: "" for a plain number, and raised powers."""
     return {"1": ""}.get(unit, unit.replace("^2", "²").replace("^3", "³"))
 
 
@@ -83,7 +85,12 @@ def _handy(
 
 
 def _decimals(width: float, size: float) -> int:
-    """Decimals for a value that is known up to a width: one digit of it, or two."""
+    """Decimals at which a value is printed so that its interval keeps 1 or 2 digits.
+
+    Args:
+      width: of the interval; 0 for a value without one.
+      size: of the value.
+    """
     step = width if width > 0 else size / 100
     if step <= 0:
         return 0

@@ -1,4 +1,4 @@
-"""Places and channels as people call them."""
+"""Places, effects and channels in words, for example "the left knee (LKneePitch)"."""
 
 import re
 from collections.abc import Sequence
@@ -12,11 +12,11 @@ _SIDES = {"L": "left", "R": "right"}
 
 
 def place_words(place: str, kind: str = "joint") -> str:
-    """A joint or body: "the left knee (LKneePitch)", or "the joint shoulder_pan".
+    """A joint or body in words: "the left knee (LKneePitch)", "the joint shoulder_pan".
 
     Args:
-      place: its name.
-      kind: "joint" or "body"; anything else stands for a place of its own name.
+      place: name of the joint or body.
+      kind: "joint" or "body"; any other kind of place is called by its name.
     """
     sided = _SIDED.fullmatch(place)
     if kind not in ("joint", "body"):
@@ -38,17 +38,17 @@ def at_words(effect: EffectAt | Found) -> str:
 
 
 def answer_words(effects: tuple[EffectAt, ...]) -> str:
-    """A whole answer: "dry friction at hip together with late commands"."""
+    """Effects that form one answer: "dry friction at hip together with late commands"."""
     return " together with ".join(map(at_words, effects))
 
 
 def choice(answers: Sequence[tuple[EffectAt, ...]]) -> str:
-    """Whole answers, one of which is right."""
+    """Several answers, of which one is right, with "; or" between them."""
     return "; or ".join(map(answer_words, answers))
 
 
 def channel_words(channel: str) -> str:
-    """A channel: "the position of the left knee (LKneePitch)"."""
+    """A channel in words: "the position of the left knee (LKneePitch)"."""
     kind, _, component = channel.partition(".")
     if kind in JOINT_QUANTITIES:
         return f"the {kind} of {place_words(component)}"
@@ -56,11 +56,11 @@ def channel_words(channel: str) -> str:
 
 
 def listing(parts: list[str], word: str) -> str:
-    """Texts in a row: "a, b and c".
+    """Texts as a list in a sentence: "a, b and c".
 
     Args:
       parts: the texts; at least one.
-      word: what stands before the last one.
+      word: before the last text, such as "and".
     """
     *first, last = parts
     return f"{', '.join(first)} {word} {last}" if first else last
