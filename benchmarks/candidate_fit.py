@@ -22,7 +22,7 @@ from diagnosis.baselines.sysid_models import Unknown, unknowns
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.traces.read import read_traces
@@ -44,7 +44,7 @@ ALIKE = 0.5
 def measure() -> list[float]:
     """Seconds of a candidate's fit over those of mujoco.sysid's, round by round."""
     plant, traces = _recording()
-    predictor = Predictor(plant, traces, channels_of(plant, traces), threads=1)
+    predictor = Predictor(plant, traces, shared_channels(plant, traces), threads=1)
     predictor.calibrate()
     models = [_model(plant, joint) for joint in JOINTS]
     free = unknowns(plant, traces)

@@ -1,4 +1,9 @@
-"""From recordings to a verdict."""
+"""From recordings to a verdict: what physics does the sim lack?
+
+The recordings go one way. They are audited and prepared (`material.py`), a search finds
+effects (`_searched`), these are fitted again and tested on held-out data (`_tested`),
+and the findings become the verdict (`_verdict`).
+"""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -6,53 +11,68 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.audit.audit import audit
 from diagnosis.audit.result import Audit
-from diagnosis.conclude.answer import effects_of, kind_of, sure
+from diagnosis.conclude.answer import believed_effects, verdict_kind, without_unsure
 from diagnosis.conclude.confidence import alternatives
 from diagnosis.conclude.detectable import smallest_detectable
-from diagnosis.conclude.held_out_errors import FinalTest
+from diagnosis.conclude.held_out_errors import (
+    HeldOutErrors,
+    larger_than_learned,
+    model_refuted,
+)
 from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
-from diagnosis.conclude.surprise import refutes, surprises
+from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
-from diagnosis.preparing import prepared
-from diagnosis.residuals.channels import channels_of
-from diagnosis.residuals.data_sets import Evidence
-from diagnosis.residuals.mismatch_map import mismatch
+from diagnosis.residuals.data_sets import DataSets
+from diagnosis.residuals.mismatch_map import mismatch_map
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.unexplained import unexplained
-from diagnosis.search.all_joints import widespread
-from diagnosis.search.compared import compared
-from diagnosis.search.fitting import fit_all
-from diagnosis.search.proven import proven
-from diagnosis.search.reference import said_of, standing_of, well_of
-from diagnosis.search.result import Found as Searched
-from diagnosis.search.result import Rules
+from diagnosis.search.accept import accepted
+from diagnosis.search.all_joints import all_joints
+from diagnosis.search.cost import expected_seconds
+from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.search.hooks import Hooks
+from diagnosis.search.judging import Judge
+from diagnosis.search.reference import (
+    learn_reference,
+    reference_checks,
+    reference_limit,
+)
+from diagnosis.search.result import SearchResult
+from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
-from diagnosis.search.simpler import needed, simpler
 from diagnosis.traces.torque_drive import DriveBy
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Amount, Verdict, VerdictKind
+from diagnosis.verdict.verdict import Amount, EffectAt, Fit, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
-from groundwalk.errors import BadRecordingError
 
-MORE_ON_FEET = 4
-"""More effects are fitted alone: contacts make guesses at first order worth less."""
+MORE_FLOATING = 4
+"""Extra single-effect fits for floating bases, where contacts make first-order guesses
+unreliable."""
+
+FIT_REPLAYS, TEST_REPLAYS = 150, 150
+"""Rough numbers of replays for calibration and signatures, and for the final test; they
+only scale the progress display."""
 
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
-    """A verdict and what it rests on.
+    """A verdict and the models and predictors behind it.
 
     Attributes:
       verdict: the answer.
-      model: the effects believed, with their values.
-      plant: nominal.
-      test: predicts the recordings that were kept for the end, calibrated at the model.
-      nominal: the same, calibrated at the plant alone.
-      audit: of the recordings.
-      given: effects that were there when all was well; none without a reference.
+      model: the effects that are believed, with their values.
+      plant: the nominal robot model.
+      test: predictor of the held-out recordings, calibrated at `model`.
+      nominal: predictor of the held-out recordings, calibrated at the nominal model.
+      audit: what the audit of the recordings found.
+      given: effects that the reference recordings show; empty without a reference.
+
+    Example:
+      >>> found = diagnose(plant, traces, np.random.SeedSequence(1))
+      >>> print(found.verdict.kind, found.model)
     """
 
     verdict: Verdict
@@ -77,99 +97,197 @@ def diagnose(
     threads: int = 1,
     reference: Sequence[Trace] = (),
     drive: DriveBy = "servos",
+    hooks: Hooks | None = None,
 ) -> Diagnosis:
-    """Find out what physics a plant lacks.
+    """Find out what physics a robot model lacks that recordings show.
 
     Args:
-      plant: nominal.
+      plant: nominal robot model.
       traces: recordings of the robot.
-      seed: of the flexible regression.
-      rules: of the search; the usual ones where None.
-      threads: of the replays.
-      reference: recordings of the robot when all was well; what they show is no effect.
-      drive: what moves the joints in replays where both are known.
+      seed: seed of the flexible regression and of the random control.
+      rules: settings of the search; the default ones where None.
+      threads: threads of the replays.
+      reference: recordings of the healthy robot; differences that they show as well
+        are taken as given.
+      drive: what moves the joints in replays where both were recorded.
+      hooks: progress display and checkpoint; none where None.
 
     Raises:
-      BadRecordingError: nothing can be said from these recordings.
+      BadRecordingError: the recordings do not allow a diagnosis.
+
+    Example:
+      >>> plant, traces = read_traces(["a.parquet", "b.parquet"], "nao")
+      >>> diagnose(plant, traces, np.random.SeedSequence(1)).verdict.effects
     """
-    begun_s = time.monotonic()
-    audited = audit(traces, plant)
-    if audited.refused:
-        raise BadRecordingError(audited.refused[0])
-    ready = prepared(plant, traces, drive)
-    traces, reference = ready.traces, prepared(plant, reference, drive).traces
-    channels = channels_of(plant, [*traces, *reference])
-    standing = (
-        standing_of(plant, reference, channels, rules, threads) if reference else None
+    begun_s, hooks = time.monotonic(), hooks or Hooks()
+    hooks.stage("audit", 0)
+    material = Material.of(plant, traces, reference, drive)
+    if hooks.progress is not None:
+        recordings = material.traces, material.reference
+        seconds = expected_seconds(plant, *recordings, material.channels, threads)
+        hooks.progress.cost(seconds)
+    learned = _learned(material, rules, threads, hooks)
+    result, kind = _searched(learned.search, material.audited)
+    hooks.stage("test", TEST_REPLAYS)
+    tested = _tested(learned, result, kind, seed)
+    verdict = _verdict(material, learned, tested, alternatives(result, kind))
+    verdict = replace(verdict, seconds=time.monotonic() - begun_s)
+    return Diagnosis(
+        verdict,
+        tested.model,
+        plant,
+        tested.test,
+        learned.data.test,
+        material.audited,
+        learned.noise.model if learned.noise else (),
     )
-    data = Evidence.of(plant, traces, channels, standing, threads)
-    well = well_of(plant, reference, channels, threads) if reference else ()
-    search = Search(data.fit, data.select, _rules(plant, rules), well)
-    searched = _searched(search, audited)
-    kind = kind_of(searched, plant, audited)
-    others = alternatives(searched, kind)
-    if kind == "not_identifiable":  # then nothing is believed
-        searched = replace(searched, chosen=0)
-    winner = searched.winner
-    both, test = data.calibrated(winner.model if winner else ())
-    refitted = fit_all(both, [winner.model])[0] if winner else None
-    model = refitted.model if refitted else ()
-    wrong = data.learned.residuals([()])[0]
-    left = refitted.residual if refitted else wrong
-    share = 1 - searched.closed(winner) if winner else 1.0
-    final = FinalTest((data.learned, data.test), both, test, searched, model, seed)
-    fit = final.fit()
-    surprised = surprises(data.learned, left, fit)
-    unmodelled, modelled = data.test.residuals([()])[0], test.residuals([model])[0]
-    refuted = refutes(unmodelled, modelled, search.least_gain)
-    rest = (both, left, share)
-    if kind == "none" and surprised:
-        kind, rest = "unknown", (data.test, unmodelled, 1.0)
-    if kind == "effects" and refuted:
-        kind = "unknown"
-    limits = (*surprised, *refuted, *audited.limits, *ready.said)
-    verdict = Verdict(
-        kind=kind,
-        effects=effects_of(both, searched, refitted) if kind != "none" else (),
-        alternatives=others,
-        smallest_detectable=_detectable(search, kind),
-        unexplained=unexplained(*rest) if kind == "unknown" else None,
-        limits=(*limits, *(said_of(standing) if standing else ())),
-        mismatch=mismatch(data.learned, wrong),
-        pulses=ready.pulses,
-        fit=fit,
-        next_experiment=next_experiment(plant, searched, traces),
-        recordings=data.recordings(),
-        seconds=time.monotonic() - begun_s,
-    )
-    given = standing.model if standing else ()
-    return Diagnosis(verdict, model, plant, test, data.test, audited, given)
+
+
+@dataclass(frozen=True, eq=False)
+class _Learned:
+    """A search that is ready to run, and its data.
+
+    Attributes:
+      data: predictors of the fitting, selection and held-out data.
+      noise: model errors that the reference shows; None without a reference.
+      search: the search on `data`.
+    """
+
+    data: DataSets
+    noise: ReferenceNoise | None
+    search: Search
+
+
+def _learned(
+    material: Material, rules: Rules | None, threads: int, hooks: Hooks
+) -> _Learned:
+    """Learn from the reference, calibrate predictors, and judge the nominal sim."""
+    plant, reference, channels = material.plant, material.reference, material.channels
+    noise: ReferenceNoise | None = None
+    healthy: list[Predictor] = []
+    if reference:
+        noise = learn_reference(plant, reference, channels, rules, threads, hooks)
+    hooks.stage("fit", FIT_REPLAYS)
+    data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
+    if reference:
+        healthy = reference_checks(plant, reference, channels, threads, hooks)
+    judge = Judge(data.fit, data.select, _rules(plant, rules), healthy, hooks)
+    return _Learned(data, noise, Search(judge))
 
 
 def _rules(plant: Plant, rules: Rules | None) -> Rules:
+    """Settings of a search; those of a floating base have more single effects."""
     rules = rules or Rules()
     if plant.base == "fixed":
         return rules
     return replace(
         rules,
-        singles=rules.singles + MORE_ON_FEET,
-        others=rules.others + MORE_ON_FEET,
+        single_effects=rules.single_effects + MORE_FLOATING,
+        further_effects=rules.further_effects + MORE_FLOATING,
     )
 
 
-def _searched(search: Search, audited: Audit) -> Searched:
-    """What single effects explain, or whole kinds of them if these do not."""
-    plant = search.fit.plant
-    searched = compared(search, search.run())
-    searched = proven(search, needed(search, simpler(search, searched)))
-    searched = sure(searched, search.least_gain)
-    # on feet, models of whole kinds would take an hour
-    if plant.base == "fixed" and kind_of(searched, plant, audited) == "unknown":
-        return widespread(search, searched)
-    return searched
+def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind]:
+    """Search for up to three effects, and the kind of the verdict that follows.
+
+    If the verdict is `unknown` on a fixed base, kinds of effects at all joints are
+    searched for.
+    """
+    judge, plant = search.judge, search.judge.fit.plant
+    result = without_unsure(accepted(judge, search.run()), judge.least_gain)
+    kind = verdict_kind(result, plant, audited)
+    # with a floating base, models of whole kinds would take an hour
+    if plant.base == "fixed" and kind == "unknown":
+        result = all_joints(judge, result)
+        kind = verdict_kind(result, plant, audited)
+    return result, kind
+
+
+@dataclass(frozen=True, eq=False)
+class _Tested:
+    """The believed effects, fitted again and tested on held-out data.
+
+    Attributes:
+      result: the result of the search.
+      kind: kind of the verdict before the test.
+      refitted: the model fitted to fitting and selection data; None for no effect.
+      both: predictor of these data, calibrated at the model.
+      test: predictor of the held-out data, calibrated at the model.
+      fit: errors on the held-out data.
+    """
+
+    result: SearchResult
+    kind: VerdictKind
+    refitted: FittedModel | None
+    both: Predictor
+    test: Predictor
+    fit: Fit
+
+    @property
+    def model(self) -> Model:
+        """The believed effects with their final values."""
+        return self.refitted.model if self.refitted else ()
+
+
+def _tested(
+    learned: _Learned,
+    result: SearchResult,
+    kind: VerdictKind,
+    seed: np.random.SeedSequence,
+) -> _Tested:
+    """Fit the believed effects to all learned data, and test them on held-out data."""
+    if kind == "not_identifiable":  # then no effect is believed
+        result = replace(result, chosen=0)
+    winner, data = result.winner, learned.data
+    both, test = data.calibrated(winner.model if winner else ())
+    refitted = fit_all(both, [winner.model])[0] if winner else None
+    model = refitted.model if refitted else ()
+    errors = HeldOutErrors((data.learned, data.test), both, test, result, model, seed)
+    return _Tested(result, kind, refitted, both, test, errors.fit())
+
+
+def _verdict(
+    material: Material,
+    learned: _Learned,
+    tested: _Tested,
+    others: tuple[tuple[EffectAt, ...], ...],
+) -> Verdict:
+    """The verdict; a held-out test that contradicts the search changes its kind."""
+    data, result, kind = learned.data, tested.result, tested.kind
+    both, judge = tested.both, learned.search.judge
+    nominal = data.learned.residuals([()])[0]
+    left = tested.refitted.residual if tested.refitted else nominal
+    unmodelled = data.test.residuals([()])[0]
+    modelled = tested.test.residuals([tested.model])[0]
+    larger = larger_than_learned(data.learned, left, tested.fit)
+    refuted = model_refuted(unmodelled, modelled, judge.least_gain)
+    share = 1 - result.closed(result.winner) if result.winner else 1.0
+    shape = both, left, share
+    if kind == "none" and larger:
+        kind, shape = "unknown", (data.test, unmodelled, 1.0)
+    if kind == "effects" and refuted:
+        kind = "unknown"
+    limits = (*larger, *refuted, *material.audited.limits, *material.limits)
+    given = reference_limit(learned.noise) if learned.noise else ()
+    effects = believed_effects(both, result, tested.refitted)
+    return Verdict(
+        kind=kind,
+        effects=effects if kind != "none" else (),
+        alternatives=others,
+        smallest_detectable=_detectable(learned.search, kind),
+        unexplained=unexplained(*shape) if kind == "unknown" else None,
+        limits=(*limits, *given),
+        mismatch=mismatch_map(data.learned, nominal),
+        pulses=material.pulses,
+        fit=tested.fit,
+        next_experiment=next_experiment(material.plant, result, material.traces),
+        recordings=data.recordings(),
+    )
 
 
 def _detectable(search: Search, kind: VerdictKind) -> Mapping[str, Amount]:
+    """Smallest detectable sizes for a verdict that names no effect, else nothing."""
     if kind not in ("none", "not_identifiable"):
         return {}
-    return smallest_detectable(search.fit, search.signatures, search.least_fitted)
+    judge = search.judge
+    return smallest_detectable(judge.fit, search.signatures, judge.least_fitted)

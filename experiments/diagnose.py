@@ -12,7 +12,7 @@ import robots
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.diagnose import Diagnosis, diagnose
-from diagnosis.search.result import Rules
+from diagnosis.search.rules import Rules
 from diagnosis.traces.read import read_traces
 from diagnosis.traces.reference_reading import read_reference
 from diagnosis.traces.torque_drive import DriveBy
@@ -64,7 +64,7 @@ class Diagnose:
     kd: float | None = None
     max_torque: float | None = None
     drive: DriveBy = "servos"
-    least_share: float = Rules.least_of_all
+    least_share: float = Rules.least_share
     seed: int = 1
     threads: int = 2
     out: Path | None = None
@@ -109,7 +109,7 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     check_free(config.out)
     plant, traces = read_traces(config.recordings, config.robot, config.gains)
     seed = np.random.SeedSequence(config.seed)
-    rules = Rules(least_of_all=config.least_share)
+    rules = Rules(least_share=config.least_share)
     wells = read_reference(config.reference, config.robot, plant, config.gains)
     found = diagnose(plant, traces, seed, rules, config.threads, wells, config.drive)
     folder = RunFolder.create(VERB, config)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-from diagnosis.search.result import Rules
+from diagnosis.search.rules import Rules
 from experiments.command_line import run_verb
 from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_report.console import print_verdict
@@ -61,7 +61,7 @@ class RealRobots:
             kd=None if gains is None else gains.kd,
             max_torque=None if gains is None else gains.max_torque,
             drive=case.drive,
-            least_share=Rules.least_of_all if share is None else share,
+            least_share=Rules.least_share if share is None else share,
             seed=self.seed,
             threads=self.threads,
             out=self.out,

@@ -8,7 +8,7 @@ import numpy as np
 from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.fitting import Fit, fit_all
+from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
 from diagnosis.search.signatures import signatures
 from diagnosis.traces.trace import Trace
@@ -64,12 +64,12 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     return Verdict("effects", (named,), recordings=recordings, seconds=spent_s)
 
 
-def criterion(fit: Fit, samples: int) -> float:
+def criterion(fit: FittedModel, samples: int) -> float:
     """BIC of a fit, up to what all fits share."""
     return 2 * fit.energy + float(fit.jacobian.shape[1] * np.log(samples))
 
 
-def intervals(fit: Fit) -> list[tuple[float, float]]:
+def intervals(fit: FittedModel) -> list[tuple[float, float]]:
     """(low, high) of each value of a model: 80 %, as if the residual were white."""
     information = fit.jacobian.T @ fit.jacobian
     variance = np.diag(np.linalg.pinv(information))

@@ -22,7 +22,7 @@ from diagnosis.baselines.sysid_models import (
 )
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import WARM_UP_S
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict.verdict import Recordings, Verdict
@@ -133,7 +133,7 @@ class _Residual:
     def __init__(self, plant: Plant, traces: Sequence[Trace]) -> None:
         self._traces = len(traces)
         self._columns = [1 + column for column in plant.qpos]  # time comes first
-        self._noise = channels_of(plant, traces).noise[: len(plant.joints)]
+        self._noise = shared_channels(plant, traces).noise[: len(plant.joints)]
 
     def __call__(
         self,

@@ -10,8 +10,8 @@ from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.fitting import Fit as FittedModel
-from diagnosis.search.result import Found as Searched
+from diagnosis.search.fitting import FittedModel
+from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import EffectAt, Found, VerdictKind, When
 
 LEAST_CLOSED = 0.95
@@ -26,7 +26,7 @@ UNSURE_NATS, WEAK = 15.0, 4.0
 times the least gain of a search is a weak reason to believe it all the same."""
 
 
-def sure(searched: Searched, least_gain: float) -> Searched:
+def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
     """What a search came to, less an effect that is unsure and hardly needed.
 
     Where two sims of the same physics differ a little, some effect always explains it.
@@ -43,10 +43,10 @@ def sure(searched: Searched, least_gain: float) -> Searched:
     weak = smaller.selected - winner.selected < WEAK * least_gain
     if least >= UNSURE_NATS or not weak or not smaller.keys < winner.keys:
         return searched
-    return sure(replace(searched, chosen=searched.chosen - 1), least_gain)
+    return without_unsure(replace(searched, chosen=searched.chosen - 1), least_gain)
 
 
-def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
+def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
     """The kind of verdict.
 
     Args:
@@ -69,8 +69,8 @@ def kind_of(searched: Searched, plant: Plant, audited: Audit) -> VerdictKind:
     return "not_identifiable" if still else "none"
 
 
-def effects_of(
-    both: Predictor, searched: Searched, refitted: FittedModel | None
+def believed_effects(
+    both: Predictor, searched: SearchResult, refitted: FittedModel | None
 ) -> tuple[Found, ...]:
     """The effects believed, the surest first.
 

@@ -5,7 +5,7 @@ import numpy as np
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import grown_from
 from diagnosis.plant.plant import Plant
-from diagnosis.search.result import Found
+from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import EffectAt, VerdictKind
 
 TIED_NATS = 10.0
@@ -22,7 +22,7 @@ MOST = 0.98
 """However large the gap: what no effect of the library is can look like one."""
 
 
-def confusable(found: Found, placed: PlacedEffect) -> tuple[EffectAt, ...]:
+def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[EffectAt, ...]:
     """Effects that would do as well in the stead of one of the winner's."""
     winner = found.winner
     assert winner is not None
@@ -47,7 +47,9 @@ def twins(plant: Plant, placed: PlacedEffect) -> tuple[EffectAt, ...]:
     return ()
 
 
-def alternatives(found: Found, kind: VerdictKind) -> tuple[tuple[EffectAt, ...], ...]:
+def alternatives(
+    found: SearchResult, kind: VerdictKind
+) -> tuple[tuple[EffectAt, ...], ...]:
     """Whole other answers of the chosen size that do as well.
 
     Where the data cannot tell, the one that does best is but one of them.
@@ -64,7 +66,7 @@ def alternatives(found: Found, kind: VerdictKind) -> tuple[tuple[EffectAt, ...],
     return answers if kind == "not_identifiable" else answers[1:]
 
 
-def gap(found: Found, placed: PlacedEffect) -> float:
+def gap(found: SearchResult, placed: PlacedEffect) -> float:
     """How much worse the best model without an effect of the winner is [nats].
 
     Infinite if none was tried.
@@ -79,7 +81,7 @@ def gap(found: Found, placed: PlacedEffect) -> float:
     return max(min(without, default=np.inf), 0.0)
 
 
-def probability(found: Found, placed: PlacedEffect) -> float:
+def probability(found: SearchResult, placed: PlacedEffect) -> float:
     """That an effect of the winner is right, from the gap to models without it."""
     odds = SLOPE * np.log1p(gap(found, placed) / EVEN_NATS)
     return float(MOST / (1 + np.exp(-odds)))

@@ -8,7 +8,7 @@ import numpy as np
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, grown_from
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.fitting import Fit, fit_all
+from diagnosis.search.fitting import FittedModel, fit_all
 
 MOST = 4
 STEPS = 4
@@ -38,7 +38,7 @@ class Controls:
         alike: Collection[str],
         rng: np.random.Generator,
     ) -> "Controls":
-        """Fit all of them.
+        """FittedModel all of them.
 
         Args:
           predictor: of the data to fit to.
@@ -121,5 +121,5 @@ def _best(
     return min(_fitted(predictor, likely), key=lambda fit: fit.energy).model
 
 
-def _fitted(predictor: Predictor, models: list[Model]) -> list[Fit]:
+def _fitted(predictor: Predictor, models: list[Model]) -> list[FittedModel]:
     return fit_all(predictor, models, STEPS, followed=True)

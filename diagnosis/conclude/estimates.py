@@ -1,28 +1,43 @@
-"""How well the values of a fitted model are known."""
+"""Intervals of the values of a fitted model."""
 
 import itertools
 from collections.abc import Mapping
 
 import numpy as np
 
-from diagnosis.conclude.block_variance import block_variance
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.fitting import Fit
+from diagnosis.search.fitting import FittedModel
 from diagnosis.verdict.verdict import Estimate
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
 
 Z_80 = 1.2815515655446004
-"""Quantile of the normal distribution: 80 % lie within as many standard deviations."""
+"""Half width of an 80 % interval of the normal distribution, in standard deviations."""
 
 PRIOR_SPREAD = 10.0
-"""Of coordinates, which are of order one: what data do not show is open that far."""
+"""Standard deviation of the prior on scaled coordinates, which are of order one. Values
+that the data do not determine get intervals of this width."""
 
 SYSTEMATIC = 0.015
-"""Of a value: what sims of the same physics disagree by, whatever the data."""
+"""Relative error of every value from differences between simulators: two simulators of
+the same physics disagree by this much, however long the recordings are."""
+
+FEWEST = 8
+"""Fewest blocks from which a correlation of neighbouring blocks can be estimated."""
+
+SIGNIFICANT = 2.0
+"""Standard deviations of chance above which a correlation of blocks counts as real."""
 
 
-def estimates(predictor: Predictor, fit: Fit) -> list[Mapping[str, Estimate]]:
-    """For each effect of the model its values with 80 % intervals, by their names."""
+def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estimate]]:
+    """The values of each effect of a model with 80 % intervals and units.
+
+    Args:
+      predictor: of the data that the model was fitted to.
+      fit: the model with a Jacobian taken by differences at its values.
+
+    Returns:
+      One mapping from parameter name to estimate for each effect, in the model's order.
+    """
     deviation = standard_errors(predictor, fit)
     x = fit.coordinates.of(fit.model)
     ends = np.array([_values(fit, x + side * Z_80 * deviation) for side in (-1, 1)])
@@ -45,13 +60,17 @@ def estimates(predictor: Predictor, fit: Fit) -> list[Mapping[str, Estimate]]:
     ]
 
 
-def standard_errors(predictor: Predictor, fit: Fit) -> FloatArray:
-    """(p,) of the values' coordinates.
+def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) standard errors of the values, in scaled coordinates.
 
-    The sandwich of White 1980 with blocks: residuals are neither white nor of the
-    variance that the sensors' noise has, as no sim is exact; blocks that are alike are
-    joined. What is not in the data,
-    a common error of all sims, is added as a part of each value.
+    White's sandwich estimator of 1980 with blocks of time: no simulator is exact, so
+    residuals are correlated and larger than the sensors' noise. The error that all
+    simulators have in common does not show in the data; it is added as a fixed share
+    of each value.
+
+    Args:
+      predictor: of the data that the model was fitted to.
+      fit: the model with a Jacobian taken by differences at its values.
     """
     jacobian, residual = fit.jacobian, fit.residual
     known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
@@ -68,11 +87,41 @@ def standard_errors(predictor: Predictor, fit: Fit) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(variance, white) + np.square(systematic)))
 
 
-def _neutral(fit: Fit, index: int) -> float:
-    """Coordinate at which a value does nothing; 0 where that is infinitely far."""
+def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
+    """(p,) variances of values, where residuals of one time block may be correlated.
+
+    The influences are summed within each block and the squares of the sums are added,
+    which is right if blocks are independent. If neighbouring blocks are significantly
+    correlated, they are joined in pairs until they are not: friction that varies with
+    the position, for example, causes an error as long as a stroke lasts.
+
+    Args:
+      influence: (N, p) change of each value by each row of the residual.
+      block: (N,) block numbers from 0, rising with time.
+    """
+    sums = np.zeros((int(block.max()) + 1, influence.shape[1]))
+    np.add.at(sums, block, influence)
+    return np.array([_variance(column) for column in sums.T])
+
+
+def _variance(sums: FloatArray) -> float:
+    """Variance of one value from the (blocks,) sums of its influences."""
+    variance = float(sums @ sums)
+    if len(sums) < FEWEST or variance <= 0:
+        return variance
+    alike = float(sums[1:] @ sums[:-1]) / variance
+    if alike < SIGNIFICANT / np.sqrt(len(sums)):
+        return variance
+    padded = np.append(sums, 0.0) if len(sums) % 2 else sums
+    return _variance(padded.reshape(-1, 2).sum(axis=1))
+
+
+def _neutral(fit: FittedModel, index: int) -> float:
+    """Scaled coordinate at which a value has no effect; 0 where that is infinite."""
     neutral = fit.coordinates.scaled(index, fit.coordinates.parameters[index].neutral)
     return neutral if np.isfinite(neutral) else 0.0
 
 
-def _values(fit: Fit, x: FloatArray) -> list[float]:
+def _values(fit: FittedModel, x: FloatArray) -> list[float]:
+    """The values of all effects at (p,) scaled coordinates."""
     return [value for placed in fit.coordinates.model_at(x) for value in placed.values]

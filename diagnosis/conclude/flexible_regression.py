@@ -23,7 +23,7 @@ FEWEST = 200
 PENALTIES = (1.0, 10.0, 100.0, 1000.0)
 
 
-def ceiling_errors(
+def flexible_regression_errors(
     learn: Predictor, judge: Predictor, seed: np.random.SeedSequence
 ) -> FloatArray:
     """(c,) rms [noise] of what is left of the plant's own error on data to be judged.

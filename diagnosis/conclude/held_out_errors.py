@@ -1,40 +1,45 @@
-"""Errors on the recordings that were kept for the end."""
+"""Errors on the held-out recordings, and doubts that follow from them."""
 
 import numpy as np
 
 from diagnosis.conclude.confidence import confusable, twins
 from diagnosis.conclude.controls import Controls
-from diagnosis.conclude.flexible_regression import ceiling_errors
-from diagnosis.conclude.surprise import channel_rms
+from diagnosis.conclude.flexible_regression import flexible_regression_errors
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.result import Found
+from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
 
+SURPRISE = 2.0
+"""Ratio of held-out to learned error from which a verdict expresses a doubt."""
 
-class FinalTest:
-    """The test data, opened once: errors of the plant, the model and the controls."""
+
+class HeldOutErrors:
+    """Errors of the nominal sim, the model and its controls on the held-out data.
+
+    The held-out data are used once, here, after all decisions are made.
+    """
 
     def __init__(
         self,
         nominal: tuple[Predictor, Predictor],
         both: Predictor,
         test: Predictor,
-        searched: Found,
+        searched: SearchResult,
         model: Model,
         seed: np.random.SeedSequence,
     ) -> None:
-        """Work out all errors.
+        """Compute all errors.
 
         Args:
-          nominal: predictors of the data learned from and of the test data, calibrated
-            at the plant alone.
-          both: of the data learned from, calibrated at the model.
-          test: of the test data, likewise.
-          searched: what the search came to.
-          model: that is believed, fitted to `both`.
-          seed: of the flexible regression, and of the lot that draws a control.
+          nominal: predictors of the learned and of the held-out data, calibrated at the
+            nominal robot model.
+          both: predictor of the learned data, calibrated at `model`.
+          test: predictor of the held-out data, calibrated at `model`.
+          searched: the result of the search.
+          model: the effects that are reported, fitted to `both`.
+          seed: for the flexible regression and for the random choice of a control.
         """
         self._test = test
         self._errors = {"nominal": _error(nominal[1], ())}
@@ -46,10 +51,10 @@ class FinalTest:
             for name, control in vars(controls).items():
                 if control is not None:
                     self._errors[name] = _error(test, control)
-        self._errors["ceiling"] = ceiling_errors(*nominal, regression)
+        self._errors["ceiling"] = flexible_regression_errors(*nominal, regression)
 
     def fit(self) -> Fit:
-        """For `Verdict.fit`."""
+        """The errors in the form of `Verdict.fit`."""
         channels = {
             name: ChannelFit(
                 unit=channel_unit(self._test.plant, name),
@@ -66,8 +71,8 @@ class FinalTest:
         return Fit(floor=1.0, channels=channels, **every)
 
 
-def _alike(both: Predictor, searched: Found, model: Model) -> set[str]:
-    """Keys ("effect@place") of all that may be one of the model's."""
+def _alike(both: Predictor, searched: SearchResult, model: Model) -> set[str]:
+    """Keys ("effect@place") of effects that may be the truth behind one of a model."""
     return {
         f"{at.name}@{at.place}"
         for placed in model
@@ -76,5 +81,58 @@ def _alike(both: Predictor, searched: Found, model: Model) -> set[str]:
 
 
 def _error(test: Predictor, model: Model) -> FloatArray:
-    """(c,) rms [noise] on the test data."""
+    """(c,) rms error of a model on the held-out data, in units of noise."""
     return channel_rms(test, test.residuals([model])[0])
+
+
+def channel_rms(predictor: Predictor, residual: FloatArray) -> FloatArray:
+    """(c,) rms of each channel of a residual (N,), both in units of noise."""
+    c = len(predictor.channels.names)
+    count = np.maximum(np.bincount(predictor.channel, predictor.scored, c), 1)
+    return np.asarray(np.sqrt(np.bincount(predictor.channel, residual**2, c) / count))
+
+
+def model_refuted(
+    nominal: FloatArray, corrected: FloatArray, least_gain: float
+) -> tuple[str, ...]:
+    """A sentence if the model predicts held-out motions worse than the nominal sim.
+
+    Args:
+      nominal: (N,) residual of the nominal sim on the held-out data, in units of noise.
+      corrected: (N,) residual of the corrected sim there.
+      least_gain: log-likelihood [nats] that an effect must gain to be reported.
+
+    Returns:
+      One sentence for the verdict's limits, or nothing.
+    """
+    if 0.5 * float(corrected @ corrected - nominal @ nominal) < least_gain:
+        return ()
+    return (
+        "The effects found make the prediction of held-out motions worse: they explain "
+        "a part of the error in the other recordings, but are not its cause.",
+    )
+
+
+def larger_than_learned(
+    learned: Predictor, left: FloatArray, fit: Fit
+) -> tuple[str, ...]:
+    """A sentence if the held-out error is much larger than the error that was learned.
+
+    Args:
+      learned: predictor of the data that the model was fitted to.
+      left: (N,) residual of the model on these data, in units of noise.
+      fit: errors on the held-out data.
+
+    Returns:
+      One sentence for the verdict's limits, or nothing.
+    """
+    before = max(float(np.sqrt(np.mean(channel_rms(learned, left) ** 2))), 1.0)
+    if fit.corrected < SURPRISE * before:
+        return ()
+    errors = {name: one.corrected / one.floor for name, one in fit.channels.items()}
+    name = max(errors, key=errors.__getitem__)
+    return (
+        f"The held-out recordings show more error than those that were fitted: "
+        f"{fit.corrected:.2g} instead of {before:.2g} times the noise, most of it in "
+        f"{name}. Something is missing that hardly shows in the other recordings.",
+    )

@@ -9,7 +9,7 @@ from diagnosis.conclude.confidence import TIED_NATS
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import Model, variants_of
-from diagnosis.search.result import Found
+from diagnosis.search.result import SearchResult
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.traces.windows import Run
@@ -38,7 +38,7 @@ STIFFER = "the same with servos of twice the stiffness and half the damping"
 
 
 def next_experiment(
-    plant: Plant, found: Found, traces: Sequence[Trace]
+    plant: Plant, found: SearchResult, traces: Sequence[Trace]
 ) -> NextExperiment | None:
     """The motion whose predictions by the two best answers differ most (T-optimality).
 
@@ -72,7 +72,7 @@ def next_experiment(
     return NextExperiment(motion, place, why)
 
 
-def _rivals(found: Found) -> tuple[Model, Model] | None:
+def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
     winner = found.winner
     if winner is None:
         return None

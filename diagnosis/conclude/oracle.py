@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import fit_all
-from diagnosis.search.reference import standing_of
+from diagnosis.search.reference import learn_reference
 from diagnosis.traces.split import split
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
@@ -60,13 +60,13 @@ def fit_structure(
       others: models to compare with, such as the answers of a diagnosis.
     """
     parts = split(traces)
-    channels = channels_of(plant, [*traces, *reference])
-    standing = standing_of(plant, reference, channels) if reference else None
-    fitting = Predictor(plant, parts.fit, channels, standing=standing)
+    channels = shared_channels(plant, [*traces, *reference])
+    noise = learn_reference(plant, reference, channels) if reference else None
+    fitting = Predictor(plant, parts.fit, channels, noise=noise)
     fitting.calibrate(structure)
     model = fit_all(fitting, [structure])[0].model
     used = [*parts.fit, *parts.select, *parts.test]
-    every = Predictor(plant, used, channels, standing=standing)
+    every = Predictor(plant, used, channels, noise=noise)
     every.calibrate(model)
     residuals = every.residuals([(), model, *others])
     held_out = every.trace >= len(parts.fit) + len(parts.select)

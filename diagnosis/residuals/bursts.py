@@ -1,41 +1,62 @@
-"""When a residual stands out: where something may have pushed."""
+"""Finds the times at which something may have pushed the robot.
+
+Two detectors: `bursts` finds short intervals of large error, `faint_pushes` finds small
+errors of one sign that last too long to be noise but carry too little energy for the
+first detector.
+"""
+
+from itertools import chain
 
 import numpy as np
 from scipy.stats import chi2
 
-from diagnosis.residuals.leanings import leanings
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.stretches import stretches
 from groundwalk.arrays import BoolArray, FloatArray
 
 BIN_S = 0.05
+"""Length of the bins [s] in which the energy of the error is summed."""
+
 STANDS_OUT = 8.0
-"""Times the median energy of the bins."""
+"""A burst has at least this multiple of the median energy of all bins."""
 
 LEAST = 4.0
-"""And so many times what noise alone would leave ..."""
+"""A burst also has at least this multiple of the energy that noise alone leaves."""
 
 CHANCE = 1e-3
-"""... and more than noise reaches in any bin of a trace, but for this chance."""
+"""Probability that noise alone makes any bin of a recording look like a burst."""
 
 REACTION_S = 0.03
-"""A push is seen a little after it began."""
+"""Time [s] by which an error becomes visible after the push that causes it."""
 
 LEAD_S = 1.0
-"""What pushes all the time began so long before and ends so long after: a fit must not
-find that its beginning matters."""
+"""A push that acts all the time begins this long before the recording and ends as long
+after it [s], so that a fit cannot improve by moving its begin or end."""
 
 MOST = 3
+"""Largest number of bursts that are returned."""
+
+WINDOWS_S = (0.1, 0.25, 0.5)
+"""Durations of faint pushes that are tried [s]: a servo stays displaced while it is
+pushed."""
+
+FAINT = 6.0
+"""Standard deviations by which the mean error of a window differs from zero where
+something pushed; noise does not reach this in any window."""
+
+MEDIAN_OF_NORMAL = 0.6744897501960817
+"""Median of the absolute value of a standard normal variable."""
 
 
 def bursts(predictor: Predictor, residual: FloatArray) -> list[tuple[float, float]]:
-    """Start and end [s] of the strongest bursts, in the time of the traces.
+    """Start and end of the strongest bursts [s], in the time of the recordings.
 
-    Energy is summed over channels in bins of 50 ms; neighbouring bins that stand out
-    are one burst. What is off all the time or comes back with every motion is none.
+    The energy of the error is summed over all channels in bins of 50 ms. Neighbouring
+    bins with much more energy than the others form one burst. An error that is present
+    all the time, or at every motion, raises the median and is no burst.
 
     Args:
-      predictor: whose residual it is.
+      predictor: it computed the residual.
       residual: (N,) in units of noise.
     """
     return _strongest(predictor, residual, np.ones(len(residual), bool))
@@ -44,7 +65,7 @@ def bursts(predictor: Predictor, residual: FloatArray) -> list[tuple[float, floa
 def bursts_of(
     predictor: Predictor, residual: FloatArray, channel: int
 ) -> tuple[tuple[float, float], ...]:
-    """The same of one channel, in the order of time."""
+    """Start and end of the strongest bursts of one channel [s], in order of time."""
     return tuple(sorted(_strongest(predictor, residual, predictor.channel == channel)))
 
 
@@ -72,7 +93,12 @@ def _strongest(
 def push_intervals(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Start and duration [s] of pushes that could be: all the time, or for a while."""
+    """Start and duration [s] of possible pushes: one that lasts, then short ones.
+
+    Args:
+      predictor: it computed the residual.
+      residual: (N,) in units of noise.
+    """
     last_s = max(trace.time_s[-1] for trace in predictor.traces)
     short = [
         (max(start - REACTION_S, 0.0), max(end - start - BIN_S, BIN_S))
@@ -80,6 +106,53 @@ def push_intervals(
     ]
     faint = [
         (max(start - REACTION_S, 0.0), end - start)
-        for start, end in ([] if short else leanings(predictor, residual))
+        for start, end in ([] if short else faint_pushes(predictor, residual))
     ]
     return [(-LEAD_S, float(last_s) + 2 * LEAD_S), *short, *faint]
+
+
+def faint_pushes(
+    predictor: Predictor, residual: FloatArray
+) -> list[tuple[float, float]]:
+    """Start and end [s] of the most one-sided window of each length, the surest first.
+
+    A bias that is present in all windows, such as that of an unmodelled payload, is
+    ignored.
+
+    Args:
+      predictor: it computed the residual.
+      residual: (N,) in units of noise.
+    """
+    c = len(predictor.channels.names)
+    own = [
+        (trace.time_s, residual[predictor.trace == number].reshape(-1, c))
+        for number, trace in enumerate(predictor.traces)
+    ]
+    best = chain.from_iterable(
+        sorted((_most_biased(*one, window_s) for one in own), reverse=True)[:1]
+        for window_s in WINDOWS_S
+    )
+    return [
+        (start, end) for sure, start, end in sorted(best, reverse=True) if sure > FAINT
+    ]
+
+
+def _most_biased(
+    time_s: FloatArray, residual: FloatArray, window_s: float
+) -> tuple[float, float, float]:
+    """Significance [standard deviations], start and end [s] of the most biased window.
+
+    Args:
+      time_s: (T,) of the rows.
+      residual: (T, c) in units of noise.
+      window_s: length of the window.
+    """
+    rows = max(int(np.searchsorted(time_s, time_s[0] + window_s)), 1)
+    if rows >= len(time_s):
+        return 0.0, 0.0, 0.0
+    total = np.vstack([np.zeros(residual.shape[1]), np.cumsum(residual, axis=0)])
+    mean = np.abs(total[rows:] - total[:-rows]) / np.sqrt(rows)
+    usual = np.maximum(np.median(mean, axis=0) / MEDIAN_OF_NORMAL, 1.0)
+    sure = np.max(mean / usual, axis=1)
+    first = int(np.argmax(sure))
+    return float(sure[first]), float(time_s[first]), float(time_s[first + rows - 1])

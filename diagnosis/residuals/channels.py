@@ -47,7 +47,7 @@ def channel_unit(plant: Plant, name: str) -> str:
     return plant.unit(unit, joint)
 
 
-def channels_of(plant: Plant, traces: Sequence[Trace]) -> Channels:
+def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
     """All that the traces measured and replays predict."""
     names = [f"position.{joint}" for joint in plant.joints]
     least = [LEAST_NOISE_RAD] * len(names)

@@ -1,12 +1,12 @@
 """The data of one diagnosis: what is fitted to, selected by, and kept for the end."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
-from diagnosis.residuals.reference_noise import Standing
+from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.traces.shorten import LEAST_FLOATING_S, LEAST_S, shortened
 from diagnosis.traces.split import Split, split
 from diagnosis.traces.trace import Trace
@@ -31,7 +31,7 @@ more of it would show up as physics."""
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class DataSets:
     """Predictors of the parts of some recordings, calibrated at the plant alone.
 
     Attributes:
@@ -55,24 +55,33 @@ class Evidence:
         plant: Plant,
         traces: Sequence[Trace],
         channels: Channels,
-        standing: Standing | None,
+        noise: ReferenceNoise | None,
         threads: int,
-    ) -> "Evidence":
+        on_replay: Callable[[int], None] | None = None,
+    ) -> "DataSets":
         """Split traces, and calibrate.
 
         Args:
           plant: nominal.
           traces: of the robot.
           channels: with their noise.
-          standing: what is wrong when all is well; nothing where None.
+          noise: model errors known from reference recordings; none where None.
           threads: of the replays.
+          on_replay: see `Predictor`.
 
         Raises:
           BadRecordingError: the traces are too short.
         """
-        parts = _affordable(plant, split(traces))
+        parts = affordable(plant, split(traces))
         every = [*parts.fit, *parts.select, *parts.test]
-        whole = Predictor(plant, every, channels, threads=threads, standing=standing)
+        whole = Predictor(
+            plant,
+            every,
+            channels,
+            threads=threads,
+            noise=noise,
+            on_replay=on_replay,
+        )
         whole = _exact(whole)
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         evidence = cls(
@@ -110,7 +119,7 @@ def _exact(whole: Predictor, model: Model = ()) -> Predictor:
     return whole
 
 
-def _affordable(plant: Plant, parts: Split) -> Split:
+def affordable(plant: Plant, parts: Split) -> Split:
     """The parts, cut down to what the search can replay some hundred times."""
     floats = plant.base == "floating"
     longest_s = FLOATING_S if floats else (FIT_S, SELECT_S, TEST_S)

@@ -20,7 +20,9 @@ REVERSAL_S = 0.1
 FEWEST = 20
 
 
-def mismatch(predictor: Predictor, residual: FloatArray) -> tuple[MismatchCell, ...]:
+def mismatch_map(
+    predictor: Predictor, residual: FloatArray
+) -> tuple[MismatchCell, ...]:
     """One cell for each channel, the worst first.
 
     Args:

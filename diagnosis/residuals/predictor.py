@@ -1,6 +1,6 @@
 """What models of a plant predict, and how far that is from what was measured."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -9,15 +9,15 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.channels import Channels, channels_of, measured_of, stacked
+from diagnosis.residuals.channels import Channels, measured_of, shared_channels, stacked
 from diagnosis.residuals.limbs import Limb, limbs_of
-from diagnosis.residuals.reference_noise import Standing, blocks_of
+from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
 from diagnosis.residuals.start_state import (
     POSITION_SPREAD_RAD,
     POSITION_STEP_RAD,
     VELOCITY_SPREAD_RAD_S,
     VELOCITY_STEP_RAD_S,
-    StartDoubt,
+    StartUncertainty,
     nudged,
 )
 from diagnosis.traces.trace import Trace
@@ -60,7 +60,8 @@ class Predictor:
         channels: Channels | None = None,
         step_s: float | None = None,
         threads: int = 1,
-        standing: Standing | None = None,
+        noise: ReferenceNoise | None = None,
+        on_replay: Callable[[int], None] | None = None,
     ) -> None:
         """Find the states that the traces start from.
 
@@ -70,11 +71,13 @@ class Predictor:
           channels: with their noise; measured on the traces where None.
           step_s: of the coarse replays; the longest of `STEPS_S` where None.
           threads: of every batch.
-          standing: what is wrong when all is well; nothing where None.
+          noise: model errors known from reference recordings; none where None.
+          on_replay: called after each batch with the number of its replays, counted as
+            replays of all traces at the step `step_s`.
         """
         self.plant, self.traces = plant, list(traces)
         self.step_s, self._threads = step_s or STEPS_S[plant.base][0], threads
-        self.channels = channels or channels_of(plant, traces)
+        self.channels = channels or shared_channels(plant, traces)
         self._limbs = limbs_of(plant)
         per_trace = [runs_of(plant, trace) for trace in traces]
         self._runs = [run for runs in per_trace for run in runs]
@@ -88,8 +91,8 @@ class Predictor:
         self._correction = np.zeros((sum(rows), c))
         self._fine_correction = self._correction
         self._ends = np.cumsum(rows).tolist()
-        self._doubt: StartDoubt | None = None
-        self._standing = standing
+        self._doubt: StartUncertainty | None = None
+        self._noise, self._on_replay = noise, on_replay
         self.blocks = blocks_of(self._runs, self._scored.any(axis=1))
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
@@ -111,7 +114,8 @@ class Predictor:
             self.channels,
             self.step_s,
             self._threads,
-            self._standing,
+            self._noise,
+            self._on_replay,
         )
         ends = [0, *self._ends]
         own = slice(ends[first], ends[last])
@@ -130,7 +134,8 @@ class Predictor:
             self.channels,
             step_s,
             self._threads,
-            self._standing,
+            self._noise,
+            self._on_replay,
         )
 
     def calibrate(self, model: Model = ()) -> float:
@@ -149,9 +154,9 @@ class Predictor:
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
         return float(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2)))
 
-    def _start_doubt(self, model: Model) -> StartDoubt | None:
+    def _start_doubt(self, model: Model) -> StartUncertainty | None:
         # a window's wrong start is in what the windows of the reference get wrong
-        if self._standing is not None and self.plant.base == "floating":
+        if self._noise is not None and self.plant.base == "floating":
             return None
         runs, models = nudged(self._runs), [self._given(model)]
         variants = variants_of(self.plant, models)
@@ -170,11 +175,11 @@ class Predictor:
         ]
         changes = [np.nan_to_num(change) for change in changes]
         ends = np.cumsum([run.trace.ticks for run in self._runs])
-        return StartDoubt(changes, ends.tolist())
+        return StartUncertainty(changes, ends.tolist())
 
     def _given(self, model: Model) -> Model:
         """With what is wrong when all is well."""
-        return (*self._standing.model, *model) if self._standing else model
+        return (*self._noise.model, *model) if self._noise else model
 
     def _warming(self) -> BoolArray:
         """Rows that are not scored: of whole traces a while, of windows their first."""
@@ -232,8 +237,8 @@ class Predictor:
         wrong = np.where(self._scored, wrong, 0.0)
         if self._doubt is not None:
             wrong = self._doubt.without(wrong)
-        if self._standing is not None:
-            wrong = self._standing.without(wrong, self.blocks)
+        if self._noise is not None:
+            wrong = self._noise.without(wrong, self.blocks)
         return wrong.reshape(len(models), -1)
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
@@ -245,6 +250,8 @@ class Predictor:
             own, columns = limb.channels(self.channels)
             found = self._replayed_limb(limb, list(rows), step_s, own)
             predicted[:, :, columns] = found[[rows[model] for model in felt]]
+        if self._on_replay is not None:
+            self._on_replay(len(models) * round(self.step_s / step_s))
         return predicted
 
     def _replayed_limb(

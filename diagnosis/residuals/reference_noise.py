@@ -78,7 +78,7 @@ def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Standing:
+class ReferenceNoise:
     """What a model of c channels gets wrong when all is well.
 
     Attributes:
@@ -97,7 +97,7 @@ class Standing:
     rows: float
 
     @classmethod
-    def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "Standing":
+    def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":
         """Nothing but effects."""
         none = np.zeros((WAVES * channels, 0))
         return cls(model, np.ones(channels), np.zeros(0), none, 1.0)
@@ -109,7 +109,7 @@ class Standing:
         residual: FloatArray,
         scored: BoolArray,
         blocks: Sequence[Block],
-    ) -> "Standing":
+    ) -> "ReferenceNoise":
         """Learn from reference recordings.
 
         Args:

@@ -35,7 +35,7 @@ def nudged(runs: Sequence[Run]) -> list[Run]:
     return [*runs, *positions, *velocities]
 
 
-class StartDoubt:
+class StartUncertainty:
     """Signatures of wrong starts, for each run and channel its own two."""
 
     def __init__(self, changes: Sequence[FloatArray], ends: Sequence[int]) -> None:
@@ -48,13 +48,13 @@ class StartDoubt:
         """
         signatures = np.stack(changes)
         self._runs = [
-            _RunDoubt.of(signatures[:, first:last])
+            _RunUncertainty.of(signatures[:, first:last])
             for first, last in itertools.pairwise([0, *ends])
         ]
 
-    def part(self, first: int, last: int) -> "StartDoubt":
+    def part(self, first: int, last: int) -> "StartUncertainty":
         """Of runs `first` to `last - 1` only."""
-        some = object.__new__(StartDoubt)
+        some = object.__new__(StartUncertainty)
         some._runs = self._runs[first:last]
         return some
 
@@ -69,7 +69,7 @@ class StartDoubt:
 
 
 @dataclass(frozen=True, eq=False)
-class _RunDoubt:
+class _RunUncertainty:
     """Of one run: (2, rows, c) signatures, and the inverse of their products."""
 
     own: FloatArray

@@ -1,22 +1,25 @@
-"""Many joints that lack the same: what all servos have, and a bare model has not.
+"""Search for physics that all joints lack, as in the first model of a real robot.
 
-A search for one, two or three effects suits a robot whose model once was right. The
-bare model of a real robot lacks the same physics at every joint, differently large.
-Here whole kinds are added, each at all joints where it explains something.
+The search for one, two or three effects suits a robot whose model was right once. The
+first model of a real robot lacks the same physics at every joint, in different amounts.
+Here whole kinds of effects are added, each at all joints where it improves the fit.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS
-from diagnosis.residuals.predictor import Model
-from diagnosis.search.fitting import fit_all
-from diagnosis.search.joint_wise import joint_wise
-from diagnosis.search.result import Found, Judged
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import Nudges, fit_all
+from diagnosis.search.judging import Judge
+from diagnosis.search.result import Judged, SearchResult
 from diagnosis.search.screening import Guess, Screen
-from diagnosis.search.search import Search
 from diagnosis.search.signatures import signatures
+from diagnosis.traces.usage import Usage
+from groundwalk.arrays import BoolArray
 
 KINDS = tuple(
     name
@@ -24,103 +27,134 @@ KINDS = tuple(
     if kind.place_kind in ("joint", "commands", "encoders")
     and name not in ("joint_elasticity", "end_stop", "servo_fade")
 )
-"""What servos have. Stops and fading are single faults."""
+"""Effects that every servo of a robot may have. End stops and fading servos are faults
+of single joints."""
 
-MOST_KINDS, TRIED, LEAN = 6, 4, 3
-"""Kinds in a model; those tried each time, and besides those that gain most a value."""
+MOST_KINDS = 6
+"""Most kinds of effects in a model."""
+
+TRIED = 4
+"""Kinds tried in each round because they gain most in total."""
+
+LEAN = 3
+"""Further kinds tried in each round because they gain most for each value."""
+
+REPLAYS = 200
+"""Rough number of replays in a round, for the progress display."""
 
 LEAST_SHARE = 0.1
-"""Of the energy above the noise that is left: what a kind must take away ..."""
+"""Share of the remaining energy above the noise that a kind must remove."""
 
 PATIENCE = 2
-"""... or so many kinds together."""
+"""Rounds in a row without enough gain after which no more kinds are added."""
 
 MUCH_BETTER = 0.25
-"""Part of what the best small model leaves that must go for so many effects."""
+"""Share of the energy left by the best small model that the many effects of a model of
+whole kinds must remove to be preferred to it."""
 
 
-def widespread(search: Search, found: Found) -> Found:
-    """A model of whole kinds, if it does much better than the search's; else that.
+def all_joints(judge: Judge, result: SearchResult) -> SearchResult:
+    """A model of whole kinds of effects if it fits much better, else the given result.
 
     Args:
-      search: that has run.
-      found: what it came to.
+      judge: of the search that has run.
+      result: its result.
     """
+    best = _grown(judge, result)
+    if best is not None:
+        best = _without_idle(judge, best)
+    left = result.winner.selected if result.winner else result.nothing
+    needed = max(MUCH_BETTER * (left - result.floor), judge.least_gain)
+    if best is None or left - best.selected < needed:
+        return result
+    smaller = _each_left_out(best.model)
+    residuals = judge.fit.residuals(smaller)
+    fits = [
+        replace(best.fit, model=model, residual=residual)
+        for model, residual in zip(smaller, residuals, strict=True)
+    ]
+    size = len(best.model)
+    sizes = {size - 1: judge.ranked(judge.judge(fits)), size: [best]}
+    return replace(result, best=sizes, chosen=size)
+
+
+def _grown(judge: Judge, result: SearchResult) -> Judged | None:
+    """Add the best kind of effect, round by round, while that removes enough error."""
     best: Judged | None = None
     model: Model = ()
-    residual, energy = search.fit.residuals([()])[0], found.nothing_fit + found.nothing
-    floor = found.floor_fit + found.floor
+    residual, energy = judge.fit.residuals([()])[0], result.nothing_fit + result.nothing
+    floor = result.floor_fit + result.floor
     waited = 0
-    for _ in range(MOST_KINDS):
-        signs = signatures(search.fit, model, search.usage, (), KINDS)
-        guesses = Screen(search.fit, signs).singles(residual)
-        added = _by_kind(guesses, search.least_gain, model)
-        tried = _best(search, [(*model, *more) for more in added])
+    usage = Usage.of(judge.fit.plant, judge.fit.traces)
+    for number in range(MOST_KINDS):
+        judge.hooks.stage(f"all joints, round {number + 1}", REPLAYS)
+        signs = signatures(judge.fit, model, usage, (), KINDS)
+        guesses = Screen(judge.fit, signs).singles(residual)
+        added = kinds_to_add(guesses, judge.least_gain, model)
+        tried = _best(judge, [(*model, *more) for more in added])
         if tried is None:
             break
         model, residual = tried.model, tried.fit.residual
         if energy - tried.energy >= LEAST_SHARE * (energy - floor):
             best, energy, waited = tried, tried.energy, 0
-        else:  # it may take another kind to bring out what this one is good for
+        else:  # a kind may help only once another one has been added
             waited += 1
         if waited == PATIENCE:
             break
-    if best is not None:
-        best = _without_idle(search, best)
-    left = found.winner.selected if found.winner else found.nothing
-    needed = max(MUCH_BETTER * (left - found.floor), search.least_gain)
-    if best is None or left - best.selected < needed:
-        return found
-    rests = _rests(best.model)
-    residuals = search.fit.residuals(rests)
-    fits = [
-        replace(best.fit, model=rest, residual=residual)
-        for rest, residual in zip(rests, residuals, strict=True)
-    ]
-    size = len(best.model)
-    sizes = {size - 1: search.ranked(search.judge(fits)), size: [best]}
-    return replace(found, best=sizes, chosen=size)
+    return best
 
 
-def _best(search: Search, starts: Sequence[Model]) -> Judged | None:
-    """The best of some models; only that one is fitted well.
+def _best(judge: Judge, starts: Sequence[Model]) -> Judged | None:
+    """The best of some models; only that one is fitted to the end.
 
-    On fitting and selection data together: so few values are hardly fitted by chance,
-    and what one joint shows in one motion may be in no other.
+    Fitting and selection data are judged together. These models have few values for so
+    much data, so that chance hardly improves their fit, and what a joint shows in one
+    motion may be missing in all others.
     """
     if not starts:
         return None
-    rough = fit_all(search.fit, starts, search.rules.first_steps, nudges_of=joint_wise)
-    start = min(search.judge(rough), key=lambda one: one.energy).model
-    (judged,) = search.judge(fit_all(search.fit, [start], nudges_of=joint_wise))
+
+    def work() -> list[Judged]:
+        steps = judge.rules.first_steps
+        rough = fit_all(judge.fit, starts, steps, nudges_of=joint_wise)
+        start = min(judge.judge(rough), key=lambda one: one.energy).model
+        return judge.judge(fit_all(judge.fit, [start], nudges_of=joint_wise))
+
+    (judged,) = judge.saved(work)
     return judged
 
 
-def _without_idle(search: Search, best: Judged) -> Judged:
-    """The model less what makes no difference to it: a kind need not be everywhere."""
-    energies = search.energies(_rests(best.model))
+def _without_idle(judge: Judge, best: Judged) -> Judged:
+    """Drop placements that do not improve the fit; a kind need not be everywhere."""
+    energies = judge.energies(_each_left_out(best.model))
     needed = tuple(
         placed
         for placed, energy in zip(best.model, energies, strict=True)
-        if energy - best.selected >= search.least_gain
+        if energy - best.selected >= judge.least_gain
     )
     if not needed or len(needed) == len(best.model):
         return best
-    lean = _best(search, [needed])
-    most = best.selected + LEAST_SHARE * (best.selected - search.floor)
+    lean = _best(judge, [needed])
+    most = best.selected + LEAST_SHARE * (best.selected - judge.floor)
     return lean if lean is not None and lean.selected <= most else best
 
 
-def _rests(model: Model) -> list[Model]:
-    """The model without each of its effects."""
+def _each_left_out(model: Model) -> list[Model]:
+    """The models that arise when each effect of a model is removed in turn."""
     return [tuple(other for other in model if other is not one) for one in model]
 
 
-def _by_kind(guesses: Sequence[Guess], least: float, model: Model) -> list[Model]:
-    """Kinds with their guesses at all joints: the best, then the best for their size.
+def kinds_to_add(guesses: Sequence[Guess], least: float, model: Model) -> list[Model]:
+    """Kinds of effects worth a fit, each with its guesses at all joints.
 
-    One late signal may be all that fast motions lack, though friction at all joints
-    explains more of the slow ones.
+    First the kinds that gain most in total, then those that gain most for each value: a
+    single delay may explain all fast motions, although friction at all joints gains
+    more in the slow ones.
+
+    Args:
+      guesses: of single effects.
+      least: gain [nats] below which a guess is ignored.
+      model: effects that are present already and not added again.
     """
     known = {placed.key for placed in model}
     together: dict[str, tuple[float, list[PlacedEffect]]] = {}
@@ -132,10 +166,48 @@ def _by_kind(guesses: Sequence[Guess], least: float, model: Model) -> list[Model
         together[placed.name] = gain + guess.gain, [*every, placed]
     kinds = [(gain, tuple(placed)) for gain, placed in together.values()]
     most = sorted(kinds, key=lambda kind: -kind[0])[:TRIED]
-    rest = [kind for kind in kinds if kind not in most]
-    lean = sorted(rest, key=lambda kind: -kind[0] / _values(kind[1]))[:LEAN]
+    others = [kind for kind in kinds if kind not in most]
+    lean = sorted(others, key=lambda kind: -kind[0] / _values(kind[1]))[:LEAN]
     return [model for _, model in (*most, *lean)]
 
 
 def _values(model: Model) -> int:
+    """Number of values of all effects of a model."""
     return sum(len(placed.values) for placed in model)
+
+
+def joint_wise(predictor: Predictor, model: Model) -> Nudges:
+    """Nudges for `fit_all` that change a parameter at all joints in one replay.
+
+    Servos are stiff, so that a change at one joint hardly moves the others: each
+    joint's own channels are taken as its column of the Jacobian (columns without a
+    common row need one difference only: Curtis, Powell and Reid 1974). The ignored
+    coupling between joints only slows convergence; the result is unaffected.
+
+    Args:
+      predictor: of the data to fit.
+      model: the same effects at many joints.
+    """
+    return Nudges(_groups(model), _rows(predictor, model))
+
+
+def _groups(model: Model) -> list[list[int]]:
+    """Numbers of the values that are nudged together: one parameter of one effect."""
+    groups: dict[tuple[str, int], list[int]] = {}
+    number = 0
+    for placed in model:
+        for k in range(len(placed.values)):
+            groups.setdefault((placed.name, k), []).append(number)
+            number += 1
+    return list(groups.values())
+
+
+def _rows(predictor: Predictor, model: Model) -> list[BoolArray]:
+    """For each value (N,) flags of the rows of the residual that it changes."""
+    rows = []
+    for placed in model:
+        own = predictor.channels.of_joint(placed.place)
+        is_joint = placed.place in predictor.plant.joints
+        flags = np.isin(predictor.channel, own) | (not is_joint)
+        rows += [flags] * len(placed.values)
+    return rows

@@ -8,7 +8,8 @@ import numpy as np
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import EFFECTS, grown_from
 from diagnosis.residuals.predictor import STIFF, Model, Predictor
-from diagnosis.search.result import Judged, Rules, keys_of
+from diagnosis.search.result import Judged, keys_of
+from diagnosis.search.rules import Rules
 from diagnosis.search.screening import Guess, Screen, stretched
 from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray
@@ -30,7 +31,7 @@ STIFFER = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
 """Likewise of springs: between two resonances no slope leads to either."""
 
 
-class Starts:
+class Candidates:
     """What to fit next, by guesses of first order and by what is known to be alike."""
 
     def __init__(
@@ -77,7 +78,7 @@ class Starts:
         return max((guess.gain for guess in guesses), default=0.0)
 
     def _scanned(self, starts: Sequence[Model]) -> list[Model]:
-        """Starts with the effect that was added last as large as does best.
+        """Candidates with the effect that was added last as large as does best.
 
         Guesses are of first order; a gap or a delay may be far from what they say.
         """
@@ -116,9 +117,12 @@ class Starts:
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
         """The best guesses, and the best place of each effect that comes close."""
         few = len(self._fit.plant.joints) <= FEW_JOINTS
-        most = len(EFFECTS) if few else self._rules.singles
+        most = len(EFFECTS) if few else self._rules.single_effects
         short = [
-            guess.model for guess in ranked[: self._rules.singles - self._rules.others]
+            guess.model
+            for guess in ranked[
+                : self._rules.single_effects - self._rules.further_effects
+            ]
         ]
         named = {model[0].name for model in short}
         for guess in ranked[len(short) :]:
@@ -154,7 +158,7 @@ class Starts:
                     seen.add(keys)
                     grown.append(model)
                     added += 1
-                if added == self._rules.growths:
+                if added == self._rules.growths_each:
                     break
         return grown
 

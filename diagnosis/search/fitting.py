@@ -27,7 +27,7 @@ Ask = Callable[[list[Model]], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class FittedModel:
     """A model whose values were fitted.
 
     Attributes:
@@ -166,8 +166,8 @@ def fit_all(
     followed: bool = False,
     jacobians: Sequence[FloatArray | None] | None = None,
     exactly: bool = False,
-) -> list[Fit]:
-    """Fit the values of several models, each from its own start.
+) -> list[FittedModel]:
+    """FittedModel the values of several models, each from its own start.
 
     Args:
       predictor: of the data.
@@ -263,7 +263,7 @@ def _fit(
     followed: bool,
     jacobian: FloatArray | None,
     ask: Ask,
-) -> Fit:
+) -> FittedModel:
     from scipy.optimize import least_squares
 
     low, high = coordinates.bounds()
@@ -284,4 +284,4 @@ def _fit(
     )
     model = coordinates.model_at(found.x)
     at_end = course.residual(found.x), course.jacobian(found.x)
-    return Fit(model, *at_end, coordinates)
+    return FittedModel(model, *at_end, coordinates)

@@ -1,4 +1,4 @@
-"""Learning what was there when all was well from reference recordings."""
+"""Learns from reference recordings what the model gets wrong for the healthy robot."""
 
 from collections.abc import Sequence
 
@@ -7,9 +7,12 @@ from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.reference_noise import Standing
-from diagnosis.search.result import Rules
+from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.search.hooks import Hooks
+from diagnosis.search.judging import Judge
+from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
+from diagnosis.search.stored_models import pack_noise, unpack_noise
 from diagnosis.traces.shorten import LEAST_FLOATING_S, shortened
 from diagnosis.traces.split import split
 from diagnosis.traces.trace import Trace
@@ -17,34 +20,40 @@ from diagnosis.traces.windows import FLOATING_WINDOW_S
 from groundwalk.errors import BadRecordingError
 
 MOST_S = 40.0
-"""So much of the recordings is looked at."""
+"""Most seconds of reference recordings that are used."""
 
-WELL_S = 6.0
-"""So much is asked whether an effect was there before."""
+CHECK_S = 6.0
+"""Seconds of reference data on which effects are checked: was it there before?"""
 
 SHIFTS = 3
-"""Windows of a floating base begin at so many different rows: there are few of them."""
+"""Windows of a floating base are cut at this many different offsets, since there are
+few of them."""
+
+REPLAYS = 40
+"""Rough number of replays for learning from a reference without a search."""
 
 
-def standing_of(
+def learn_reference(
     plant: Plant,
     traces: Sequence[Trace],
     channels: Channels,
     rules: Rules | None = None,
     threads: int = 1,
-) -> Standing:
-    """The standing difference between a plant and its robot.
+    hooks: Hooks | None = None,
+) -> ReferenceNoise:
+    """Learn the difference between a robot model and the healthy robot.
 
-    With a fixed base first the effects that explain it are searched for, as in any
-    recording. A robot on its feet differs from its model in every contact, as no
-    effect describes; all of that is taken as noise.
+    With a fixed base the effects that explain the difference are searched for first, as
+    in any recording. A robot on a floating base differs from its model in every
+    contact, which no effect describes; there all of the difference counts as noise.
 
     Args:
-      plant: nominal.
-      traces: recordings of the robot when all was well, at least one.
-      channels: with their noise, as in the recordings that are to be diagnosed.
-      rules: of the search; the usual ones where None.
-      threads: of the replays.
+      plant: nominal robot model.
+      traces: recordings of the healthy robot, at least one.
+      channels: with their noise, as in the recordings to be diagnosed.
+      rules: settings of the search; the default ones where None.
+      threads: threads of the replays.
+      hooks: progress display and checkpoint; none where None.
 
     Raises:
       BadRecordingError: nothing can be learned from these recordings.
@@ -52,11 +61,13 @@ def standing_of(
     refused = audit(traces, plant).refused
     if refused:
         raise BadRecordingError(f"the reference: {refused[0]}")
+    hooks = (hooks or Hooks()).within("reference")
     traces = shortened(traces, MOST_S)
     model: tuple[PlacedEffect, ...] = ()
     if plant.base == "fixed":
-        model = _explained(plant, traces, channels, rules, threads)
-    return _learned(plant, traces, channels, model, threads)
+        model = _explained(plant, traces, channels, rules, threads, hooks)
+    hooks.stage("noise", REPLAYS)
+    return _learned(plant, traces, channels, model, threads, hooks)
 
 
 def _learned(
@@ -65,58 +76,81 @@ def _learned(
     channels: Channels,
     model: tuple[PlacedEffect, ...],
     threads: int,
-) -> Standing:
-    """What a model leaves of some traces."""
-    count = len(channels.names)
-    known = Standing.known(model, count)
-    if plant.base == "floating":
-        traces = [late for trace in traces for late in _shifted(trace)]
-    predictor = Predictor(plant, traces, channels, threads=threads, standing=known)
-    predictor.calibrate()
-    residual, scored = predictor.residuals([()])[0], predictor.scored
-    return Standing.of(
-        model,
-        residual.reshape(-1, count),
-        scored.reshape(-1, count),
-        predictor.blocks,
-    )
+    hooks: Hooks,
+) -> ReferenceNoise:
+    """The noise that a model leaves in some recordings."""
+
+    def work() -> ReferenceNoise:
+        count = len(channels.names)
+        known = ReferenceNoise.known(model, count)
+        floats = plant.base == "floating"
+        every = [late for one in traces for late in _shifted(one)] if floats else traces
+        predictor = Predictor(
+            plant,
+            every,
+            channels,
+            threads=threads,
+            noise=known,
+            on_replay=hooks.advance,
+        )
+        predictor.calibrate()
+        residual, scored = predictor.residuals([()])[0], predictor.scored
+        return ReferenceNoise.of(
+            model,
+            residual.reshape(-1, count),
+            scored.reshape(-1, count),
+            predictor.blocks,
+        )
+
+    return hooks.saved(work, pack_noise, unpack_noise)
 
 
-def well_of(
+def reference_checks(
     plant: Plant,
     traces: Sequence[Trace],
     channels: Channels,
     threads: int = 1,
+    hooks: Hooks | None = None,
 ) -> list[Predictor]:
-    """What tells a robot on its feet that has changed from one that was always so.
+    """Predictors on reference data, used to reject effects that are not new.
 
-    An effect that would have explained as much of the reference is none that is new.
-    Each half of the reference is judged by what the other one shows: from its own
-    standing difference nothing would be left to explain. With a fixed base such effects
-    are part of the plant already.
+    An effect that would have explained as much of the reference recordings is no
+    change. Each half of the reference is judged with the noise learned from the other
+    half: with its own noise nothing would be left to explain. With a fixed base such
+    effects are part of the nominal model already, and there are no checks.
 
     Args:
-      plant: nominal.
-      traces: the reference.
+      plant: nominal robot model.
+      traces: the reference recordings.
       channels: with their noise.
-      threads: of the replays.
+      threads: threads of the replays.
+      hooks: progress display and checkpoint; none where None.
     """
     if plant.base == "fixed":
         return []
+    hooks = (hooks or Hooks()).within("reference check")
+    hooks.stage("", 2 * REPLAYS)
     halves = _halves(shortened(traces, MOST_S))
-    wells = []
+    checks = []
     for own, other in (halves, halves[::-1]):
-        some = shortened(own, WELL_S / 2, LEAST_FLOATING_S)
-        standing = _learned(plant, other, channels, (), threads)
-        wells.append(
-            Predictor(plant, some, channels, threads=threads, standing=standing)
+        some = shortened(own, CHECK_S / 2, LEAST_FLOATING_S)
+        noise = _learned(plant, other, channels, (), threads, hooks)
+        checks.append(
+            Predictor(
+                plant,
+                some,
+                channels,
+                threads=threads,
+                noise=noise,
+                on_replay=hooks.advance,
+            )
         )
-        wells[-1].calibrate()
-    return wells
+        checks[-1].calibrate()
+    return checks
 
 
 def _halves(traces: Sequence[Trace]) -> tuple[list[Trace], list[Trace]]:
-    """Two parts of some traces, by whole ones if there are several."""
+    """Recordings in two parts; a single one is cut in the middle."""
     if len(traces) > 1:
         return list(traces[::2]), list(traces[1::2])
     (trace,) = traces
@@ -124,13 +158,13 @@ def _halves(traces: Sequence[Trace]) -> tuple[list[Trace], list[Trace]]:
     return [trace.part(0, middle)], [trace.part(middle, trace.ticks)]
 
 
-def said_of(standing: Standing) -> tuple[str, ...]:
-    """What a verdict has to say of it, in plain words."""
-    known = ", ".join(f"{one.name} at {one.place}" for one in standing.model)
+def reference_limit(noise: ReferenceNoise) -> tuple[str, ...]:
+    """The sentence of a verdict's limits that says what is taken as given."""
+    known = ", ".join(f"{one.name} at {one.place}" for one in noise.model)
     given = f" ({known})" if known else ""
     return (
-        f"what the reference recordings show as well{given} is taken as given: only "
-        "what has changed since is looked for",
+        f"differences from the sim that the reference recordings show as well{given} "
+        "are taken as given: only what has changed since is searched for",
     )
 
 
@@ -140,21 +174,27 @@ def _explained(
     channels: Channels,
     rules: Rules | None,
     threads: int,
+    hooks: Hooks,
 ) -> tuple[PlacedEffect, ...]:
-    """The effects that a search finds."""
+    """The effects that a search finds in reference recordings."""
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select
-    whole = Predictor(plant, [*fit, *select], channels, threads=threads)
-    whole.calibrate()
-    search = Search(
-        whole.part(0, len(fit)), whole.part(len(fit), len(fit) + len(select)), rules
+    whole = Predictor(
+        plant,
+        [*fit, *select],
+        channels,
+        threads=threads,
+        on_replay=hooks.advance,
     )
-    winner = search.run().winner
+    whole.calibrate()
+    first, last = len(fit), len(fit) + len(select)
+    judge = Judge(whole.part(0, first), whole.part(first, last), rules, hooks=hooks)
+    winner = Search(judge).run().winner
     return winner.model if winner else ()
 
 
 def _shifted(trace: Trace) -> list[Trace]:
-    """A trace, and the same without its first rows."""
+    """A recording, and the same without its first rows, for `SHIFTS` offsets."""
     rows = FLOATING_WINDOW_S / SHIFTS / trace.tick_s
     firsts = [round(k * rows) for k in range(SHIFTS)]
     return [trace.part(k, trace.ticks) for k in firsts if trace.ticks > 2 * k]

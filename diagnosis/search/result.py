@@ -1,114 +1,59 @@
-"""What a search goes by, and what it comes to."""
+"""The result of a search: fitted models, and how plausible each one is."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from diagnosis.residuals.predictor import Model
-from diagnosis.search.fitting import Fit
-
-
-@dataclass(frozen=True)
-class Rules:
-    """How far the search looks, and when it believes.
-
-    Attributes:
-      singles: effects alone that are fitted ...
-      others: ... of which so many are effects that are not among the best guesses.
-      beam: models that grow further.
-      growths: ways in which each of them grows.
-      pairs: pairs that promise most at first order, which are fitted.
-      first_steps: of a fit, after which most models are given up ...
-      finished: ... but for so many ...
-      far: ... that are behind by no more than this share of what the best explains.
-      rounds: of refinement, as another model may then be the best.
-      compared: models that are compared with the integrator's error of each.
-      swaps: effects that are tried in the stead of each one of the best model.
-      largest: effects in a model.
-      suspicious: times the noise's energy: so much is looked at in pairs, even if no
-        effect alone is of use; below it a search ends ...
-      promising: ... where no guess gains this part of the least gain.
-      least_gain: log-likelihood that an effect must gain on the selection data.
-      least_hint: the same for one that gains much more on the fitting data ...
-      alone: ... unless it gains so many times the least there: then it must not cost
-        that much.
-      least_pattern: and as much as a pattern of this rms [noise] would: below it is
-        what integrators and clocks do wrong.
-      least_share: and this share of the energy above the noise that the best model so
-        far leaves ...
-      unsure_floor: ... as far as that is more than this part of the noise's own.
-      least_of_all: and this share of what the plant alone leaves.
-    """
-
-    singles: int = 12
-    others: int = 4
-    beam: int = 3
-    growths: int = 4
-    pairs: int = 8
-    first_steps: int = 3
-    finished: int = 10
-    far: float = 0.5
-    rounds: int = 4
-    compared: int = 8
-    swaps: int = 6
-    largest: int = 3
-    suspicious: float = 1.5
-    promising: float = 0.5
-    least_gain: float = 15.0
-    least_hint: float = 3.0
-    alone: float = 4.0
-    least_pattern: float = 0.15
-    least_share: float = 0.3
-    unsure_floor: float = 0.1
-    least_of_all: float = 0.0001
+from diagnosis.search.fitting import FittedModel
 
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A fitted model and how well it does on both kinds of data.
+    """A fitted model and how well it explains fitting and selection data.
 
     Attributes:
-      fit: on the fitting data.
-      selected: energy on the selection data: minus the log-likelihood.
-      weight: of the fitting data beside them, where models are compared that may gain
-        something there by chance only: 0 or 1.
+      fit: the model, fitted to the fitting data.
+      selected: energy on the selection data [nats]: minus the log-likelihood.
+      weight: 1 where the fitting data count in comparisons with other models, 0 where
+        gains there may be chance.
     """
 
-    fit: Fit
+    fit: FittedModel
     selected: float
     weight: float = 0.0
 
     @property
     def model(self) -> Model:
-        """The effects."""
+        """The effects with their values."""
         return self.fit.model
 
     @property
     def energy(self) -> float:
-        """On fitting and selection data together."""
+        """Energy on the fitting and the selection data together [nats]."""
         return self.fit.energy + self.selected
 
     @property
     def evidence(self) -> float:
-        """Energy on the data by which it is compared with others."""
+        """Energy on the data that count in comparisons with other models [nats]."""
         return self.energy if self.weight else self.selected
 
     @property
     def keys(self) -> frozenset[str]:
-        """Effects and places, without values."""
+        """Effects and places of the model, without values."""
         return keys_of(self.model)
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
-    """What a search came to.
+class SearchResult:
+    """The best models that a search has found, and how many effects it believes.
 
     Attributes:
-      nothing: energy of the plant alone on the selection data.
-      floor: energy that noise alone would leave there.
-      best: the models of each size that do best, the best first.
-      chosen: how many effects are believed.
-      nothing_fit: as `nothing`, on the fitting data.
-      floor_fit: as `floor`, likewise.
+      nothing: energy of the nominal sim on the selection data [nats].
+      floor: energy that noise alone leaves on the selection data [nats].
+      best: the best models of each number of effects, the best first.
+      chosen: the number of effects that are believed.
+      nothing_fit: energy of the nominal sim on the fitting data [nats].
+      floor_fit: energy that noise alone leaves on the fitting data [nats].
     """
 
     nothing: float
@@ -120,22 +65,22 @@ class Found:
 
     @property
     def winner(self) -> Judged | None:
-        """The model that is believed; None for the plant alone."""
+        """The model that is believed; None for the nominal sim."""
         return self.best[self.chosen][0] if self.chosen else None
 
     def worse(self, judged: Judged) -> float:
-        """Nats by which a model of the chosen size is less plausible than the best."""
+        """How much less plausible than the winner a model of its size is [nats]."""
         assert self.winner is not None
         floor = self.floor + self.winner.weight * self.floor_fit
         scale = scale_of(self.best[self.chosen], floor)
         return plausibility(judged, scale) - plausibility(self.winner, scale)
 
     def closed(self, judged: Judged) -> float:
-        """Share of the energy above the noise that a model takes away.
+        """Share of the nominal sim's energy above the noise that a model removes.
 
-        Of the selection data, or of all: what an effect does may show in the fitting
-        data only, such as a stop that the joint does not reach in the others; and a
-        robot that falls may do so in many ways there.
+        The larger of two shares, that of the selection data and that of all data: an
+        effect such as an end stop may show in the fitting data only, and a robot that
+        falls may fall in many ways there.
         """
         excess, gained = self.nothing - self.floor, self.nothing - judged.selected
         more = self.nothing_fit - self.floor_fit, self.nothing_fit - judged.fit.energy
@@ -144,7 +89,7 @@ class Found:
 
 
 def keys_of(model: Model) -> frozenset[str]:
-    """Effects and places of a model, without values."""
+    """The set of effects and places of a model, without values."""
     return frozenset(placed.key for placed in model)
 
 
@@ -157,20 +102,22 @@ RARE_NATS = {
     "external_force": 3.0,
     "uneven_ground": 10.0,
 }
-"""What is seldom the matter must fit better by so much than what often is. Uneven
-ground lies wherever each sole stood, which are as many values as it was put down."""
+"""Extra log-likelihood [nats] that a rare effect needs (a prior). Uneven ground has a
+value for each footstep, hence its large number."""
 
 VALUE_NATS = 2.0
-"""So must what has more values."""
+"""Penalty for each value of a model [nats]."""
 
 
 def plausibility(judged: Judged, scale: float) -> float:
-    """The evidence's energy, more for what is rare or has many values.
+    """How implausible a model is [nats]: its energy plus penalties.
+
+    Rare effects and additional values are penalised.
 
     Args:
-      judged: a model.
-      scale: energy of the best model over that of the noise, at least 1: where no model
-        is exact, residuals are larger than the noise and tell less.
+      judged: the model.
+      scale: energy of the best model divided by that of the noise, at least 1. Where no
+        model is exact, residuals exceed the noise and differences count less.
     """
     return judged.evidence / scale + sum(
         RARE_NATS.get(placed.name, 0.0) + VALUE_NATS * len(placed.values)
@@ -179,17 +126,22 @@ def plausibility(judged: Judged, scale: float) -> float:
 
 
 def scale_of(judged: Sequence[Judged], floor: float) -> float:
-    """How much larger than the noise's energy that of the best model is."""
+    """Energy of the best model divided by that of the noise, at least 1.
+
+    Args:
+      judged: models.
+      floor: energy that noise alone leaves on the data of their evidence [nats].
+    """
     least = min((one.evidence for one in judged), default=floor)
     return max(least / floor, 1.0) if floor > 0 else 1.0
 
 
 def ranked(judged: Sequence[Judged], floor: float) -> list[Judged]:
-    """The most plausible first.
+    """Models in the order of their plausibility, the most plausible first.
 
     Args:
       judged: models.
-      floor: energy that noise alone would leave of the evidence.
+      floor: energy that noise alone leaves on the data of their evidence [nats].
     """
     scale = scale_of(judged, floor)
     return sorted(judged, key=lambda one: plausibility(one, scale))

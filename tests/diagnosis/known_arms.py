@@ -5,15 +5,15 @@ from joint_rigs import arm_law, integrated, ticks, trace_of
 from made_up_traces import GAINS, arm, arm_command
 
 from diagnosis.residuals.predictor import Channels
-from diagnosis.search.result import Rules
+from diagnosis.search.rules import Rules
 
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
 LEAN = Rules(
-    singles=6,
-    others=2,
+    single_effects=6,
+    further_effects=2,
     beam=1,
-    growths=2,
+    growths_each=2,
     pairs=3,
     finished=3,
     swaps=2,

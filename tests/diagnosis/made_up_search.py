@@ -3,8 +3,8 @@
 import numpy as np
 
 from diagnosis.effects.effect import PlacedEffect
-from diagnosis.search.fitting import Coordinates, Fit
-from diagnosis.search.result import Found, Judged
+from diagnosis.search.fitting import Coordinates, FittedModel
+from diagnosis.search.result import Judged, SearchResult
 
 VALUES = {
     "viscous_friction": (0.1,),
@@ -27,11 +27,11 @@ def judged(plant, selected, *keys):
     model = tuple(placed(key) for key in keys)
     coordinates = Coordinates(plant, model)
     nothing = np.zeros((1, len(coordinates.parameters)))
-    return Judged(Fit(model, np.zeros(1), nothing, coordinates), selected)
+    return Judged(FittedModel(model, np.zeros(1), nothing, coordinates), selected)
 
 
 def found(plant, *models, nothing=1e4, floor=100.0):
     """A search whose models (selected, *keys) are all of the first one's size."""
     every = [judged(plant, *model) for model in models]
     size = len(models[0]) - 1
-    return Found(nothing, floor, {size: every}, size)
+    return SearchResult(nothing, floor, {size: every}, size)

@@ -7,8 +7,8 @@ import pytest
 from made_up_search import found
 from made_up_traces import arm
 
-from diagnosis.conclude.answer import kind_of, sure
-from diagnosis.search.result import Found
+from diagnosis.conclude.answer import verdict_kind, without_unsure
+from diagnosis.search.result import SearchResult
 
 ARM = arm()
 ALL, ELBOW_STILL = frozenset({"shoulder", "elbow"}), frozenset({"shoulder"})
@@ -17,7 +17,7 @@ OPEN = "not_identifiable"
 
 
 def kind(searched, moving=ALL):
-    return kind_of(searched, ARM, SimpleNamespace(moving=moving))
+    return verdict_kind(searched, ARM, SimpleNamespace(moving=moving))
 
 
 @pytest.mark.parametrize(
@@ -37,16 +37,18 @@ def test_an_effect_that_may_as_well_be_another_is_needed_or_left_out(
         (other, "servo_gain@shoulder", "coulomb_friction@elbow"),
     )
     ones = found(ARM, (single, "servo_gain@shoulder"))
-    both = Found(pairs.nothing, pairs.floor, {**ones.best, **pairs.best}, 2)
-    assert sure(both, 15.0).chosen == chosen
+    both = SearchResult(pairs.nothing, pairs.floor, {**ones.best, **pairs.best}, 2)
+    assert without_unsure(both, 15.0).chosen == chosen
     elsewhere = found(ARM, (single, "servo_gain@elbow"))
-    other_one = Found(both.nothing, both.floor, {**elsewhere.best, **pairs.best}, 2)
-    assert sure(other_one, 15.0) is other_one
-    assert sure(ones, 15.0) is ones
+    other_one = SearchResult(
+        both.nothing, both.floor, {**elsewhere.best, **pairs.best}, 2
+    )
+    assert without_unsure(other_one, 15.0) is other_one
+    assert without_unsure(ones, 15.0) is ones
 
 
 def nothing(energy):
-    return Found(energy, 100.0, {}, 0)
+    return SearchResult(energy, 100.0, {}, 0)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from diagnosis.conclude.confidence import (
     confusable,
     probability,
 )
-from diagnosis.search.result import VALUE_NATS, Found
+from diagnosis.search.result import VALUE_NATS, SearchResult
 from diagnosis.verdict.verdict import EffectAt
 
 ARM = arm()
@@ -75,7 +75,7 @@ def test_smaller_models_are_rivals_too():
     """All pairs may hold an effect that one effect alone does nearly without."""
     pairs = found(ARM, (100.0, VISCOUS, GAIN), (150.0, COULOMB, GAIN))
     single = {1: [judged(ARM, 104.0, VISCOUS)]}
-    known = Found(1e4, 100.0, {**single, **pairs.best}, 2)
+    known = SearchResult(1e4, 100.0, {**single, **pairs.best}, 2)
     assert probability(pairs, placed(GAIN)) > 0.97
     assert probability(known, placed(GAIN)) < 0.7
     assert probability(known, placed(VISCOUS)) == probability(pairs, placed(VISCOUS))
@@ -87,5 +87,5 @@ def test_a_gap_counts_less_where_the_best_model_is_wrong():
 
 
 def test_where_nothing_is_believed_there_are_no_others():
-    nothing = Found(102.0, 100.0, {1: []}, 0)
+    nothing = SearchResult(102.0, 100.0, {1: []}, 0)
     assert alternatives(nothing, "none") == ()

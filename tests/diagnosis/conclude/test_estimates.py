@@ -9,7 +9,7 @@ from scipy.stats import binom
 
 from diagnosis.conclude.estimates import Z_80, estimates, standard_errors
 from diagnosis.effects.effect import PlacedEffect
-from diagnosis.search.fitting import Coordinates, Fit
+from diagnosis.search.fitting import Coordinates, FittedModel
 
 BLOCKS, ROWS = 60, 25
 DIAGNOSES = 40
@@ -36,7 +36,7 @@ def toy(seed, common):
     noise += np.sqrt(common) * np.repeat(random.standard_normal(BLOCKS), ROWS)
     x = -np.linalg.lstsq(jacobian, noise, rcond=None)[0]
     model = coordinates.model_at(x)
-    fit = Fit(model, noise + jacobian @ x, jacobian, coordinates)
+    fit = FittedModel(model, noise + jacobian @ x, jacobian, coordinates)
     predictor = SimpleNamespace(block=np.repeat(np.arange(BLOCKS), ROWS), plant=PLANT)
     return predictor, fit, x
 
@@ -85,7 +85,9 @@ def test_what_sims_disagree_by_is_not_known_better():
             PlacedEffect("armature", "elbow", (0.0,)),
         ),
     )
-    exact = Fit(coordinates.model, 0 * fit.residual, 1e6 * fit.jacobian, coordinates)
+    exact = FittedModel(
+        coordinates.model, 0 * fit.residual, 1e6 * fit.jacobian, coordinates
+    )
     viscous, gain, armature = estimates(predictor, exact)
     friction = viscous["coefficient"]
     assert friction.high - 0.3 == pytest.approx(Z_80 * 0.015 * 0.3, rel=1e-3)
@@ -110,6 +112,6 @@ def test_what_the_data_do_not_show_has_no_narrow_interval():
     alike = fit.jacobian[:, [0, 0, 2]]
     known = standard_errors(predictor, fit)
     unknown = standard_errors(
-        predictor, Fit(fit.model, fit.residual, alike, fit.coordinates)
+        predictor, FittedModel(fit.model, fit.residual, alike, fit.coordinates)
     )
     assert unknown[0] > 10 * known[0]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.flexible_regression import ceiling_errors
+from diagnosis.conclude.flexible_regression import flexible_regression_errors
 from diagnosis.residuals.predictor import Channels, Predictor
 
 NOISE_RAD = 4e-4
@@ -58,7 +58,7 @@ def before_and_after(error):
     residual = judge.residuals([()])[0].reshape(-1, 2)
     scored = judge.scored.reshape(-1, 2)
     before = [np.sqrt(np.mean(residual[scored[:, j], j] ** 2)) for j in range(2)]
-    return np.array(before), ceiling_errors(learn, judge, SEED)
+    return np.array(before), flexible_regression_errors(learn, judge, SEED)
 
 
 @pytest.mark.slow
@@ -86,8 +86,8 @@ def test_commands_that_are_missing_and_data_that_are_few():
     gaps = nominal(0).command_rad.copy()
     gaps[60:64] = np.nan
     whole = Predictor(arm(), [replace(nominal(0), command_rad=gaps)], CHANNELS)
-    assert np.isfinite(ceiling_errors(whole, whole, SEED)).all()
+    assert np.isfinite(flexible_regression_errors(whole, whole, SEED)).all()
     few = Predictor(arm(), [nominal(0).part(0, 100)], CHANNELS)
     residual = few.residuals([()])[0].reshape(-1, 2)[few.scored.reshape(-1, 2)[:, 0]]
     wanted = np.sqrt(np.mean(residual**2, axis=0))
-    np.testing.assert_allclose(ceiling_errors(few, few, SEED), wanted)
+    np.testing.assert_allclose(flexible_regression_errors(few, few, SEED), wanted)

@@ -4,8 +4,8 @@ import pytest
 from joint_rigs import ARM, plant_of
 from made_up_traces import recorded
 
-from diagnosis.residuals.channels import channels_of
-from diagnosis.residuals.data_sets import MOST_WRONG, Evidence
+from diagnosis.residuals.channels import shared_channels
+from diagnosis.residuals.data_sets import MOST_WRONG, DataSets
 from diagnosis.residuals.predictor import STEPS_S
 
 
@@ -17,7 +17,7 @@ def test_stiff_joints_take_short_steps(kp, kd, wanted_s):
     traces = [
         recorded(plant, noise_rad=1e-4, seed=seed, duration_s=3.0) for seed in range(4)
     ]
-    data = Evidence.of(plant, traces, channels_of(plant, traces), None, 1)
+    data = DataSets.of(plant, traces, shared_channels(plant, traces), None, 1)
     assert data.learned.step_s == wanted_s
     assert data.test.step_s == wanted_s
     longest = data.learned.stepped(STEPS_S["fixed"][0])

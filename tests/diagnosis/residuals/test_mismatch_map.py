@@ -7,7 +7,7 @@ import pytest
 from joint_rigs import ticks, trace_of
 from made_up_traces import arm
 
-from diagnosis.residuals.mismatch_map import mismatch
+from diagnosis.residuals.mismatch_map import mismatch_map
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.traces.moving_mean import moving_mean
 
@@ -36,7 +36,7 @@ def cells(predictor, of_elbow):
     """Of an error (T,) at the elbow, with noise everywhere."""
     residual = np.random.default_rng(1).standard_normal((len(TIME_S), 2))
     residual[:, 1] += of_elbow
-    return mismatch(predictor, residual.ravel() * predictor.scored)
+    return mismatch_map(predictor, residual.ravel() * predictor.scored)
 
 
 VELOCITY = np.cos(PHASE)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from swinger_rig import moved, swinger
 
-from diagnosis.residuals.reference_noise import WAVES, Block, Standing, blocks_of
+from diagnosis.residuals.reference_noise import WAVES, Block, ReferenceNoise, blocks_of
 from diagnosis.traces.windows import FLOATING_WINDOW_S, runs_of
 from groundwalk.errors import BadRecordingError
 
@@ -30,7 +30,7 @@ def errors(count, seed, quick=(1.0, 1.0, 1.0), size=30.0):
 
 def learned(count=200, **options):
     residual = errors(count, 0, **options)
-    return Standing.of((), residual, np.ones(residual.shape, bool), blocks(count))
+    return ReferenceNoise.of((), residual, np.ones(residual.shape, bool), blocks(count))
 
 
 def whitened(standing, residual, rows=ROWS):
@@ -112,4 +112,4 @@ def test_nothing_can_be_learned_from_a_moment():
     scored = np.ones((5, CHANNELS), bool)
     scrap = [Block(slice(0, 5), np.zeros((5, 0)))]
     with pytest.raises(BadRecordingError, match="too short"):
-        Standing.of((), np.zeros((5, CHANNELS)), scored, scrap)
+        ReferenceNoise.of((), np.zeros((5, CHANNELS)), scored, scrap)

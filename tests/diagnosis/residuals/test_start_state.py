@@ -7,7 +7,7 @@ from made_up_traces import arm, arm_command, recorded
 
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
-from diagnosis.residuals.start_state import StartDoubt
+from diagnosis.residuals.start_state import StartUncertainty
 from diagnosis.traces.windows import Run
 
 NOISE_RAD = 4e-4
@@ -69,21 +69,21 @@ def signatures(rows=40):
 def test_what_looks_like_a_wrong_start_is_taken_out():
     """Of a s a ridge regression with prior variance 1 leaves a s / (1 + s.s)."""
     decay, _ = signatures()
-    doubt = StartDoubt([decay, np.zeros_like(decay)], [len(decay)])
+    doubt = StartUncertainty([decay, np.zeros_like(decay)], [len(decay)])
     left = doubt.without(0.7 * decay[None])[0]
     np.testing.assert_allclose(left, 0.7 * decay / (1 + np.sum(decay**2)))
 
 
 def test_two_wrong_starts_at_once():
     decay, wave = signatures()
-    doubt = StartDoubt([decay, wave], [len(decay)])
+    doubt = StartUncertainty([decay, wave], [len(decay)])
     left = doubt.without((0.5 * decay - 0.8 * wave)[None])[0]
     assert np.abs(left).max() < 0.01 * np.abs(0.5 * decay - 0.8 * wave).max()
 
 
 def test_what_starts_do_not_change_stays():
     decay, wave = signatures()
-    doubt = StartDoubt([decay, wave], [len(decay)])
+    doubt = StartUncertainty([decay, wave], [len(decay)])
     basis, _ = np.linalg.qr(np.hstack([decay, wave]))
     other = np.random.default_rng(0).standard_normal(decay.shape)
     other -= basis @ (basis.T @ other)
@@ -94,7 +94,7 @@ def test_a_start_is_not_wrong_by_any_amount():
     """A signature weaker than the noise explains next to nothing."""
     decay, _ = signatures()
     weak = 1e-3 * decay
-    doubt = StartDoubt([weak, np.zeros_like(weak)], [len(weak)])
+    doubt = StartUncertainty([weak, np.zeros_like(weak)], [len(weak)])
     np.testing.assert_allclose(doubt.without(decay[None])[0], decay, rtol=0.02)
 
 
@@ -104,7 +104,7 @@ def test_runs_and_channels_have_starts_of_their_own():
     # run 0: channel 0 decays, channel 1 waves; run 1: nothing depends on the start
     position = np.vstack([np.hstack([decay, wave]), np.hstack([silent, silent])])
     rows = len(decay)
-    doubt = StartDoubt([position, np.zeros_like(position)], [rows, 2 * rows])
+    doubt = StartUncertainty([position, np.zeros_like(position)], [rows, 2 * rows])
     residual = np.vstack([np.hstack([decay, decay])] * 2)[None]
     left = doubt.without(residual)[0]
     assert np.abs(left[:rows, 0]).max() < 0.01 * decay.max()

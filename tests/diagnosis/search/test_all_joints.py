@@ -7,7 +7,8 @@ from made_up_traces import arm
 from diagnosis.conclude.confidence import probability
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.all_joints import _by_kind, widespread
+from diagnosis.search.all_joints import all_joints, kinds_to_add
+from diagnosis.search.judging import Judge
 from diagnosis.search.screening import Guess
 from diagnosis.search.search import Search
 
@@ -25,7 +26,7 @@ GUESSES = [
 
 
 def test_kinds_are_ranked_by_what_all_their_joints_explain():
-    added = _by_kind(GUESSES, 15.0, ())
+    added = kinds_to_add(GUESSES, 15.0, ())
     assert [[placed.key for placed in model] for model in added] == [
         ["servo_gain@a", "servo_gain@b"],
         ["viscous_friction@a"],
@@ -34,7 +35,7 @@ def test_kinds_are_ranked_by_what_all_their_joints_explain():
 
 def test_what_the_model_has_is_not_added_again():
     model = (PlacedEffect("servo_gain", "b", (0.9,)),)
-    added = _by_kind(GUESSES, 15.0, model)
+    added = kinds_to_add(GUESSES, 15.0, model)
     assert [placed.key for placed in added[0]] == ["viscous_friction@a"]
     assert [placed.key for placed in added[1]] == ["servo_gain@a"]
 
@@ -48,7 +49,7 @@ def test_what_gains_most_for_its_size_is_tried_too():
     ]
     late = guess("command_latency", "commands", 90.0)
     small = [guess("backlash", joint, 20.0) for joint in joints]
-    added = _by_kind([*large, *small, late], 15.0, ())
+    added = kinds_to_add([*large, *small, late], 15.0, ())
     assert [model[0].name for model in added[4:]] == ["command_latency", "backlash"]
 
 
@@ -59,14 +60,14 @@ def searched(**truth):
     )
     fit.calibrate()
     select.calibrate()
-    search = Search(fit, select, replace(LEAN, largest=1))
-    return search, search.run()
+    judge = Judge(fit, select, replace(LEAN, largest=1))
+    return judge, Search(judge).run()
 
 
 @pytest.mark.slow
 def test_what_both_joints_lack_is_found_at_both():
-    search, found = searched(gain=(0.9, 0.8), duration_s=4.0)
-    wide = widespread(search, found)
+    judge, found = searched(gain=(0.9, 0.8), duration_s=4.0)
+    wide = all_joints(judge, found)
     values = {placed.key: placed.values[0] for placed in wide.winner.model}
     assert values == {
         "servo_gain@shoulder": pytest.approx(0.9, abs=0.01),
@@ -82,5 +83,5 @@ def test_what_both_joints_lack_is_found_at_both():
 
 @pytest.mark.slow
 def test_a_single_effect_is_not_spread():
-    search, found = searched(gain=(0.9, 1.0), duration_s=4.0)
-    assert widespread(search, found) is found
+    judge, found = searched(gain=(0.9, 1.0), duration_s=4.0)
+    assert all_joints(judge, found) is found

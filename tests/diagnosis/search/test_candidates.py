@@ -7,13 +7,13 @@ from made_up_traces import arm, recorded
 
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.candidates import LIMITED, WEAKER, Starts
+from diagnosis.search.candidates import LIMITED, WEAKER, Candidates
 
 
 def sizes(limit, effect, first):
     plant = arm(limit=limit)
     fit = Predictor(plant, [recorded(plant, duration_s=1.0)], CHANNELS)
-    tried = Starts(fit, [], LEAN)._sizes(PlacedEffect(effect, "elbow", (first,)))
+    tried = Candidates(fit, [], LEAN)._sizes(PlacedEffect(effect, "elbow", (first,)))
     return [placed.values[0] for placed in tried]
 
 

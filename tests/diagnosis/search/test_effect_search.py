@@ -12,8 +12,10 @@ from made_up_traces import arm, recorded
 
 from diagnosis.conclude.detectable import smallest_detectable
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.result import Found, ranked
+from diagnosis.search.judging import Judge
+from diagnosis.search.result import SearchResult, ranked
 from diagnosis.search.search import Search
+from diagnosis.traces.usage import Usage
 
 PLANT = arm()
 
@@ -23,7 +25,7 @@ def search_of(*traces):
     predictors = [Predictor(PLANT, [trace], CHANNELS, step_s=0.004) for trace in traces]
     for predictor in predictors:
         predictor.calibrate()
-    return Search(*predictors, LEAN)
+    return Search(Judge(*predictors, LEAN))
 
 
 @cache
@@ -70,7 +72,7 @@ def test_two_effects_that_hide_each_other_are_found_together():
 def test_a_servo_that_is_much_too_weak():
     """It drops its arm: it can do far less than the motion should have taken."""
     search, _ = searched()
-    least_nm = 0.6 * float(search.usage.torque_nm[0])
+    least_nm = 0.6 * float(Usage.of(PLANT, search.judge.fit.traces).torque_nm[0])
     _, found = searched(("torque_limit", "shoulder", least_nm))
     (placed,) = found.winner.model
     assert placed.key == "torque_limit@shoulder"
@@ -107,25 +109,14 @@ def test_where_nothing_is_nothing_is_found():
     assert found.best[1]  # it did look
 
 
-@pytest.mark.parametrize(("gained", "chosen"), [(0.5, 0), (2.0, 1)])
-def test_what_was_fitted_must_show_it_too(monkeypatch, gained, chosen):
-    """Of many models some do well on a quarter of the data by chance."""
-    search, _ = searched()
-    nothing = 0.5 * float(np.sum(search.fit.residuals([()])[0] ** 2))
-    kept_aside = search.energies([()])[0]
-
-    def lucky(starts, jacobians=None):
-        one = judged(PLANT, kept_aside - 3 * search.least_gain, "armature@elbow")
-        energy = nothing - gained * search.least_gain
-        fit = replace(one.fit, residual=np.sqrt([2 * energy]))
-        return [replace(one, fit=fit)]
-
-    monkeypatch.setattr(search, "judged", lucky)
-    monkeypatch.setattr(search, "_refined", lambda best: best)
-    starts = SimpleNamespace(swapped=lambda leader: [])
-    monkeypatch.setattr(search, "_starts_from", lambda leader: starts)
-    monkeypatch.setattr(search, "_larger", lambda *_: [])
-    assert search.run().chosen == chosen
+@pytest.mark.parametrize(("gained", "believed"), [(0.5, False), (2.0, True)])
+def test_what_was_fitted_must_show_it_too(gained, believed):
+    """Of many models some fit a quarter of the data well by chance."""
+    judge = searched()[0].judge
+    one = judged(PLANT, judge.nothing - 3 * judge.least_gain, "armature@elbow")
+    energy = judge.nothing_fit - gained * judge.least_gain
+    lucky = replace(one, fit=replace(one.fit, residual=np.sqrt([2 * energy])))
+    assert judge.believes(lucky, judge.nothing, judge.nothing_fit) is believed
 
 
 @pytest.mark.slow
@@ -154,7 +145,9 @@ def test_the_smallest_size_is_just_seen(key, values_of):
     """What is a quarter larger is found and named, half of it is not."""
     search, nothing = searched()
     assert nothing.chosen == 0
-    sizes = smallest_detectable(search.fit, search.signatures, search.least_gain)
+    sizes = smallest_detectable(
+        search.judge.fit, search.signatures, search.judge.least_gain
+    )
     name, place = key.split("@")
     _, found = searched((name, place, values_of(1.25 * sizes[key].value)))
     assert found.chosen == 1
@@ -165,29 +158,33 @@ def test_the_smallest_size_is_just_seen(key, values_of):
 
 def test_what_acts_above_a_threshold_has_no_smallest_size():
     search, _ = searched()
-    sizes = smallest_detectable(search.fit, search.signatures, search.least_gain)
+    sizes = smallest_detectable(
+        search.judge.fit, search.signatures, search.judge.least_gain
+    )
     names = {key.split("@")[0] for key in sizes}
     assert not names & {"torque_limit", "speed_limit", "end_stop", "joint_elasticity"}
     assert {"backlash", "armature", "payload_mass", "encoder_offset"} <= names
     assert sizes["viscous_friction@elbow"].unit == "N m s/rad"
-    more = smallest_detectable(search.fit, search.signatures, 4 * search.least_gain)
+    more = smallest_detectable(
+        search.judge.fit, search.signatures, 4 * search.judge.least_gain
+    )
     for key, size in sizes.items():
         assert more[key].value == pytest.approx(2 * size.value)
 
 
 def test_shares_of_what_is_above_the_noise():
     best = judged(PLANT, 200.0, "armature@elbow")
-    found = Found(1100.0, 100.0, {1: [best]}, 1)
+    found = SearchResult(1100.0, 100.0, {1: [best]}, 1)
     assert found.closed(best) == pytest.approx(0.9)
     assert found.winner is best
-    assert Found(90.0, 100.0, {1: [best]}, 0).closed(best) == 0.0
+    assert SearchResult(90.0, 100.0, {1: [best]}, 0).closed(best) == 0.0
     # an effect that hardly shows in the selection data, and much in the others
-    both = Found(250.0, 100.0, {1: [best]}, 1, nothing_fit=1e4, floor_fit=200.0)
+    both = SearchResult(250.0, 100.0, {1: [best]}, 1, nothing_fit=1e4, floor_fit=200.0)
     assert best.fit.energy == 0
     assert both.closed(best) == pytest.approx((50 + 1e4) / (150 + 9800))
-    here = Found(1100.0, 100.0, {1: [best]}, 1, nothing_fit=1.0, floor_fit=0.0)
+    here = SearchResult(1100.0, 100.0, {1: [best]}, 1, nothing_fit=1.0, floor_fit=0.0)
     assert here.closed(best) == pytest.approx(901 / 1001)
-    assert Found(90.0, 100.0, {1: [best]}, 0).winner is None
+    assert SearchResult(90.0, 100.0, {1: [best]}, 0).winner is None
 
 
 def test_rare_effects_and_more_values_must_fit_better():
@@ -222,17 +219,17 @@ def test_what_was_fitted_is_evidence_of_names_too(weight, first):
     }
     best = ranked([*models.values()], 300.0)
     assert best[0] is models[first]
-    found = Found(400.0, 100.0, {1: best}, 1, nothing_fit=800.0, floor_fit=200.0)
+    found = SearchResult(400.0, 100.0, {1: best}, 1, nothing_fit=800.0, floor_fit=200.0)
     gap = {0.0: 3.0, 1.0: 47.0}[weight]
     assert found.worse(best[1]) == pytest.approx(gap)
 
 
 def test_beside_a_reference_only_the_selection_data_are():
-    search, _ = searched()
+    search = searched()[0].judge
     fit = judged(PLANT, 0.0, "armature@elbow").fit
     (alone,) = search.judge([fit])
     assert alone.weight == 1.0
-    before = Search(search.fit, search.select, LEAN, well=[search.select])
+    before = Judge(search.fit, search.select, LEAN, healthy=[search.select])
     (beside,) = before.judge([fit])
     assert beside.weight == 0.0
     assert beside.evidence == beside.selected
@@ -248,57 +245,60 @@ def test_little_in_the_selection_data_is_enough_if_much_is_fitted():
     search = search_of(*traces)
     found = search.run()
     gained = found.nothing - found.winner.selected
-    assert search.rules.least_hint < gained < search.least_gain
+    assert LEAN.least_hint < gained < search.judge.least_gain
     close = [one.keys for one in found.best[1] if found.worse(one) < 3.0]
     assert {"viscous_friction@elbow"} in close
 
 
 def test_hints_are_of_both_kinds_of_data_and_of_a_fixed_base():
-    search, _ = searched()
-    least = search.least_gain
-    assert search._hints(1.9 * least, 0.3 * least)
-    assert not search._hints(1.9 * least, 0.05 * least)
-    assert not search._hints(1.6 * least, 0.3 * least)
-    assert not search._hints(0.5 * least, 3.0 * least)
-    assert search._hints(5.0 * least, 0.0)  # a stop that is met in one part
-    assert not search._hints(3.0 * least, 0.0)
-    assert not search._hints(5.0 * least, -0.5 * least)
+    judge = searched()[0].judge
+    least = judge.least_gain
+    assert judge.hints(1.9 * least, 0.3 * least)
+    assert not judge.hints(1.9 * least, 0.05 * least)
+    assert not judge.hints(1.6 * least, 0.3 * least)
+    assert not judge.hints(0.5 * least, 3.0 * least)
+    assert judge.hints(5.0 * least, 0.0)  # a stop that is met in one part
+    assert not judge.hints(3.0 * least, 0.0)
+    assert not judge.hints(5.0 * least, -0.5 * least)
     floating = SimpleNamespace(
         fit=SimpleNamespace(plant=SimpleNamespace(base="floating")),
         least_gain=least,
-        rules=search.rules,
-        floor_fit=search.floor_fit,
-        _nothing_fit=search.floor_fit,
+        rules=judge.rules,
+        floor_fit=judge.floor_fit,
+        nothing_fit=judge.floor_fit,
     )
-    assert not Search._hints(floating, 1.9 * least, 0.3 * least)
+    assert not Judge.hints(floating, 1.9 * least, 0.3 * least)
 
 
 def test_what_is_just_believed_is_believed_and_less_is_not():
     """Shown evenly: as much on each kind of data as there is of it."""
-    search, _ = searched()
-    share = search.fit.scored.sum() / search.select.scored.sum()
+    judge = searched()[0].judge
+    share = judge.fit.scored.sum() / judge.select.scored.sum()
     for part, believed in ((1.01, True), (0.99, False)):
-        fitted = part * search.least_fitted
+        fitted = part * judge.least_fitted
         gains = fitted, fitted / share
-        assert (search._hints(*gains) or search._shows(*gains)) is believed
+        assert (judge.hints(*gains) or judge.shows(*gains)) is believed
 
 
 @pytest.mark.parametrize(("left", "chosen"), [(50.0, 3), (1.1, 1)])
 def test_where_much_is_left_two_more_are_tried_together(monkeypatch, left, chosen):
-    """A gap that rattles without its friction explains little alone."""
-    search, _ = searched()
+    """Backlash without the friction that damps it explains little alone."""
+    judge = searched()[0].judge
+    judge = Judge(judge.fit, judge.select, replace(LEAN, largest=3))
     effects = ("armature@elbow", "servo_gain@elbow", "coulomb_friction@elbow")
-    energies = [left * search.floor, 0.9 * left * search.floor, 0.5 * search.floor]
+    energies = [left * judge.floor, 0.9 * left * judge.floor, 0.5 * judge.floor]
     models = []
     for size, energy in enumerate(energies, 1):
         one = judged(PLANT, energy, *effects[:size])
-        fit = replace(one.fit, residual=np.sqrt([100.0 / size**3]))
-        models.append([replace(one, fit=fit)])
-    grown = iter(models)
-    monkeypatch.setattr(search, "energies", lambda asked: [100 * energies[0]])
-    monkeypatch.setattr(search, "judged", lambda starts: next(grown, []))
-    monkeypatch.setattr(search, "_refined", lambda best: best)
-    monkeypatch.setattr(search, "_larger", lambda *_: [])
-    starts = SimpleNamespace(swapped=lambda leader: [])
-    monkeypatch.setattr(search, "_starts_from", lambda leader: starts)
-    assert search.run().chosen == chosen
+        residual = np.zeros(len(judge.residual))
+        residual[0] = np.sqrt(100.0 / size**3)
+        jacobian = np.zeros((len(residual), one.fit.jacobian.shape[1]))
+        fit = replace(one.fit, residual=residual, jacobian=jacobian)
+        models.append(replace(one, fit=fit))
+    judge.nothing = 100 * energies[0]
+
+    def of_the_size(starts, jacobians=None):
+        return [models[len(starts[0]) - 1]] if starts else []
+
+    monkeypatch.setattr(judge, "judged", of_the_size)
+    assert Search(judge).run().chosen == chosen

@@ -5,8 +5,8 @@ from made_up_traces import arm
 
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.all_joints import joint_wise
 from diagnosis.search.fitting import fit_all
-from diagnosis.search.joint_wise import joint_wise
 
 START = tuple(
     PlacedEffect("servo_gain", joint, (1.0,)) for joint in ("shoulder", "elbow")

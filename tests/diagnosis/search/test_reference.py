@@ -11,11 +11,11 @@ from swinger_rig import moved, swinger, with_speeds
 
 from diagnosis.diagnose import diagnose
 from diagnosis.effects.effect import PlacedEffect
-from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.reference_noise import Standing
-from diagnosis.search.reference import standing_of, well_of
-from diagnosis.search.search import Search
+from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.search.judging import Judge
+from diagnosis.search.reference import learn_reference, reference_checks
 from diagnosis.traces.windows import runs_of
 from groundwalk.errors import BadRecordingError
 
@@ -97,14 +97,14 @@ def test_an_unreadable_reference_is_refused():
     backwards = replace(trace, time_s=trace.time_s[::-1].copy())
     plant = swinger()
     with pytest.raises(BadRecordingError, match="reference"):
-        standing_of(plant, [backwards], channels_of(plant, [trace]))
+        learn_reference(plant, [backwards], shared_channels(plant, [trace]))
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_each_half_of_a_reference_is_judged_by_the_other(count):
     plant = swinger()
     traces = [moved(seed, duration_s=1.5) for seed in range(count)]
-    wells = well_of(plant, traces, channels_of(plant, traces))
+    wells = reference_checks(plant, traces, shared_channels(plant, traces))
     first, second = ({t.name.split("[")[0] for t in well.traces} for well in wells)
     assert first | second == {f"swing {seed}" for seed in range(count)}
     assert count == 1 or not first & second
@@ -116,14 +116,14 @@ def test_what_explains_the_reference_too_gains_nothing():
     """A servo that was weak before, found again as weak as it always was."""
     plant = swinger()
     before, after = ([moved(k, gain=(0.8, 1.0), duration_s=1.5)] for k in (0, 5))
-    channels = channels_of(plant, [*before, *after])
-    select = Predictor(plant, after, channels, standing=Standing.known((), 8))
-    well = Predictor(plant, before, channels, standing=Standing.known((), 8))
+    channels = shared_channels(plant, [*before, *after])
+    select = Predictor(plant, after, channels, noise=ReferenceNoise.known((), 8))
+    well = Predictor(plant, before, channels, noise=ReferenceNoise.known((), 8))
     for predictor in (select, well):
         predictor.calibrate()
     model = (PlacedEffect("servo_gain", "left", (0.8,)),)
     plain, wise = (
-        Search(select, select, well=wells).judged([model])[0].selected
+        Judge(select, select, healthy=wells).judged([model])[0].selected
         for wells in ((), (well,))
     )
     nothing = 0.5 * float(np.sum(select.residuals([()]) ** 2))
@@ -133,7 +133,7 @@ def test_what_explains_the_reference_too_gains_nothing():
 
 def test_with_a_fixed_base_effects_are_part_of_the_plant_already():
     plant, traces = arm(), [measured(0)]
-    assert well_of(plant, traces, channels_of(plant, traces)) == []
+    assert reference_checks(plant, traces, shared_channels(plant, traces)) == []
 
 
 def test_no_window_starts_at_the_edge_of_a_recording():

@@ -4,7 +4,7 @@ from pulsed_sled import PULSE_N, PULSES_S, pulse_n, recorded, sled, stepping
 
 from diagnosis.effects.variants import Variants
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.channels import shared_channels
 from diagnosis.traces.pulses import pulses_of, without_pulses
 from diagnosis.traces.windows import Run
 
@@ -80,7 +80,7 @@ def test_what_a_sensor_made_up_is_missing(place, missing):
 
 def test_torques_are_trusted_as_far_as_motors_are_known():
     trace = recorded()
-    noise = channels_of(sled(), [trace]).noise[1]
+    noise = shared_channels(sled(), [trace]).noise[1]
     # the sensor's own noise is 0.02 N
     assert noise == pytest.approx(0.02 * np.sqrt(np.mean(trace.torque_nm**2)))
 

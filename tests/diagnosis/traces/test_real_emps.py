@@ -6,7 +6,7 @@ import pytest
 
 from diagnosis.conclude.estimates import estimates
 from diagnosis.effects.effect import PlacedEffect
-from diagnosis.residuals.channels import channels_of
+from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.traces.pulses import pulses_of
@@ -50,7 +50,7 @@ def test_friction_is_what_was_published():
     )
     parts = split([driven_by_torques(trace) for trace in traces])
     learned = [*parts.fit, *parts.select]
-    predictor = Predictor(plant, learned, channels_of(plant, learned))
+    predictor = Predictor(plant, learned, shared_channels(plant, learned))
     predictor.calibrate()
     (fitted,) = fit_all(predictor, [FRICTION])
     coulomb, viscous, spring = estimates(predictor, fitted)

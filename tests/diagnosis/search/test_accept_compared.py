@@ -7,9 +7,9 @@ from made_up_traces import arm, recorded
 
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.compared import CLOSE_NATS, compared, crossed
-from diagnosis.search.result import Found, keys_of
-from diagnosis.search.search import Search
+from diagnosis.search.accept import CLOSE_NATS, compared_exactly, recombined
+from diagnosis.search.judging import Judge
+from diagnosis.search.result import SearchResult, keys_of
 
 ARM = arm()
 NOISE_RAD = 4e-5
@@ -39,11 +39,13 @@ def test_what_is_the_same_physics_does_as_well():
     ]
     for part in (fit, select):
         part.calibrate(models[0])
-    search = Search(fit, select, LEAN)
-    before = search.judged(models)
+    judge = Judge(fit, select, LEAN)
+    before = judge.judged(models)
     # unfair: the error of the one's steps is taken out of both
     assert selected(before)[OIL] > selected(before)[DRAG] + 20
-    after = compared(search, Found(1e6, search.floor, {1: before}, 1)).best[1]
+    after = compared_exactly(
+        judge, SearchResult(1e6, judge.floor, {1: before}, 1)
+    ).best[1]
     assert abs(selected(after)[OIL] - selected(after)[DRAG]) < 3
     assert after[0].keys == {OIL}  # as friction is what is there more often
 
@@ -56,7 +58,7 @@ def test_parts_of_two_answers_may_make_a_third():
         (close, "servo_gain@elbow", "viscous_friction@elbow"),
         (far, "armature@elbow", "viscous_friction@shoulder"),
     )
-    keys = {keys_of(model) for model in crossed(both)}
+    keys = {keys_of(model) for model in recombined(both)}
     assert frozenset({"servo_gain@shoulder", "viscous_friction@elbow"}) in keys
     assert both.winner.keys not in keys
     assert not any("armature@elbow" in own for own in keys)
@@ -64,5 +66,5 @@ def test_parts_of_two_answers_may_make_a_third():
 
 
 def test_nothing_is_compared_where_nothing_was_found():
-    nothing = Found(102.0, 100.0, {1: []}, 0)
-    assert compared(None, nothing) is nothing
+    nothing = SearchResult(102.0, 100.0, {1: []}, 0)
+    assert compared_exactly(None, nothing) is nothing

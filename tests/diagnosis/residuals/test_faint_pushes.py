@@ -5,8 +5,7 @@ import pytest
 from made_up_residuals import CHANNELS, noise, pushed, two_traces
 from made_up_traces import arm, recorded
 
-from diagnosis.residuals.bursts import bursts, push_intervals
-from diagnosis.residuals.leanings import WINDOWS_S, leanings
+from diagnosis.residuals.bursts import WINDOWS_S, bursts, faint_pushes, push_intervals
 from diagnosis.residuals.predictor import Predictor
 
 
@@ -19,7 +18,7 @@ def predictor():
 def test_a_faint_push_is_found_where_it_is(predictor, window_s):
     rows = window_s / predictor.traces[1].tick_s
     faint = pushed(predictor, 7.0, 7.0 + window_s, 9.0 / np.sqrt(rows))
-    (start_s, end_s), *_ = leanings(predictor, faint)
+    (start_s, end_s), *_ = faint_pushes(predictor, faint)
     assert start_s == pytest.approx(7.0, abs=0.5 * window_s)
     assert end_s == pytest.approx(7.0 + window_s, abs=0.5 * window_s)
 
@@ -34,11 +33,13 @@ def test_energies_do_not_tell_it_but_its_length_is_tried(predictor):
 
 
 def test_noise_leans_nowhere(predictor):
-    assert not any(leanings(predictor, noise(predictor, seed)) for seed in range(100))
+    assert not any(
+        faint_pushes(predictor, noise(predictor, seed)) for seed in range(100)
+    )
 
 
 def test_what_leans_all_the_time_leans_at_no_time(predictor):
-    assert leanings(predictor, noise(predictor) + 2.0 * predictor.scored) == []
+    assert faint_pushes(predictor, noise(predictor) + 2.0 * predictor.scored) == []
 
 
 def test_only_windows_that_fit_in_are_looked_at():
@@ -47,6 +48,6 @@ def test_only_windows_that_fit_in_are_looked_at():
     short = Predictor(arm(), [trace], CHANNELS)
     leaning = (trace.time_s >= 0.1) & (trace.time_s < 0.15)
     residual = np.column_stack([np.zeros(trace.ticks), 9.0 * leaning]).reshape(-1)
-    ((start_s, end_s),) = leanings(short, residual)
+    ((start_s, end_s),) = faint_pushes(short, residual)
     assert start_s <= 0.11
     assert end_s - start_s == pytest.approx(0.1, abs=2 * trace.tick_s)

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.search.proven import proven
-from diagnosis.search.result import Found
+from diagnosis.search.accept import without_old_effects
+from diagnosis.search.result import SearchResult
 
 FIRST, SECOND = ("first",), ("first", "second")
 
@@ -32,8 +32,8 @@ class Known:
 
 def chosen(now, before, size=1, fit=None):
     best = {1: [SimpleNamespace(model=FIRST)], 2: [SimpleNamespace(model=SECOND)]}
-    search = SimpleNamespace(fit=fit or now, select=now, well=before)
-    return proven(search, Found(0.0, 0.0, best, size)).chosen
+    judge = SimpleNamespace(fit=fit or now, select=now, healthy=before)
+    return without_old_effects(judge, SearchResult(0.0, 0.0, best, size)).chosen
 
 
 STEADY, WILD = [20, 25, 18, 22, 24, 19, 21, 23], [150, -20, 3, -15, 5, -10, 8, 2]

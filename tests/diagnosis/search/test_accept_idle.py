@@ -3,8 +3,8 @@ from types import SimpleNamespace
 import pytest
 
 from diagnosis.effects.effect import PlacedEffect
-from diagnosis.search.result import Found, Judged
-from diagnosis.search.simpler import needed, simpler
+from diagnosis.search.accept import without_idle_effects, without_idle_values
+from diagnosis.search.result import Judged, SearchResult
 
 PEAKED = PlacedEffect("stribeck_friction", "elbow", (1.0, 4.0, 0.1))
 DRY = PlacedEffect("coulomb_friction", "elbow", (3.0,))
@@ -15,10 +15,10 @@ OIL = PlacedEffect("viscous_friction", "elbow", (2.0,))
 def as_they_are(monkeypatch):
     """What is judged is judged fairly already."""
 
-    def fairly(search, models):
+    def exactly(search, models):
         return [judged(model, search.selected) for model in models]
 
-    monkeypatch.setattr("diagnosis.search.simpler.fairly", fairly)
+    monkeypatch.setattr("diagnosis.search.accept.fitted_exactly", exactly)
 
 
 def judged(model, selected):
@@ -41,14 +41,14 @@ def search(selected, least):
 
 def found(*models):
     best = [judged(model, 100.0 + k) for k, model in enumerate(models)]
-    return Found(1000.0, 50.0, {len(models[0]): best}, len(models[0]))
+    return SearchResult(1000.0, 50.0, {len(models[0]): best}, len(models[0]))
 
 
 @pytest.mark.parametrize(("selected", "is_simple"), [(105.0, True), (140.0, False)])
 def test_a_peak_must_be_worth_its_values(selected, is_simple):
     before = found((PEAKED, OIL), (DRY, OIL))
     some = search(selected, least=20.0)
-    after = simpler(some, before)
+    after = without_idle_values(some, before)
     assert some.asked == [(DRY, OIL)]
     if not is_simple:
         assert after is before
@@ -61,10 +61,10 @@ def test_a_peak_must_be_worth_its_values(selected, is_simple):
     ]
 
 
-@pytest.mark.parametrize("before", [found((DRY, OIL)), Found(9.0, 5.0, {}, 0)])
+@pytest.mark.parametrize("before", [found((DRY, OIL)), SearchResult(9.0, 5.0, {}, 0)])
 def test_what_has_no_peak_is_not_fitted_again(before):
     some = search(1.0, least=20.0)
-    assert simpler(some, before) is before
+    assert without_idle_values(some, before) is before
     assert some.asked == []
 
 
@@ -87,11 +87,11 @@ def test_an_effect_without_which_the_rest_does_as_well_is_left_out(
     """Dry friction stood for a drag at the wrong place; the drag has moved since."""
     energies = {"coulomb_friction": 900.0, "viscous_friction": alone}
     monkeypatch.setattr(
-        "diagnosis.search.simpler.fairly",
+        "diagnosis.search.accept.fitted_exactly",
         lambda search, models: [judged(m, energies[m[0].name]) for m in models],
     )
     before = found((DRY, OIL))
-    after = needed(leaving_out(energies), before)
+    after = without_idle_effects(leaving_out(energies), before)
     assert after.chosen == chosen
     if chosen == 1:
         assert after.winner.model == (OIL,)
@@ -101,4 +101,4 @@ def test_an_effect_without_which_the_rest_does_as_well_is_left_out(
 
 def test_one_effect_alone_is_needed():
     alone = found((DRY,))
-    assert needed(search(100.0, least=1e9), alone) is alone
+    assert without_idle_effects(search(100.0, least=1e9), alone) is alone

@@ -1,0 +1,88 @@
+"""Recordings ready for a diagnosis: audited, without stalls, with pulses found."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from diagnosis.audit.audit import audit
+from diagnosis.audit.result import Audit
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import Channels, shared_channels
+from diagnosis.traces.pulses import pulses_of, without_pulses
+from diagnosis.traces.stalls import said_of_stalls, steady
+from diagnosis.traces.torque_drive import DriveBy, driven_by_torques
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict.verdict import Pulse
+from groundwalk.errors import BadRecordingError
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Recordings that are ready for a diagnosis.
+
+    Attributes:
+      plant: nominal robot model.
+      audited: what the audit of the recordings found.
+      traces: recordings without stalls, with their pulses accounted for.
+      reference: recordings of the healthy robot, prepared in the same way.
+      channels: the channels that all of them measured.
+      pulses: pulses found in `traces`.
+      limits: sentences about stalls that were removed from `traces`.
+    """
+
+    plant: Plant
+    audited: Audit
+    traces: tuple[Trace, ...]
+    reference: tuple[Trace, ...]
+    channels: Channels
+    pulses: tuple[Pulse, ...]
+    limits: tuple[str, ...]
+
+    @classmethod
+    def of(
+        cls,
+        plant: Plant,
+        traces: Sequence[Trace],
+        reference: Sequence[Trace],
+        drive: DriveBy,
+    ) -> "Material":
+        """Audit and prepare recordings.
+
+        Args:
+          plant: nominal robot model.
+          traces: recordings of the robot.
+          reference: recordings of the healthy robot; may be empty.
+          drive: what moves the joints in replays where commands and torques are known.
+
+        Raises:
+          BadRecordingError: the audit refuses a recording in `traces`.
+        """
+        audited = audit(traces, plant)
+        if audited.refused:
+            raise BadRecordingError(audited.refused[0])
+        ready, pulses = _prepared(plant, traces, drive)
+        before, _ = _prepared(plant, reference, drive)
+        return cls(
+            plant,
+            audited,
+            traces=ready,
+            reference=before,
+            channels=shared_channels(plant, [*ready, *before]),
+            pulses=pulses,
+            limits=tuple(text for trace in traces for text in said_of_stalls(trace)),
+        )
+
+
+def _prepared(
+    plant: Plant, traces: Sequence[Trace], drive: DriveBy
+) -> tuple[tuple[Trace, ...], tuple[Pulse, ...]]:
+    """Remove stalls, account for pulses and choose what drives the joints."""
+    ready = [steady(trace) for trace in traces]
+    pulses = [pulses_of(plant, trace) for trace in ready]
+    ready = [
+        without_pulses(plant, trace, own)
+        for trace, own in zip(ready, pulses, strict=True)
+    ]
+    if drive == "torques":
+        ready = [driven_by_torques(trace) for trace in ready]
+    return tuple(ready), tuple(itertools.chain(*pulses))

@@ -1,0 +1,230 @@
+"""The acceptance tests after a search: which of its effects are reported.
+
+`accepted` applies three tests in this order. The best models are compared again, each
+with its own integration error. Values and effects that the winner does not need are
+removed. With reference recordings of a floating base, effects that would have improved
+the fit there as much are removed, too: they are not new.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.effects.effect import PlacedEffect
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import fit_all
+from diagnosis.search.judging import Judge
+from diagnosis.search.result import Judged, SearchResult, keys_of
+from groundwalk.arrays import FloatArray
+
+CLOSE_NATS = 100.0
+"""Models within this distance of the best one [nats] lend it their effects: each may
+contain a part of the truth. Generous, since trying a few more models is cheap."""
+
+REPLAYS_EACH = 60
+"""Rough number of replays in all acceptance tests for each model compared. An exact
+replay counts as six."""
+
+SURE = 3.0
+"""Standard errors by which the gain of an effect on the new recordings must exceed its
+gain on the reference recordings."""
+
+
+def accepted(judge: Judge, result: SearchResult) -> SearchResult:
+    """The result of a search after all three acceptance tests.
+
+    Args:
+      judge: of the search that has run.
+      result: what its `run` returned.
+    """
+    judge.hooks.stage("comparison", REPLAYS_EACH * judge.rules.compared)
+    result = compared_exactly(judge, result)
+    result = without_idle_effects(judge, without_idle_values(judge, result))
+    return without_old_effects(judge, result)
+
+
+def compared_exactly(judge: Judge, result: SearchResult) -> SearchResult:
+    """Rank the best models again, each with its own integration error.
+
+    During the search all models share the integration error of the model that was best
+    at that time, which distorts the values of the others. Models that come close may
+    each contain a part of the answer. Therefore their effects are also tried in place
+    of those of the best model.
+
+    Args:
+      judge: of the search that has run.
+      result: what its `run` returned.
+    """
+    if result.winner is None:
+        return result
+    close = result.best[result.chosen][: judge.rules.compared]
+    others = result.best[result.chosen][len(close) :]
+    again = fitted_exactly(
+        judge, [one.model for one in close], [one.fit.jacobian for one in close]
+    )
+    best = replace(
+        result, best={**result.best, result.chosen: judge.ranked([*again, *others])}
+    )
+    more = fitted_exactly(judge, recombined(best)[: judge.rules.compared])
+    every = judge.ranked([*best.best[result.chosen], *more])
+    return replace(result, best={**result.best, result.chosen: every})
+
+
+def fitted_exactly(
+    judge: Judge,
+    models: Sequence[Model],
+    jacobians: Sequence[FloatArray | None] | None = None,
+) -> list[Judged]:
+    """Fit and judge models with the integration error of each one taken out exactly.
+
+    Args:
+      judge: of the search that has run.
+      models: their values are already close to the best ones.
+      jacobians: (N, p) of each model at these values; None where it is not known.
+    """
+    if not models:
+        return []
+
+    def work() -> list[Judged]:
+        fits = fit_all(
+            judge.fit,
+            models,
+            judge.rules.first_steps,
+            followed=True,
+            jacobians=jacobians,
+            exactly=True,
+        )
+        return judge.judge(fits, exactly=True)
+
+    return judge.saved(work)
+
+
+def recombined(result: SearchResult) -> list[Model]:
+    """Variants of the best model with one effect replaced by one of a close model."""
+    winner, every = result.winner, result.best[result.chosen]
+    assert winner is not None
+    others: dict[str, PlacedEffect] = {
+        placed.key: placed
+        for one in reversed(every)
+        if result.worse(one) <= CLOSE_NATS
+        for placed in one.model
+    }
+    known = {one.keys for one in every if result.worse(one) <= CLOSE_NATS}
+    models: dict[frozenset[str], Model] = {}
+    for old in winner.model:
+        for other in others.values():
+            model = tuple(other if one is old else one for one in winner.model)
+            keys = keys_of(model)
+            if len(keys) == len(model) and keys not in known:
+                models.setdefault(keys, model)
+    return list(models.values())
+
+
+def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
+    """Replace an effect by a simpler form where its extra values improve too little.
+
+    Dry friction with a Stribeck peak fits slightly better than dry friction alone
+    whatever the truth, because the peak can take any shape. The peak is kept only if it
+    improves the fit as much as one more effect must.
+
+    Args:
+      judge: of the search that has run.
+      result: its result.
+    """
+    winner = result.winner
+    if winner is None:
+        return result
+    start = tuple(_without_peak(placed) for placed in winner.model)
+    if start == winner.model:
+        return result
+    (judged,) = fitted_exactly(judge, [judge.judged([start])[0].model])
+    if judge.worth(judged.selected, winner.selected, result.nothing):
+        return result
+    others = [one for one in result.best[result.chosen] if one.keys != judged.keys]
+    best = {**result.best, result.chosen: [judged, *others]}
+    return replace(result, best=best)
+
+
+def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
+    """Remove effects without which the remaining ones fit as well.
+
+    While models grow, an effect may compensate for an error in another one. It becomes
+    superfluous once that one has its right place and size.
+
+    Args:
+      judge: of the search that has run.
+      result: its result.
+    """
+    while result.winner is not None and result.chosen > 1:
+        winner = result.winner
+        smaller = [
+            tuple(one for one in winner.model if one is not placed)
+            for placed in winner.model
+        ]
+        kept = [judged.model for judged in judge.judged(smaller)]
+        best = min(fitted_exactly(judge, kept), key=lambda judged: judged.evidence)
+        if judge.worth(best.selected, winner.selected, result.nothing):
+            break
+        size = result.chosen - 1
+        others = [one for one in result.best.get(size, []) if one.keys != best.keys]
+        sizes = {**result.best, size: [best, *others]}
+        result = replace(result, chosen=size, best=sizes)
+    return result
+
+
+def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
+    """Remove effects that may already have been present in the reference recordings.
+
+    The model of a walking robot is wrong in a different way at each step. An effect
+    that fits some of these errors by chance gains much at some moments, loses at
+    others, and would have gained on the reference recordings, too. A true change gains
+    at most moments, and much more than it would have gained before.
+
+    Args:
+      judge: of the search that has run. If it has no reference predictors, nothing is
+        removed.
+      result: its result.
+    """
+    chosen = result.chosen
+    while judge.healthy and chosen:
+        less = result.best[chosen - 1][0].model if chosen > 1 else ()
+        if _is_new(judge, less, result.best[chosen][0].model):
+            break
+        chosen -= 1
+    return replace(result, chosen=chosen)
+
+
+def _is_new(judge: Judge, less: Model, more: Model) -> bool:
+    """Whether a model improves on a smaller one more than it would have before."""
+    # fitting and selection data together: a few seconds each are too few blocks
+    now = np.concatenate(
+        [_gains(part, less, more) for part in (judge.fit, judge.select)]
+    )
+    before = np.concatenate([_gains(one, less, more) for one in judge.healthy])
+    usual = max(float(before.mean()), 0.0)
+    variance = now.var() / len(now) + before.var() / len(before)
+    return bool(now.mean() - usual > SURE * np.sqrt(variance))
+
+
+def _gains(predictor: Predictor, less: Model, more: Model) -> FloatArray:
+    """(blocks,) signed square roots of the log-likelihood gained in each time block.
+
+    The root reduces the weight of single moments, such as a squat, at which an effect
+    shows far more than at others.
+    """
+    residuals = predictor.residuals([less, more])
+    gains = 0.5 * (residuals[0] ** 2 - residuals[1] ** 2)
+    every = np.bincount(predictor.block, gains)
+    return np.asarray(np.sign(every) * np.sqrt(2 * np.abs(every)))
+
+
+def _without_peak(placed: PlacedEffect) -> PlacedEffect:
+    """Stribeck friction as dry friction of the mean of its values at rest and moving.
+
+    Other effects are returned unchanged.
+    """
+    if placed.name != "stribeck_friction":
+        return placed
+    coulomb_nm, extra_nm, _ = placed.values
+    return PlacedEffect("coulomb_friction", placed.place, (coulomb_nm + extra_nm / 2,))

@@ -1,0 +1,135 @@
+"""How a long diagnosis reports its progress and stores results for a later resume.
+
+Both are optional. Whoever wants a progress display passes a `Progress`; whoever wants
+to resume after an interruption passes a `Checkpoint`.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol, TypeVar
+
+from groundwalk.arrays import FloatArray
+
+Result = TypeVar("Result")
+
+
+class Progress(Protocol):
+    """Receives reports from a running diagnosis.
+
+    Example:
+      >>> class Printed:
+      ...     def cost(self, seconds): print(f"about {seconds:.0f} s")
+      ...     def stage(self, name, replays): print(name)
+      ...     def advance(self, replays): pass
+      >>> diagnose(plant, traces, seed, hooks=Hooks(progress=Printed()))
+    """
+
+    def cost(self, seconds: float) -> None:
+        """Called once, before the first long stage.
+
+        Args:
+          seconds: estimated duration of the whole diagnosis.
+        """
+
+    def stage(self, name: str, replays: int) -> None:
+        """Called when a stage begins.
+
+        Args:
+          name: for example "search round 2".
+          replays: rough number of replays in this stage.
+        """
+
+    def advance(self, replays: int) -> None:
+        """Called after each batch of replays.
+
+        Args:
+          replays: number of replays in the batch.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class Saved:
+    """A result in a form that files can hold without pickle.
+
+    Attributes:
+      plain: values that JSON can hold.
+      arrays: arrays of any shape, by name.
+    """
+
+    plain: Any
+    arrays: Mapping[str, FloatArray] = field(default_factory=dict)
+
+
+class Checkpoint(Protocol):
+    """Stores the results of long stages, so that a diagnosis can be resumed."""
+
+    def load(self, key: str) -> Saved | None:
+        """The result that was saved under a key; None if there is none."""
+
+    def save(self, key: str, saved: Saved) -> None:
+        """Store a result under a key, a short name that suits a file."""
+
+
+class Hooks:
+    """The progress display and the checkpoint of one diagnosis.
+
+    Example:
+      >>> diagnose(plant, traces, seed, hooks=Hooks(checkpoint=my_store))
+    """
+
+    def __init__(
+        self,
+        progress: Progress | None = None,
+        checkpoint: Checkpoint | None = None,
+        part: str = "",
+    ) -> None:
+        """Connect a diagnosis with its caller.
+
+        Args:
+          progress: receives reports; None for no reports.
+          checkpoint: stores results; None to store nothing.
+          part: name of a part of the diagnosis, which precedes its stages and keys.
+        """
+        self.progress, self._checkpoint, self._part = progress, checkpoint, part
+        self._saved = 0
+
+    def within(self, part: str) -> "Hooks":
+        """The same hooks for a named part of the diagnosis, such as "reference"."""
+        return Hooks(self.progress, self._checkpoint, part)
+
+    def stage(self, name: str, replays: int) -> None:
+        """Report that a stage begins; see `Progress.stage`."""
+        if self.progress is not None:
+            self.progress.stage(f"{self._part} {name}".strip(), replays)
+
+    def advance(self, replays: int) -> None:
+        """Report that replays are done."""
+        if self.progress is not None:
+            self.progress.advance(replays)
+
+    def saved(
+        self,
+        work: Callable[[], Result],
+        pack: Callable[[Result], Saved],
+        unpack: Callable[[Saved], Result],
+    ) -> Result:
+        """The result of some work, from the checkpoint if an earlier run stored it.
+
+        Results are numbered in the order of the calls. A diagnosis is deterministic, so
+        a resumed one makes the same calls in the same order.
+
+        Args:
+          work: computes the result.
+          pack: makes a result storable.
+          unpack: is the inverse of `pack`.
+        """
+        if self._checkpoint is None:
+            return work()
+        key = f"{self._part or 'search'}-{self._saved:03d}"
+        self._saved += 1
+        stored = self._checkpoint.load(key)
+        if stored is not None:
+            return unpack(stored)
+        result = work()
+        self._checkpoint.save(key, pack(result))
+        return result
