@@ -10,9 +10,9 @@ import numpy as np
 import robots
 from experiments.command_line import run_verb
 from experiments.humanoid_study.facts import reach, saturation, sole
-from experiments.humanoid_study.figure import draw_humanoids
 from experiments.humanoid_study.page import (
     PICTURE,
+    draw_humanoids,
     folder_name,
     robot_rows,
     write_humanoids_page,
@@ -29,9 +29,8 @@ from experiments.runs.folder import (
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run
 from experiments.walking.evaluation import Study, evaluate, keep
-from experiments.walking.reward import reward_cm_s
 from experiments.walking.search import check_search
-from experiments.walking.trials import TrialRules, walk_trials
+from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from experiments.walking.tuning import Budget, tune
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError

@@ -1,5 +1,6 @@
 """The robots that there are: by name, or from files."""
 
+import dataclasses
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -42,7 +43,9 @@ def get(name: str) -> Description:
         return adapted(name, Adaptation(urdf=path.name), path.parent)
     if "urdf" in _keys(path):
         return adapted(name, read_adaptation(path), path.parent)
-    return read_description(path)
+    description = read_description(path)
+    own = path.parent != _FOLDER
+    return dataclasses.replace(description, name=name) if own else description
 
 
 def _keys(path: Path) -> set[str]:

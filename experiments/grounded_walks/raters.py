@@ -12,8 +12,7 @@ from experiments.grounded_walks.courses import RealCourse
 from experiments.grounded_walks.data import ON_COURSE
 from experiments.grounded_walks.sim import ROBOT, GroundedSim, walk_in_sim
 from experiments.walking.evaluation import MOST_AT_ONCE
-from experiments.walking.reward import reward_cm_s
-from experiments.walking.trials import TrialRules, Trials, walk_trials
+from experiments.walking.trials import TrialRules, Trials, reward_cm_s, walk_trials
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield
 from worlds import WorldOptions

@@ -1,17 +1,26 @@
-"""The page of `groundwalk humanoids`: which robots walk, which do not, and why."""
+"""Page and picture of `groundwalk humanoids`: which robots walk, why others fall."""
 
 import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from experiments.reports.figure_file import write_figure
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
+from experiments.seeing.scenes import make_scenes
+from experiments.seeing.walk_figure import walk_figure
+from experiments.seeing.walk_strip import walk_strip
+from worlds import Recording
 
 TITLE = "Which other humanoids walk 5 s after a short search?"
 PICTURE = "humanoids.png"
+PANELS_IN_A_ROW = 3
+DOTS_PER_INCH = 80
+"""With this resolution three panels are as wide as a page of text can show."""
+
 COLUMNS = [
     "robot", "mass [kg]", "size", "speed [cm/s]", "falls", "fall rate, 95 % interval",
     "untuned", "real: falls", "real: untuned", "sole", "sole off by",
@@ -21,23 +30,26 @@ NOTES = (
     "Size is the height of the hips in units of the NAO's. Speed is the mean over the "
     "walks on flat ground in the sim, from start poses whose joints spread by "
     "0.01 rad; falls and their rate are of those walks, with Wilson's interval. "
-    "Untuned are the falls of the gait that the search starts from, in the same walks. "
-    "The same in the real world, with the NAO's latency, sensor noise and lumps: the "
-    "searches know nothing of these.",
-    "Sole is its length and width as parts of the NAO's, enlarged to the robot's size. "
-    "Sole off by tells how far the joints' ranges keep the tuned gait's soles from "
-    "where they shall be, and from level. The busiest motor is the one that gives all "
-    "it can for the largest part of the first walk.",
+    "Untuned: falls, in the same walks, of the gait that the search starts from. "
+    "Real: falls in the real world, with the NAO's latency, sensor noise and lumps, "
+    "which the searches do not know.",
+    "Sole: its length and width in units of the NAO's, scaled to the robot's size. "
+    "Sole off by: how far the joints' ranges keep the tuned gait's soles from their "
+    "place, and from level. The busiest motor is the one that is at its limit for the "
+    "largest share of the first walk.",
     "No robot has parameters of its own. Legs, soles, motors and sizes follow from "
-    "each file; `simple_humanoid` alone has no feet and joint ranges that no leg can "
-    "have. Its sole and its ranges are written down in `robots/simple_humanoid.toml`; "
+    "each file. Only the file of `simple_humanoid` has no feet, and joint ranges that "
+    "no leg can have: its sole and its ranges are in `robots/simple_humanoid.toml`. "
     "`simple_humanoid_as_is` has the same sole and the ranges of the file.",
 )
 _FAR_M, _TILTED_RAD, _OFTEN = 0.02, math.radians(10), 0.5
-"""What is said to be a cause of falls. Romeo walks with soles that are 7 degrees from
-level at times, and with a motor that gives all it can for 45 % of the time."""
+"""Beyond these limits a measure is named as a cause of falls: a foot's distance from
+its place [m], the tilt of a sole [rad], the share of time at which a motor is at its
+limit. They lie above the values at which a robot still walks: Romeo's soles tilt by up
+to 7 degrees, and one of its motors is at its limit for 45 % of the time."""
 
 Result = Mapping[str, Mapping[str, Any]]
+"""Measures of each robot, by its name, as `result.json` has them."""
 
 
 def write_humanoids_page(folder: RunFolder, result: Result) -> None:
@@ -45,7 +57,7 @@ def write_humanoids_page(folder: RunFolder, result: Result) -> None:
 
     Args:
       folder: the run, with a folder for each robot.
-      result: what each robot came to, by its name.
+      result: measures of each robot, by its name.
     """
     columns, rows = robot_rows(result)
     body = [*markdown_table(columns, rows), ""]
@@ -55,18 +67,34 @@ def write_humanoids_page(folder: RunFolder, result: Result) -> None:
     Report(TITLE, list(answer(result)), body, Origin.of_run(folder)).write(folder.path)
 
 
+def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
+    """Draw a walk of each robot into a PNG file, three side by side.
+
+    Args:
+      recordings: by the name of the robot.
+      path: the file.
+    """
+    strips = [walk_strip(scene) for scene in make_scenes(recordings)]
+    places = [divmod(i, PANELS_IN_A_ROW) for i in range(len(strips))]
+    placed = {
+        f"{column}/{row}": strip
+        for (row, column), strip in zip(places, strips, strict=True)
+    }
+    write_figure(walk_figure(placed, DOTS_PER_INCH), path)
+
+
 def folder_name(robot: str) -> str:
-    """The name of a robot's folder in the run's: a file's own name without its end."""
+    """Name of a robot's folder in the run: its own name, or its file's without end."""
     return Path(robot).stem if "." in robot else robot
 
 
 def robot_rows(result: Result) -> tuple[list[str], list[list[str]]]:
-    """Headings, and a row for each robot."""
+    """The headings of the table, and a row for each robot."""
     return COLUMNS, [_row(name, of) for name, of in result.items()]
 
 
 def answer(result: Result) -> Iterator[str]:
-    """Which walk, in one sentence; which do not and why, in one for each."""
+    """One sentence on the robots that walk, then one on each robot that falls."""
     walks = [name for name, of in result.items() if not _tuned(of)["falls"]]
     trials = next(_tuned(of)["trials"] for of in result.values())
     if walks:
@@ -86,7 +114,7 @@ def answer(result: Result) -> Iterator[str]:
 
 
 def why(of: Mapping[str, Any]) -> str:
-    """What was measured that explains falls, or that nothing was."""
+    """Explain a robot's falls by its measures, or say that none explains them."""
     reach, motor = of["reach"], of["saturation"]
     causes = []
     if reach["place_m"] > _FAR_M or reach["tilt_rad"] > _TILTED_RAD:
@@ -97,7 +125,7 @@ def why(of: Mapping[str, Any]) -> str:
         )
     if motor["share"] > _OFTEN:
         causes.append(
-            f"the motor of {motor['joint']} gives all it can for "
+            f"the motor of {motor['joint']} is at its limit for "
             f"{motor['share']:.0%} of the time"
         )
     if not causes:

@@ -1,8 +1,10 @@
-"""Where a page comes from: the command that repeats it, settings and versions."""
+"""The origin of a page: the command that repeats its run, settings and versions."""
 
+import os
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Self
 
 from experiments.runs.folder import CONFIG, PROVENANCE, RunFolder
@@ -11,14 +13,18 @@ from experiments.runs.repeat_command import NOT_REPEATED
 
 @dataclass(frozen=True)
 class Origin:
-    """What made a page, in words.
+    """The origin of a page, in words.
 
     Attributes:
-      command: the command line that does it again.
-      commit: of the code, whether there were changes beside it, and those at which
-        the run was resumed.
-      settings: what was chosen, by name; all of it, defaults, too.
-      versions: of the code and what it stands on, by name.
+      command: the command line that repeats the run.
+      commit: the code's commit, whether there were uncommitted changes, and the commits
+        at which the run was resumed.
+      settings: values of all options by name, including defaults.
+      versions: of groundwalk, Python and the packages, by name.
+
+    Example:
+      >>> Origin.of_run(RunFolder.at(Path("runs/mine"))).command
+      'groundwalk evaluate start'
     """
 
     command: str
@@ -28,11 +34,11 @@ class Origin:
 
     @classmethod
     def of(cls, provenance: Mapping[str, Any], settings: Mapping[str, Any]) -> Self:
-        """Of what a run wrote down.
+        """Make the origin from a run's provenance.
 
         Args:
-          provenance: of the run.
-          settings: plain values; what is None is left out.
+          provenance: content of the run's provenance.json.
+          settings: values of the options by name; those that are None are left out.
         """
         known = [provenance, *provenance.get("resumed", ())]
         versions = {
@@ -49,21 +55,21 @@ class Origin:
 
     @classmethod
     def of_run(cls, folder: RunFolder) -> Self:
-        """Of a run's folder.
+        """Read the origin from a run's folder.
 
         Raises:
-          RunFolderError: the folder does not say where it comes from.
+          RunFolderError: the folder lacks config.json or provenance.json.
         """
         config = folder.read_json(CONFIG)
         chosen = {k: v for k, v in config.items() if k not in {"verb", *NOT_REPEATED}}
         return cls.of(folder.read_json(PROVENANCE), chosen)
 
     def rows(self) -> list[tuple[str, str]]:
-        """Everything but the command: names and values."""
+        """Names and values of all settings, the commit, and all versions."""
         return [*self.settings.items(), ("commit", self.commit), *self.versions.items()]
 
     def to_markdown(self) -> list[str]:
-        """A list, in few lines."""
+        """Command, settings, commit and versions as a list of four items."""
         settings = ", ".join(f"{name} {value}" for name, value in self.settings.items())
         versions = ", ".join(f"{name} {value}" for name, value in self.versions.items())
         return [
@@ -80,12 +86,15 @@ def _code(provenance: Mapping[str, Any]) -> str:
 
 
 def command_of(provenance: Mapping[str, Any]) -> str:
-    """The command line of a run; early ones wrote down its arguments alone."""
+    """The command line of a run; early versions noted only its arguments."""
     known = provenance.get("command")
     return str(known or shlex.join(["groundwalk", *provenance["arguments"]]))
 
 
 def _text(value: Any) -> str:
-    if isinstance(value, str) or not isinstance(value, Sequence):
+    """A setting as text; paths within the current folder are relative to it."""
+    if isinstance(value, str):
+        return value.removeprefix(f"{Path.cwd()}{os.sep}")
+    if not isinstance(value, Sequence):
         return str(value)
     return ", ".join(map(_text, value)) or "none"

@@ -1,8 +1,9 @@
-"""A run's folder: describes itself, resumes itself, and is never overwritten."""
+"""The folder of a run: configuration, state and results; never overwritten."""
 
 import dataclasses
 import datetime
 import json
+import os
 import platform
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
+from experiments.runs.lock import FolderLock
 from experiments.runs.options import RunOptions, options_of
 from experiments.runs.repeat_command import repeat_command
 from groundwalk import __version__, json_data
@@ -22,49 +24,72 @@ FREE_WHEN_RESUMED = frozenset({"out", "resume", "json", "threads"})
 PACKAGES = (
     "mujoco", "pybullet", "cma", "numpy", "scipy", "rerun-sdk", "pyarrow", "torch",
 )  # fmt: skip
+FILE_ENDS = frozenset({".toml", ".urdf", ".xml", ".json"})
+"""Endings by which the text of an option is known to be a file, such as a robot's."""
+
 _CODE = ("commit", "changed")
 _SOURCES = (":(top)", ":(top,exclude)docs/results")
-"""What runs, for git: results that were just written anew change nothing of it."""
+"""The files that git is asked about: all but results, which do not change the code."""
 
-Config = TypeVar("Config", bound=RunOptions)
+Config = TypeVar("Config", bound=Any)
 
 
 class RunFolder:
-    """Where a run keeps its configuration, state and results."""
+    """The folder in which a run keeps its configuration, state and results.
+
+    Example:
+      >>> folder = RunFolder.at(Path("runs/mine"))
+      >>> scores = folder.read_json("result.json")
+    """
 
     def __init__(self, path: Path) -> None:
-        """Use `create` or `at`."""
+        """Use `create` or `at`, which check the folder."""
         self.path = path
+        self._lock: FolderLock | None = None
+
+    def lock(self) -> None:
+        """Keep other processes out for as long as this object lives.
+
+        Raises:
+          RunFolderError: another process writes into the folder.
+        """
+        self._lock = FolderLock.of(self.path)
 
     @classmethod
     def create(cls, verb: str, config: Any) -> Self:
-        """A new folder with the resolved configuration and where the code comes from.
+        """Make a new folder; write down the configuration and the code's version.
 
         Args:
-          verb: what runs, as on the command line.
-          config: its configuration, a dataclass with `out` and `seed`; where `out` is
-            None, the folder is `runs/<verb>/<date>_<time>_s<seed>`.
+          verb: the verb that runs, as on the command line.
+          config: its options, a dataclass with `out` and `seed`; if `out` is None, the
+            folder is `runs/<verb>/<date>_<time>_s<seed>`.
 
         Raises:
-          RunFolderError: the folder is there already.
+          RunFolderError: the folder exists already.
         """
         path = config.out
         if path is None:
             now = datetime.datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
             path = Path("runs", verb, f"{now}_s{config.seed}")
-        check_free(path)
+        check_free(path, resumable=isinstance(config, RunOptions))
+        path.mkdir(parents=True)
         folder = cls(path)
-        folder.write_json(CONFIG, {"verb": verb, **to_plain(config)})
+        folder.lock()
+        folder.write_json(CONFIG, {"verb": verb, **to_plain(with_whole_paths(config))})
         command = {"command": repeat_command(verb, config)}
         folder.write_json(PROVENANCE, command | provenance())
         return folder
 
     @classmethod
     def at(cls, path: Path, verb: str | None = None) -> Self:
-        """The folder of an earlier run.
+        """Open the folder of an earlier run.
+
+        Args:
+          path: the folder.
+          verb: the verb that the run must be of; any by default.
 
         Raises:
-          RunFolderError: it is not there, or not of this verb.
+          RunFolderError: it is no run folder, or of another verb.
         """
         if not (path / CONFIG).is_file():
             raise RunFolderError(f"{path} is no run folder: it holds no {CONFIG}")
@@ -75,7 +100,7 @@ class RunFolder:
         return folder
 
     def note_resumed(self) -> None:
-        """Write down the code that goes on, if it is not the one that began."""
+        """Note the version of the code that resumes, if it is not noted yet."""
         began = self.read_json(PROVENANCE)
         known = [began, *began.get("resumed", [])]
         now = {key: value for key, value in provenance().items() if key in _CODE}
@@ -84,22 +109,27 @@ class RunFolder:
             self.write_json(PROVENANCE, began)
 
     def write_json(self, name: str, content: Any) -> None:
-        """Write a file of plain values at once."""
+        """Write a JSON file, whole or not at all.
+
+        Args:
+          name: the file's name in the folder.
+          content: values that JSON knows.
+        """
         self.write_text(name, json.dumps(content, indent=1) + "\n")
 
     def write_text(self, name: str, content: str) -> None:
-        """Write a file at once."""
+        """Write a text file, whole or not at all."""
         write_text(self.path / name, content)
 
     def write_bytes(self, name: str, content: bytes) -> None:
-        """Write a file at once."""
+        """Write a binary file, whole or not at all."""
         write_bytes(self.path / name, content)
 
     def read_json(self, name: str) -> dict[str, Any]:
-        """Read a file of plain values.
+        """Read a JSON file that holds a table.
 
         Raises:
-          RunFolderError: it is not there or cannot be read.
+          RunFolderError: the file is missing, damaged or holds no table.
         """
         path = self.path / name
         try:
@@ -115,21 +145,23 @@ class RunFolder:
         return content
 
     def has(self, name: str) -> bool:
-        """Whether a file of that name is there."""
+        """Whether the folder holds a file of that name."""
         return (self.path / name).exists()
 
 
-def check_free(path: Path | None) -> None:
-    """Refuse a folder that is there already: no run is overwritten.
+def check_free(path: Path | None, resumable: bool = False) -> None:
+    """Refuse a folder that exists already: no run is overwritten.
+
+    Args:
+      path: the folder of a new run; None for a default that is always new.
+      resumable: whether the verb has the option --resume.
 
     Raises:
-      RunFolderError: it is.
+      RunFolderError: the folder exists.
     """
     if path is not None and path.exists():
-        raise RunFolderError(
-            f"{path} exists already: choose another --out, or continue it with "
-            f"--resume {path}"
-        )
+        resume = f", or continue it with --resume {path}" if resumable else ""
+        raise RunFolderError(f"{path} exists already: choose another --out{resume}")
 
 
 def check_new(path: Path, suffix: str = "") -> None:
@@ -140,7 +172,7 @@ def check_new(path: Path, suffix: str = "") -> None:
       suffix: what its name must end with.
 
     Raises:
-      BadValueError: there is something already, or the name ends otherwise.
+      BadValueError: the path exists, or the name ends otherwise.
     """
     if path.exists():
         raise BadValueError(f"{path} exists already: choose another --out")
@@ -148,23 +180,38 @@ def check_new(path: Path, suffix: str = "") -> None:
         raise BadValueError(f"{path} must end with {suffix}")
 
 
-def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
-    """The folder of a run that begins or goes on, and its configuration.
+def open_run(verb: str, config: Config, may_grow: str = "") -> tuple[RunFolder, Config]:
+    """Create the folder of a new run, or open the one that is resumed.
+
+    The folder is locked: no other process can open the run until this one ends or
+    forgets the folder.
 
     Args:
-      verb: what runs, as on the command line.
-      config: a frozen dataclass. When a run is resumed, what it was started with
-        counts.
+      verb: the verb that runs, as on the command line.
+      config: its options, a frozen dataclass. A resumed run keeps the options that it
+        was started with.
+      may_grow: name of an option that may be larger when the run is resumed. If it is,
+        the result is removed, so that the run continues beyond its end.
+
+    Returns:
+      The folder, and the options that count; files in them have whole paths.
 
     Raises:
-      RunFolderError: the folder is in the way, or is none to resume.
-      BadValueError: a resumed run is asked for something else than it was started with.
+      RunFolderError: a new run's folder exists, a resumed one's does not, or another
+        process uses it.
+      BadValueError: a resumed run is given another value of an option.
+
+    Example:
+      >>> folder, config = open_run("evaluate", Evaluate(gaits=("start",)))
     """
+    config = with_whole_paths(config)
     if config.resume is None:
         return RunFolder.create(verb, config), config
     folder = RunFolder.at(config.resume, verb)
+    folder.lock()
     stored = folder.read_json(CONFIG)
     changes: dict[str, Any] = {}
+    grows = False
     for field in options_of(config):
         if field.name in FREE_WHEN_RESUMED:
             continue
@@ -173,24 +220,58 @@ def open_run(verb: str, config: Config) -> tuple[RunFolder, Config]:
         if field.name in stored:
             kind: Any = field.type
             before = json_data.from_plain(kind, stored[field.name], field.name)
-        if given not in (field.default, before):
+        changes[field.name] = before
+        if given is field.default or given in (before, _whole(before)):
+            continue
+        if field.name == may_grow and given > before:
+            changes[field.name] = stored[field.name] = given
+            grows = True
+        elif given != field.default:
             raise BadValueError(
                 f"{field.name} cannot change from {before} to {given} when a run is "
                 "resumed; leave it out"
             )
-        changes[field.name] = before
+    if grows:
+        (folder.path / RESULT).unlink(missing_ok=True)
+        folder.write_json(CONFIG, stored)
     folder.note_resumed()
     return folder, dataclasses.replace(config, **changes)
 
 
+def with_whole_paths(config: Config) -> Config:
+    """Options whose files have whole paths, so that they are found from any folder.
+
+    Args:
+      config: a frozen dataclass. `out` and `resume` stay as they are.
+    """
+    changes = {}
+    for field in options_of(config):
+        value = getattr(config, field.name)
+        if field.name not in FREE_WHEN_RESUMED and _whole(value) != value:
+            changes[field.name] = _whole(value)
+    return dataclasses.replace(config, **changes) if changes else config
+
+
+def _whole(value: Any) -> Any:
+    """A path, or the text of a file that exists, with its whole path."""
+    if isinstance(value, tuple):
+        return tuple(map(_whole, value))
+    if isinstance(value, Path):
+        return Path(os.path.abspath(value))
+    if isinstance(value, str):
+        is_file = Path(value).suffix in FILE_ENDS or os.sep in value
+        return os.path.abspath(value) if is_file and Path(value).exists() else value
+    return value
+
+
 def to_plain(config: Any) -> dict[str, Any]:
-    """A configuration as values that JSON knows; paths become text."""
+    """Options by name as values that JSON knows; paths become text."""
     plain = json_data.to_plain(config)
     return {one.name: plain[one.name] for one in options_of(config)}
 
 
 def provenance() -> dict[str, Any]:
-    """Versions and commit of the code that runs, and on what."""
+    """Versions of the code and its packages, the platform, and the command line."""
     return {
         "groundwalk": __version__,
         "python": platform.python_version(),
@@ -210,7 +291,7 @@ def _version(package: str) -> str | None:
 
 
 def _git(*arguments: str) -> str | None:
-    """What git says of the folder that holds this code; None outside a repository."""
+    """The answer of git in the folder of this code; None outside a repository."""
     try:
         answer = subprocess.run(
             ["git", *arguments],

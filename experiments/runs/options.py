@@ -11,6 +11,10 @@ RESUMABLE = "; --resume DIR continues the run"
 REPEATABLE = "; the same command continues where this one stopped"
 
 
+class DefaultInt(int):
+    """Default of an option, distinguishable from the same number given by the user."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class RunOptions:
     """Options of every verb whose runs can be resumed; each verb adds its own.

@@ -1,6 +1,6 @@
 """A run's scores as a page: every number written by the run itself."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from experiments.reports.origin import Origin
@@ -9,7 +9,7 @@ from experiments.reports.statistics import wilson
 from experiments.reports.tables import Scores
 from experiments.runs.folder import RESULT, RunFolder
 from experiments.seeing.run_pictures import SEARCH_PICTURE, WALK_PICTURE
-from walk_engine import PARAMETERS
+from walk_engine import PARAMETERS, Gait
 
 PICTURES = {
     WALK_PICTURE: "The first trial of each gait in each world",
@@ -20,21 +20,28 @@ MOST_NAMED = 3
 """Gaits that the answer speaks of one by one."""
 
 
-def write_page(folder: RunFolder, title: str, scores: Scores) -> None:
+def write_page(
+    folder: RunFolder,
+    title: str,
+    scores: Scores,
+    start: Mapping[str, Gait] | None = None,
+) -> None:
     """Write the report of a run that has its result and its pictures.
 
     Args:
       folder: the run.
-      title: what was asked, as a heading.
+      title: the question, as a heading.
       scores: by world and gait.
+      start: the gait that a search started from, by its name.
     """
     result = folder.read_json(RESULT)
     body = score_lines(scores)
     for picture, words in PICTURES.items():
         if folder.has(picture):
             body += ["", f"![{words}]({picture})"]
-    if "gait" in result:
-        body += ["", "## The tuned gait", "", *gait_lines(result["gait"])]
+    if start is not None:
+        table = gait_lines([*start.items(), ("tuned", result["gait"])])
+        body += ["", "## The tuned gait", "", *table]
     answer = list(score_answer(scores))
     Report(title, answer, body, Origin.of_run(folder)).write(folder.path)
 
@@ -76,9 +83,10 @@ def score_lines(scores: Scores) -> list[str]:
     return markdown_table(COLUMNS, rows)
 
 
-def gait_lines(gait: Mapping[str, float]) -> list[str]:
-    """A table of a gait's parameters beside the constants of 2014."""
+def gait_lines(gaits: Sequence[tuple[str, Mapping[str, float]]]) -> list[str]:
+    """A table of the 16 parameters, with a column for each gait and its name."""
     rows = [
-        [p.name, p.unit, f"{p.default:g}", f"{gait[p.name]:.4g}"] for p in PARAMETERS
+        [p.name, p.unit, *(f"{gait[p.name]:.4g}" for _, gait in gaits)]
+        for p in PARAMETERS
     ]
-    return markdown_table(["parameter", "unit", "2014", "tuned"], rows)
+    return markdown_table(["parameter", "unit", *(name for name, _ in gaits)], rows)

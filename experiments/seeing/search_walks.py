@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 import robots
-from experiments.optimize_gait import OptimizeGait, rate, search_grounds
 from experiments.runs.progress import progress
+from experiments.walking.gait_search import SearchPlan, rate
 from experiments.walking.recorder import Recorder
 from terrain import Heightfield, TerrainSpec
 from walk_engine import Gait
@@ -19,7 +19,7 @@ from worlds.scenes.scene import Scene
 _NEEDED = ("robot", "terrain", "sim", "seed", "threads")
 
 
-def search_config(stored: Mapping[str, Any]) -> OptimizeGait:
+def search_plan(stored: Mapping[str, Any]) -> SearchPlan:
     """What a search walked on and with, from a run's `config.json`.
 
     Raises:
@@ -28,29 +28,29 @@ def search_config(stored: Mapping[str, Any]) -> OptimizeGait:
     given = {name: stored[name] for name in _NEEDED if name in stored}
     if given.get("sim") is not None:
         given["sim"] = Path(given["sim"])
-    return OptimizeGait(**given)
+    return SearchPlan(**given)
 
 
-def walk_again(config: OptimizeGait, best: Sequence[Gait]) -> list[SearchWalk]:
+def walk_again(plan: SearchPlan, best: Sequence[Gait]) -> list[SearchWalk]:
     """Let the best gait of each generation walk as it did when it was rated.
 
     Side by side in one sim, each on its generation's ground.
 
     Args:
-      config: of the search.
+      plan: the search.
       best: the best gait of each generation, from the first one on.
     """
-    description = robots.get(config.robot)
-    specs = search_grounds(config, len(best))
+    description = robots.get(plan.robot)
+    specs = plan.grounds(len(best))
     grounds = _shared([spec.make() for spec in specs])
     recorder = Recorder(description, range(len(best)))
     with progress("best gaits walk", len(best)) as bar:
         trials, rewards = rate(
-            config, best, grounds, recorder=recorder, on_end=bar.advance
+            plan, best, grounds, recorder=recorder, on_end=bar.advance
         )
     walks = []
     for k, gait in enumerate(best):
-        about = _metadata(config, specs[k], gait, f"generation {k}", trials.ended[k])
+        about = _metadata(plan, specs[k], gait, f"generation {k}", trials.ended[k])
         recording = recorder.recording(k, about)
         scene = Scene(f"generation-{k}", recording, description, grounds[k])
         distance_m, time_s = float(trials.distance_m[k]), float(trials.time_s[k])
@@ -59,10 +59,10 @@ def walk_again(config: OptimizeGait, best: Sequence[Gait]) -> list[SearchWalk]:
 
 
 def _metadata(
-    config: OptimizeGait, ground: TerrainSpec, gait: Gait, of: str, end: End
+    plan: SearchPlan, ground: TerrainSpec, gait: Gait, of: str, end: End
 ) -> RecordingMetadata:
     return RecordingMetadata(
-        robot=config.robot,
+        robot=plan.robot,
         base="floating",
         source=f"groundwalk, the best gait of {of} of a search",
         terrain=ground.to_json(),

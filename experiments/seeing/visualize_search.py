@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from experiments.optimize_gait import VERB
 from experiments.runs.folder import CONFIG, HISTORY, RunFolder
-from experiments.seeing.search_walks import search_config, walk_again
+from experiments.seeing.search_walks import search_plan, walk_again
+from experiments.walking.gait_search import SEARCH_VERB
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError, RunFolderError
 from walk_engine import Gait
@@ -59,10 +59,12 @@ def _with_walks(
         return history
     try:
         stored = folder.read_json(CONFIG)
-        if stored.get("verb") != VERB:
-            raise RunFolderError(f"{CONFIG} is of {stored.get('verb')!r}, not {VERB!r}")
+        if stored.get("verb") != SEARCH_VERB:
+            raise RunFolderError(
+                f"{CONFIG} is of {stored.get('verb')!r}, not {SEARCH_VERB!r}"
+            )
         best = [Gait.from_mapping(entry["best_gait"]) for entry in entries]
-        return history._replace(walks=walk_again(search_config(stored), best))
+        return history._replace(walks=walk_again(search_plan(stored), best))
     except GroundwalkError as error:
         return history._replace(no_walks=str(error))
 

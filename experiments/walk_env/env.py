@@ -13,8 +13,7 @@ from experiments.runs.gait_files import load_gait
 from experiments.walk_env.episode import WalkEpisode
 from experiments.walk_env.senses_table import senses_box, senses_of
 from experiments.walk_env.world import EnvWorld, WorldName, episode_seeds
-from experiments.walking.reward import reward_cm_s
-from experiments.walking.trials import SEARCH_TRIAL, TrialRules
+from experiments.walking.trials import SEARCH_TRIAL, TrialRules, reward_cm_s
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 from robots import Description
@@ -61,7 +60,7 @@ class WalkEnv(Environment):
     ## Reward
 
     Forward progress in cm over `limit_s`, less 15 at a fall: a whole episode is worth
-    `experiments.walking.reward.reward_cm_s`, in cm/s.
+    `experiments.walking.trials.reward_cm_s`, in cm/s.
 
     ## Start
 

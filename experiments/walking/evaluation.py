@@ -31,18 +31,19 @@ from worlds import (
 from worlds.hidden.effects import Hidden
 
 MOST_AT_ONCE = 60
-"""Robots walking side by side: in the real world each needs 70 MB."""
+"""Largest number of robots that walk side by side: in the real world each needs 70 MB
+of memory."""
 
 
 @dataclass(frozen=True)
 class Score:
-    """What trials of one gait in one world came to.
+    """Summary of the trials of one gait in one world.
 
     Attributes:
-      speed_cm_s: mean forward speed, until the fall where the robot fell.
-      speed_std: standard deviation of the speed over the trials.
-      falls: how many trials ended with a fall.
-      trials: how many there were.
+      speed_cm_s: mean forward speed [cm/s]; of a trial with a fall, until the fall.
+      speed_std: standard deviation of the speed over the trials [cm/s].
+      falls: number of trials that ended with a fall.
+      trials: number of trials.
     """
 
     speed_cm_s: float
@@ -57,12 +58,13 @@ class Study:
 
     Attributes:
       world: "sim" or "real".
-      terrain: such as "lumps:amplitude_m=0.01"; every trial has its own seed.
-      trials: of each gait.
-      rules: when a trial is over.
-      threads: of the sim, or processes of the real world; 0 for one per core.
-      correction: folder or file of a diagnosis, for the sim.
-      hidden: physics of the real world that the sim's model lacks.
+      terrain: the ground, as text such as "lumps:amplitude_m=0.01"; every trial has its
+        own seed.
+      trials: number of trials of each gait.
+      rules: how a trial begins, and when it is over.
+      threads: threads of the sim, or processes of the real world; 0 for one per core.
+      correction: folder or file of a diagnosis, whose effects the sim gets.
+      hidden: effects that the real world has and the sim does not.
     """
 
     world: str
@@ -74,7 +76,7 @@ class Study:
     hidden: tuple[Hidden, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse unknown worlds and terrains, and no trials."""
+        """Refuse unknown worlds and terrains, and less than one trial."""
         worlds.kind(self.world)
         parse(self.terrain)
         check_at_least(self, trials=1, threads=0)
@@ -89,7 +91,7 @@ class Study:
         grounds: Sequence[Heightfield],
         seeds: Sequence[np.random.SeedSequence],
     ) -> World:
-        """The world, with one robot on each ground."""
+        """Make the world, with one robot and one seed for each ground."""
         robots = description, grounds, seeds, self.options
         if self.correction is None:
             return worlds.make(self.world, *robots)
@@ -97,7 +99,7 @@ class Study:
 
     @property
     def options(self) -> WorldOptions:
-        """The world's own options, on these threads."""
+        """The world's default options with this study's threads and hidden effects."""
         return dataclasses.replace(
             worlds.kind(self.world).options, hidden=self.hidden, threads=self.threads
         )
@@ -105,12 +107,12 @@ class Study:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """One gait's trials in a world.
+    """The trials of one gait in a world.
 
     Attributes:
-      score: the summary.
-      trials: each of them.
-      recording: the first trial, written down.
+      score: their summary.
+      trials: how each of them went.
+      recording: the first trial, tick by tick.
     """
 
     score: Score
@@ -127,10 +129,13 @@ def evaluate(
     """Let each gait walk the same trials: the same grounds, noise and start poses.
 
     Args:
-      study: where and how.
-      description: the robot.
-      gaits: by name.
-      seed: of the grounds, the noise and the start poses.
+      study: where and how they walk.
+      description: the robot model.
+      gaits: the gaits by name.
+      seed: of the grounds, the sensor noise and the start poses.
+
+    Returns:
+      The outcome of each gait, by its name.
     """
     starts = _starts(study, seed)
     rows = [(name, start) for name in gaits for start in starts]
@@ -151,7 +156,7 @@ def evaluate(
 
 @dataclass(frozen=True, eq=False)
 class _Start:
-    """What is given at the start of a trial, whatever the gait."""
+    """Number, ground and seeds of a trial: the same for all gaits."""
 
     number: int
     spec: TerrainSpec
@@ -177,7 +182,7 @@ def _walk(
     wave: Sequence[tuple[str, _Start]],
     on_end: Callable[[], object],
 ) -> tuple[Trials, dict[str, Recording]]:
-    """Some trials side by side, and the recordings of first trials among them."""
+    """Walk some trials side by side; record those that are the first of their gait."""
     starts = [start for _, start in wave]
     grounds, seeds = [s.ground for s in starts], [s.of_noise for s in starts]
     world = study.make_world(description, grounds, seeds)
@@ -202,7 +207,7 @@ def _walk(
 
 
 def score(trials: Trials) -> Score:
-    """Trials in four numbers; the spread of one trial is zero."""
+    """Summarize trials; the standard deviation of a single trial counts as zero."""
     speed = trials.speed_cm_s
     return Score(
         speed_cm_s=float(speed.mean()),
@@ -237,7 +242,16 @@ def _metadata(
 def keep(
     folder: RunFolder, world: str, outcomes: Mapping[str, Outcome]
 ) -> dict[str, dict[str, Any]]:
-    """Write the recordings into a run folder; the scores as plain values, by gait."""
+    """Write the recordings of all gaits into a run folder.
+
+    Args:
+      folder: the run.
+      world: "sim" or "real"; part of the file names.
+      outcomes: by the name of the gait.
+
+    Returns:
+      The fields of each gait's `Score`, by its name.
+    """
     for name, outcome in outcomes.items():
         path = folder.path / RECORDINGS / f"{world}_{name}.parquet"
         write_recording(outcome.recording, path)

@@ -1,4 +1,4 @@
-"""Writes rollouts down while they happen."""
+"""Writes down, tick by tick, what the robots of a world measure."""
 
 from collections.abc import Sequence
 
@@ -13,14 +13,21 @@ _AXES = ("x", "y", "z")
 
 
 class Recorder:
-    """Collects what some robots of a world measure, tick by tick."""
+    """Collects what some robots of a world measure, and turns it into recordings.
+
+    Example:
+      >>> recorder = Recorder(world.description, robots=[0])
+      >>> walk_trials(world, gaits, TrialRules(), recorder=recorder)
+      >>> recording = recorder.recording(0, metadata)
+      See docs/python.md.
+    """
 
     def __init__(self, description: Description, robots: Sequence[int]) -> None:
-        """Nothing is recorded yet.
+        """Make an empty recorder.
 
         Args:
-          description: the robot.
-          robots: which of the world's robots to record.
+          description: the robot model.
+          robots: numbers of the world's robots to record, from 0 on.
         """
         self._description = description
         self._robots = list(robots)
@@ -37,11 +44,11 @@ class Recorder:
         """Note one tick of the robots that are still active.
 
         Args:
-          observation: what was measured before the command took effect.
-          truth: where the robots were then.
-          command_rad: (n, joints) the command given then; NaN if there was none.
-          support: (n,) 1 left leg, -1 right leg, 0 both.
-          active: (n,) mask.
+          observation: what the n robots measured before the command took effect.
+          truth: their poses and velocities at that time.
+          command_rad: (n, joints) the command [rad] of this tick; NaN for none.
+          support: (n,) the supporting leg: 1 left, -1 right, 0 both.
+          active: (n,) whether a robot is still active; the others are not noted.
         """
         for robot in self._robots:
             if active[robot]:
@@ -56,7 +63,7 @@ class Recorder:
                 )
 
     def recording(self, robot: int, metadata: RecordingMetadata) -> Recording:
-        """What was recorded of one robot, in the columns of format 1."""
+        """One robot's recording, in the columns of format 1 (docs/recordings.md)."""
         table = np.array(self._rows[robot]).T
         columns = dict(zip(self._names(), table, strict=True))
         for side in ("left", "right"):
@@ -67,7 +74,7 @@ class Recorder:
         return Recording(columns, metadata)
 
     def _names(self) -> list[str]:
-        """Columns in the order of `tick`'s rows."""
+        """Names of the columns, in the order in which `tick` notes their values."""
         joints = self._description.joints
         return [
             "time",
@@ -90,7 +97,7 @@ class Recorder:
 
 
 def servo_gains(description: Description) -> dict[str, ServoGains]:
-    """Every joint's servo as recordings state it."""
+    """Stiffness, damping and torque limit of every joint's servo, for metadata."""
     return {
         joint.name: ServoGains(
             kp=joint.motor.kp_nm_rad,

@@ -10,13 +10,18 @@ from groundwalk.errors import BadValueError
 from walk_engine.gait import PARAMETERS, Gait, from_unit, to_unit
 
 SMALLEST_POPULATION = 4
+"""CMA-ES needs at least two parents, which it takes from the better half."""
 
 
 def check_search(population: int, sigma: float) -> None:
-    """Refuse a search that cannot move.
+    """Refuse a population or a spread with which no search can work.
+
+    Args:
+      population: gaits in a generation.
+      sigma: standard deviation of the first generation, as a share of the ranges.
 
     Raises:
-      BadValueError: the population is too small, or the spread is none or too large.
+      BadValueError: the population is smaller than 4, or sigma is not in (0, 1].
     """
     if population < SMALLEST_POPULATION:
         raise BadValueError(
@@ -27,7 +32,7 @@ def check_search(population: int, sigma: float) -> None:
 
 
 class _NormalSource:
-    """Standard normal numbers of one generator: pycma would use NumPy's global one."""
+    """Standard normal numbers for pycma, which would use NumPy's global generator."""
 
     def __init__(self, seed: np.random.SeedSequence) -> None:
         self._generator = np.random.default_rng(seed)
@@ -37,10 +42,10 @@ class _NormalSource:
 
 
 class GaitSearch:
-    """Asks for gaits, is told their rewards, and moves its distribution.
+    """CMA-ES over gaits: asks for samples, is told their rewards, moves its mean.
 
-    Its answers are the distribution's means, not the luckiest samples. The search can
-    be turned into bytes and back without any change to what follows.
+    A search can be saved as bytes; the one that is read back continues with the same
+    bits.
     """
 
     def __init__(
@@ -55,7 +60,7 @@ class GaitSearch:
         Args:
           start: the mean of the first generation.
           population: gaits in a generation.
-          sigma: standard deviation of the first generation, as a part of each
+          sigma: standard deviation of the first generation, as a share of each
             parameter's range.
           seed: of the search's own random numbers.
         """
@@ -76,38 +81,38 @@ class GaitSearch:
         self._asked: list[FloatArray] = []
 
     def ask(self) -> FloatArray:
-        """(population, 16) vectors of the gaits to try now."""
+        """Draw the vectors (population, 16) of the gaits to try in this generation."""
         self._asked = self._strategy.ask()
         return from_unit(np.array(self._asked))
 
     def tell(self, rewards: FloatArray) -> None:
-        """Learn from the (population,) rewards of the gaits that were asked for."""
+        """Learn from the rewards (population,) of the gaits that `ask` has returned."""
         self._strategy.tell(self._asked, (-rewards).tolist())
 
     @property
     def mean(self) -> Gait:
-        """The distribution's mean."""
+        """The mean of the distribution from which the next generation is drawn."""
         unit = np.clip(self._strategy.result.xfavorite, 0.0, 1.0)
         return Gait.from_vector(from_unit(unit))
 
     @property
     def spread(self) -> FloatArray:
-        """(16,) standard deviation of each parameter, as a part of its range."""
+        """(16,) standard deviation of each parameter, as a share of its range."""
         return np.array(self._strategy.result.stds)
 
     @property
     def sigma(self) -> float:
-        """The overall step size."""
+        """The overall step size of CMA-ES, as a share of the ranges."""
         return float(self._strategy.sigma)
 
     def to_bytes(self) -> bytes:
-        """Everything that the search is, between two generations."""
+        """Save the search between two generations."""
         self._asked = []
         return pickle.dumps(self)
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Self:
-        """The search of `to_bytes`. Runs what the bytes say: only for own files."""
+        """Read the bytes of `to_bytes`. Unpickles them: only for files of one's own."""
         search = pickle.loads(content)
         if not isinstance(search, cls):
             raise BadValueError("these bytes hold no gait search")

@@ -1,4 +1,4 @@
-"""The sim as it is, or with what a diagnosis found in it."""
+"""The sim, plain or with the effects that a diagnosis has found."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,15 +24,16 @@ def make_sim(
     """A sim with one robot on each ground.
 
     Args:
-      description: the robot.
+      description: the robot model.
       grounds: one per robot; give one object n times to share it.
       seeds: one per robot, for its sensor noise.
-      options: of the sim.
-      correction: folder or file of a diagnosis, whose effects the sim shall have.
+      options: options of the sim.
+      correction: folder or file of a diagnosis, whose effects the sim gets.
 
     Raises:
-      BadModelError: it is no diagnosis of this robot, or a sim cannot have its effects.
-      UnknownNameError: it speaks of what is not there.
+      BadModelError: the correction is no diagnosis of this robot, or the sim cannot
+        simulate one of its effects.
+      UnknownNameError: it names an effect or a joint that does not exist.
     """
     if correction is None:
         return worlds.make("sim", description, grounds, seeds, options)
@@ -43,7 +44,10 @@ def make_sim(
 def check_correction(
     description: Description, options: WorldOptions, correction: Path
 ) -> Model:
-    """The effects that a sim would have; see `make_sim` for arguments and errors."""
+    """Check that a sim can have the effects of a diagnosis, and return them.
+
+    Arguments and errors are those of `make_sim`.
+    """
     plant = sim_plant(description, options)
     model = load_correction(correction, plant)
     sim_variants(plant, model, 1)

@@ -16,13 +16,17 @@ from worlds import FALLS, TICK_S, End, World
 
 @dataclass(frozen=True)
 class TrialRules:
-    """When a trial is over.
+    """How a trial begins, and when it is over.
 
     Attributes:
-      limit_s: time limit.
-      course_m: the trial is finished after this distance forward; None for no end.
-      start_spread_rad: standard deviation of the joints at the start around the
-        gait's own pose; a robot never starts twice from the same one.
+      limit_s: time limit [s].
+      course_m: the trial is finished after this distance forward [m]; None for no end.
+      start_spread_rad: standard deviation [rad] of the joint angles at the start around
+        the gait's own start pose.
+
+    Example:
+      >>> TrialRules(limit_s=5.0, course_m=2.0)
+      TrialRules(limit_s=5.0, course_m=2.0, start_spread_rad=0.0)
     """
 
     limit_s: float = 7.5
@@ -30,7 +34,7 @@ class TrialRules:
     start_spread_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse trials that cannot be."""
+        """Refuse limits and spreads that are not positive numbers."""
         for name, value in vars(self).items():
             if value is None and name == "course_m":
                 continue
@@ -40,20 +44,27 @@ class TrialRules:
 
 
 SEARCH_TRIAL = TrialRules(limit_s=7.5)
-"""A trial of the search: 7.5 s or until a fall (the SGAT paper, section on the NAO)."""
+"""A trial in a search: 7.5 s or until a fall (the SGAT paper, section on the NAO)."""
 
 COURSE_TRIAL = TrialRules(limit_s=40.0, course_m=3.0, start_spread_rad=0.01)
-"""A trial of the evaluation: a course of 3 m, as in the SGAT paper."""
+"""A trial in an evaluation: a course of 3 m, as in the SGAT paper. The start poses
+spread by 0.01 rad, so that no two trials are alike."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """How n trials went.
+    """How n trials went; `walk_trials` returns it.
 
     Attributes:
-      distance_m: (n,) forward, along the direction faced at the start.
-      time_s: (n,) until the end of the trial.
-      ended: why the rollout ended; `End.NONE` if time was up or the course done.
+      distance_m: (n,) way forward [m], along the direction faced at the start.
+      time_s: (n,) duration of the trial [s].
+      ended: n reasons why the rollout ended; `End.NONE` if the time was up or the
+        course finished.
+
+    Example:
+      >>> trials = Trials(np.array([0.5]), np.array([2.0]), (End.NONE,))
+      >>> trials.speed_cm_s
+      array([25.])
     """
 
     distance_m: FloatArray
@@ -81,19 +92,51 @@ class Trials:
 
     @property
     def fell(self) -> BoolArray:
-        """(n,) whether the robot fell; physics that blew up counts as a fall."""
+        """(n,) whether the robot fell; a diverged simulation counts as a fall."""
         return np.array([end in FALLS for end in self.ended])
+
+
+FALL_PENALTY_CM_S = 15.0
+"""What a fall costs in the reward [cm/s], as in the SGAT paper's NAO experiment."""
+
+
+def reward_cm_s(
+    trials: Trials, limit_s: float, fall_penalty_cm_s: float = FALL_PENALTY_CM_S
+) -> FloatArray:
+    """Reward of each trial for a search: forward speed, less a penalty for a fall.
+
+    The speed is taken over the whole time limit, also after a fall. If it were taken
+    until the fall only, the search would prefer a sprint that ends on the floor.
+
+    Args:
+      trials: how they went.
+      limit_s: duration of a trial without a fall [s].
+      fall_penalty_cm_s: what a fall costs [cm/s].
+
+    Returns:
+      (n,) rewards [cm/s].
+
+    Example:
+      >>> trials = Trials(np.array([0.5]), np.array([2.0]), (End.FALL,))
+      >>> reward_cm_s(trials, limit_s=5.0)
+      array([-5.])
+    """
+    progress = 100 * trials.distance_m / limit_s
+    return np.asarray(progress - fall_penalty_cm_s * trials.fell)
 
 
 def start_pose(
     engine: WalkEngine, rules: TrialRules, seeds: Sequence[np.random.SeedSequence]
 ) -> FloatArray:
-    """(n, joints) poses [rad] in which n trials begin.
+    """The poses in which n trials begin.
 
     Args:
-      engine: of n gaits.
+      engine: the walk engine of the n gaits.
       rules: how far the poses spread.
-      seeds: n, if they do.
+      seeds: n seeds; not used if the poses do not spread.
+
+    Returns:
+      (n, joints) joint angles [rad].
     """
     pose_rad = engine.start_pose()
     if rules.start_spread_rad == 0:
@@ -114,12 +157,18 @@ def walk_trials(
     """Let every robot of a world walk straight ahead, as fast as its gait says.
 
     Args:
-      world: one robot for each gait.
+      world: a world with one robot for each gait.
       gaits: n gaits, or their vectors (n, 16).
-      rules: when a trial is over.
-      seeds: n seeds for the poses at the start, if these shall spread.
+      rules: how a trial begins, and when it is over.
+      seeds: n seeds of the start poses, if the rules spread these.
       recorder: notes every tick.
       on_end: called once for each robot whose trial is over.
+
+    Example:
+      >>> ground, seed = terrain.make("flat", seed=0), np.random.SeedSequence(1)
+      >>> world = worlds.make("sim", robots.get("nao"), [ground], [seed])
+      >>> walk_trials(world, [gaits.get("start")], TrialRules(limit_s=5.0)).fell
+      array([False])
     """
     engine = WalkEngine(biped(world.description), gaits, TICK_S)
     observation = world.reset(start_pose(engine, rules, seeds))

@@ -101,7 +101,7 @@ def test_the_answer_names_causes_only_where_there_are_falls():
 
 
 def test_causes_by_their_measures():
-    assert "gives all it can for 75%" in why(of(falls=3, share=0.75))
+    assert "is at its limit for 75%" in why(of(falls=3, share=0.75))
     assert "Neither" in why(of(falls=3, share=0.25))
     assert "40% as long and 30% as wide" in why(of(falls=3))
     assert next(answer({"a": of(falls=1)})).startswith("None of 1")

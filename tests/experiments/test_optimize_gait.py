@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from experiments.optimize_gait import OptimizeGait, search
+from experiments.optimize_gait import OptimizeGait
 from experiments.runs.folder import RunFolder, open_run
+from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
@@ -21,9 +22,9 @@ def script(*arguments):
 
 
 def history_of(tmp_path, name, **settings):
-    config = OptimizeGait(population=6, generations=2, **settings)
+    plan = SearchPlan(population=6, generations=2, **settings)
     folder = RunFolder(tmp_path / name)
-    search(config, folder)
+    search_gait(plan, folder)
     return (folder.path / "history.json").read_bytes()
 
 
@@ -165,7 +166,7 @@ def test_a_damaged_checkpoint_is_named(tmp_path):
     folder = RunFolder(tmp_path)
     folder.write_bytes("checkpoint.pkl", b"\x80\x04 cut off")
     with pytest.raises(RunFolderError, match=r"checkpoint\.pkl is damaged"):
-        search(OptimizeGait(population=6, generations=2), folder)
+        search_gait(SearchPlan(population=6, generations=2), folder)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.figure import FIGURE
-from experiments.walking.search_run import RATINGS
+from experiments.walking.tuning import RATINGS
 from sgat.transformers.catalogue import groundings
 from terrain import Flat, Lumps, configuration, parse
 

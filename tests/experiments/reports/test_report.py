@@ -56,7 +56,7 @@ def tuned(tmp_path_factory):
     folder = RunFolder.create("optimize-gait", OptimizeGait(population=8, out=path))
     folder.write_json("result.json", {**SCORES, "gait": dict(gaits.get("walk2014"))})
     draw_search(history(3), path / "search.png")
-    write_page(folder, "Does it <walk>?", SCORES)
+    write_page(folder, "Does it <walk>?", SCORES, {"start": gaits.get("start")})
     return path
 
 

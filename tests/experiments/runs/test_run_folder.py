@@ -1,19 +1,41 @@
 import json
+import subprocess
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
 
 from experiments.reports.origin import Origin
 from experiments.runs import folder as run_folder
 from experiments.runs.folder import CONFIG, RunFolder, open_run
-from experiments.runs.options import RunOptions
-from groundwalk.errors import BadValueError, RunFolderError
+from experiments.runs.gait_files import load_gait, load_gaits
+from experiments.runs.options import DefaultInt, RunOptions
+from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
+from walk_engine import gaits
 
 
 @dataclass(frozen=True)
 class Config(RunOptions):
-    size: int = 3
+    size: int = DefaultInt(3)
     names: tuple[str, ...] = ("a",)
+    robot: str = "nao"
+
+
+@dataclass(frozen=True)
+class NoResume:
+    out: Path | None = None
+    seed: int = 1
+
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from experiments.runs.lock import FolderLock
+lock = FolderLock.of(Path(sys.argv[1]))
+print("locked", flush=True)
+time.sleep(60)
+"""
 
 
 def test_a_run_describes_itself(tmp_path):
@@ -32,6 +54,71 @@ def test_an_existing_folder_is_never_touched(tmp_path):
     with pytest.raises(RunFolderError, match=r"exists already.*--resume"):
         open_run("verb", Config(out=tmp_path / "run"))
     assert [p.name for p in (tmp_path / "run").iterdir()] == ["mine.txt"]
+
+
+def test_only_runs_that_can_be_resumed_are_told_so(tmp_path):
+    with pytest.raises(RunFolderError) as refused:
+        RunFolder.create("verb", NoResume(out=tmp_path))
+    assert "--resume" not in str(refused.value)
+
+
+def test_two_processes_do_not_write_into_one_folder(tmp_path):
+    path = tmp_path / "run"
+    open_run("verb", Config(out=path))
+    other = subprocess.Popen(
+        [sys.executable, "-c", HOLD, path], stdout=subprocess.PIPE, text=True
+    )
+    with other:
+        assert other.stdout.readline() == "locked\n"
+        with pytest.raises(RunFolderError, match=f"in use by process {other.pid}"):
+            open_run("verb", Config(resume=path))
+        other.kill()
+    folder, _ = open_run("verb", Config(resume=path))  # a dead process holds nothing
+    again, _ = open_run("verb", Config(resume=path))  # nor does this process
+    assert folder.path == again.path
+
+
+def test_files_of_a_run_are_found_from_any_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("me.toml").touch()
+    _, config = open_run("verb", Config(robot="me.toml", out=tmp_path / "run"))
+    monkeypatch.chdir("/")
+    assert config.robot == str(tmp_path / "me.toml")
+    _, resumed = open_run("verb", Config(resume=tmp_path / "run"))
+    assert resumed.robot == config.robot
+    monkeypatch.chdir(tmp_path)
+    _, same = open_run("verb", Config(robot="me.toml", resume=tmp_path / "run"))
+    assert same.robot == config.robot
+    origin = Origin.of_run(RunFolder.at(tmp_path / "run"))
+    assert origin.settings["robot"] == "me.toml"  # no more of the path than is needed
+
+
+@pytest.mark.parametrize("more", [3, 5])  # three is the default
+def test_what_may_grow_continues_beyond_the_end(tmp_path, more):
+    path = tmp_path / "run"
+    folder, _ = open_run("verb", Config(size=2, out=path))
+    folder.write_json("result.json", {})
+    _, kept = open_run("verb", Config(resume=path), may_grow="size")
+    assert (kept.size, folder.has("result.json")) == (2, True)
+    with pytest.raises(BadValueError, match="size cannot change from 2 to 1"):
+        open_run("verb", Config(size=1, resume=path), may_grow="size")
+    _, grown = open_run("verb", Config(size=more, resume=path), may_grow="size")
+    assert (grown.size, folder.has("result.json")) == (more, False)
+    assert folder.read_json(CONFIG)["size"] == more
+
+
+def test_a_run_folder_is_the_gait_that_it_found(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    RunFolder(Path("mine")).write_json(
+        "result.json", {"gait": dict(gaits.get("start"))}
+    )
+    assert load_gait("mine") == gaits.get("start")
+    assert list(load_gaits(["walk2014", "mine"])) == ["walk2014", "mine"]
+    Path("start").mkdir()
+    assert load_gait("start") == gaits.get("start")  # a gait's name comes first
+    Path("empty").mkdir()
+    with pytest.raises(GroundwalkError, match="empty"):
+        load_gait("empty")
 
 
 def test_the_default_folder_is_named_after_verb_and_seed(tmp_path, monkeypatch):

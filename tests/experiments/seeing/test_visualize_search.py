@@ -5,10 +5,11 @@ import pytest
 from made_up_runs import history
 from rerun.chunk import RrdReader
 
-from experiments.optimize_gait import OptimizeGait, search
+from experiments.optimize_gait import OptimizeGait
 from experiments.runs.folder import RunFolder
-from experiments.seeing.search_walks import search_config, walk_again
+from experiments.seeing.search_walks import search_plan, walk_again
 from experiments.seeing.visualize_search import read_history, visualize_search
+from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadModelError, RunFolderError, UnknownNameError
 from terrain import TerrainSpec
 from walk_engine import Gait, gaits
@@ -123,7 +124,7 @@ def run_search(path, **settings):
         **settings,
     )
     folder = RunFolder.create("optimize-gait", config)
-    search(config, folder)
+    search_gait(config.plan(), folder)
     return folder
 
 
@@ -137,7 +138,7 @@ def walked(folder, **changes):
     stored = folder.read_json("config.json") | changes
     entries = folder.read_json("history.json")["generations"]
     best = [Gait.from_mapping(entry["best_gait"]) for entry in entries]
-    return entries, walk_again(search_config(stored), best)
+    return entries, walk_again(search_plan(stored), best)
 
 
 def test_the_walks_are_the_ones_that_were_rated(real_search):
@@ -223,8 +224,8 @@ def test_a_reward_that_has_changed_is_said(folder):
 )
 def test_what_a_config_names_must_be_there(stored, error):
     with pytest.raises(error):
-        search_config(stored)
+        search_plan(stored)
 
 
 def test_a_config_of_an_earlier_version_says_less():
-    assert search_config({"seed": 5, "verb": "optimize-gait"}) == OptimizeGait(seed=5)
+    assert search_plan({"seed": 5, "verb": "optimize-gait"}) == SearchPlan(seed=5)

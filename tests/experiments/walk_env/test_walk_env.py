@@ -20,8 +20,7 @@ from experiments.grounded_walks.models import action_envelope
 from experiments.walk_env.env import WalkEnv
 from experiments.walk_env.ids import IDS, register_envs
 from experiments.walk_env.world import episode_seeds
-from experiments.walking.reward import reward_cm_s
-from experiments.walking.trials import TrialRules, walk_trials
+from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel

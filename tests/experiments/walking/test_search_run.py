@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from experiments.walking.search import GaitSearch
-from experiments.walking.search_run import best_mean, run_search
+from experiments.walking.tuning import best_mean, run_search
 from groundwalk.errors import RunFolderError
 from walk_engine import gaits
 from walk_engine.gait import PARAMETERS

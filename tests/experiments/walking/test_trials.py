@@ -6,8 +6,7 @@ import pytest
 import robots
 import terrain
 import worlds
-from experiments.walking.reward import reward_cm_s
-from experiments.walking.trials import TrialRules, Trials, walk_trials
+from experiments.walking.trials import TrialRules, Trials, reward_cm_s, walk_trials
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 from worlds import End

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from experiments.walking.search_run import RATINGS
-from experiments.walking.tuning import Budget, tune
+from experiments.walking.tuning import RATINGS, Budget, tune
 from walk_engine import gaits
 from walk_engine.gait import PARAMETERS
 

@@ -1,0 +1,190 @@
+"""The search of `groundwalk optimize-gait`: tunes a gait for one terrain in the sim."""
+
+import contextlib
+import dataclasses
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import robots
+import worlds
+from experiments.runs.folder import CHECKPOINT, HISTORY, RunFolder
+from experiments.runs.gait_files import load_gait
+from experiments.runs.options import check_at_least
+from experiments.walking.recorder import Recorder
+from experiments.walking.search import GaitSearch, check_search
+from experiments.walking.sims import check_correction, make_sim
+from experiments.walking.trials import (
+    FALL_PENALTY_CM_S,
+    SEARCH_TRIAL,
+    TrialRules,
+    Trials,
+    reward_cm_s,
+    walk_trials,
+)
+from experiments.walking.tuning import RATINGS, best_mean, run_search
+from groundwalk.arrays import FloatArray
+from terrain import Heightfield, TerrainSpec, parse
+from walk_engine import Gait
+from worlds import WorldOptions
+
+SEARCH_VERB = "optimize-gait"
+"""The verb whose run folders hold such a search."""
+
+RATED = dataclasses.replace(SEARCH_TRIAL, start_spread_rad=0.01)
+"""Rules for rating the mean gaits after the search. The joints of the start pose spread
+by 0.01 rad, so that a gait that only works from one exact pose does not win."""
+
+
+@dataclass(frozen=True)
+class SearchPlan:
+    """What a search tunes, and how long.
+
+    Attributes:
+      robot: name or file of the robot.
+      start: name or file of the gait that the search starts from.
+      terrain: the ground in the sim, as text such as "lumps:amplitude_m=0.005".
+      sim: folder of a diagnosis whose effects the sim gets; None for the plain sim.
+      population: gaits tried in each generation.
+      generations: number of generations.
+      sigma: standard deviation of the first generation, as a share of each
+        parameter's range.
+      seed: every random number follows from it.
+      threads: processor threads; 0 for all.
+    """
+
+    robot: str = "nao"
+    start: str = "start"
+    terrain: str = "flat"
+    sim: Path | None = None
+    population: int = 150
+    generations: int = 15
+    sigma: float = 0.15
+    seed: int = 1
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        """Refuse a search that cannot run."""
+        description = robots.get(self.robot)
+        if self.sim is not None:
+            check_correction(description, self.options, self.sim)
+        load_gait(self.start)
+        parse(self.terrain)
+        check_search(self.population, self.sigma)
+        check_at_least(self, generations=1, seed=0, threads=0)
+
+    @property
+    def options(self) -> WorldOptions:
+        """Options of the sim."""
+        return dataclasses.replace(worlds.kind("sim").options, threads=self.threads)
+
+    def seeds(self) -> tuple[np.random.SeedSequence, ...]:
+        """Seeds of the samples, the grounds, the ratings, and the trials afterwards.
+
+        None of them depends on the number of generations.
+        """
+        of_search, of_trials = np.random.SeedSequence(self.seed).spawn(2)
+        return (*of_search.spawn(3), of_trials)
+
+    def grounds(self, generations: int) -> list[TerrainSpec]:
+        """The ground of each generation, from the first one on."""
+        _, of_grounds, *_ = self.seeds()
+        seeds = of_grounds.generate_state(generations).tolist()
+        return [TerrainSpec(*parse(self.terrain), seed=seed) for seed in seeds]
+
+
+def search_gait(plan: SearchPlan, folder: RunFolder) -> Gait:
+    """Search for the best gait, with a checkpoint after each generation.
+
+    Args:
+      plan: what is tuned.
+      folder: gets checkpoint and history; generations that it holds are not repeated.
+
+    Returns:
+      The mean gait, of all generations, with the best rewards in a final comparison.
+    """
+    of_samples, *_ = plan.seeds()
+    grounds = plan.grounds(plan.generations)
+
+    def begin() -> GaitSearch:
+        return GaitSearch(
+            load_gait(plan.start), plan.population, plan.sigma, of_samples
+        )
+
+    means = run_search(
+        folder.path / CHECKPOINT,
+        begin,
+        lambda number, strategy: _generation(plan, strategy, grounds[number].make()),
+        plan.generations,
+        lambda entries: folder.write_json(HISTORY, {"generations": entries}),
+    )
+    return best_mean(means, _ratings(plan, means))
+
+
+def rate(
+    plan: SearchPlan,
+    tried: Sequence[Gait] | FloatArray,
+    grounds: Sequence[Heightfield],
+    poses: Sequence[np.random.SeedSequence] = (),
+    rules: TrialRules = SEARCH_TRIAL,
+    recorder: Recorder | None = None,
+    on_end: Callable[[], object] = lambda: None,
+) -> tuple[Trials, FloatArray]:
+    """Let n gaits walk side by side in one sim, as the search rates them.
+
+    Only the ground and (if the rules spread them) the start poses are random. The same
+    gait on the same ground gives the same bits again.
+
+    Args:
+      plan: robot, sim and threads.
+      tried: n gaits, or their vectors (n, 16).
+      grounds: n grounds; give one object n times to share it.
+      poses: n seeds of the start poses, if the rules spread these.
+      rules: when a walk is over.
+      recorder: notes every tick.
+      on_end: called once for each walk that is over.
+
+    Returns:
+      How the walks went, and their rewards (n,) [cm/s].
+    """
+    description = robots.get(plan.robot)
+    noiseless = [np.random.SeedSequence(0)] * len(tried)
+    world = make_sim(description, grounds, noiseless, plan.options, plan.sim)
+    with contextlib.closing(world):
+        trials = walk_trials(
+            world, tried, rules, poses, recorder=recorder, on_end=on_end
+        )
+    penalty_cm_s = FALL_PENALTY_CM_S * description.scale.speed
+    return trials, reward_cm_s(trials, rules.limit_s, penalty_cm_s)
+
+
+def _generation(
+    plan: SearchPlan, strategy: GaitSearch, ground: Heightfield
+) -> dict[str, Any]:
+    """Rate the samples of one generation, and the mean gait they are drawn from."""
+    tried = np.vstack([strategy.ask(), strategy.mean.to_vector()])
+    trials, rewards = rate(plan, tried, [ground] * len(tried))
+    strategy.tell(rewards[:-1])
+    return {
+        "rewards": rewards[:-1].tolist(),
+        "falls": int(trials.fell[:-1].sum()),
+        "mean_reward": float(rewards[-1]),
+        "mean_fell": bool(trials.fell[-1]),
+        "best_gait": dict(Gait.from_vector(tried[int(rewards[:-1].argmax())])),
+        "spread": strategy.spread.tolist(),
+        "sigma": strategy.sigma,
+    }
+
+
+def _ratings(plan: SearchPlan, means: FloatArray) -> list[FloatArray]:
+    """Rewards (n,) [cm/s] of the n mean gaits, `RATINGS` times on different grounds."""
+    _, _, of_ratings, _ = plan.seeds()
+    grounds = plan.grounds(plan.generations + RATINGS)[plan.generations :]
+    ratings = []
+    for ground, pose in zip(grounds, of_ratings.spawn(RATINGS), strict=True):
+        alike = [ground.make()] * len(means), [pose] * len(means)
+        ratings.append(rate(plan, means, *alike, rules=RATED)[1])
+    return ratings
