@@ -30,7 +30,7 @@ from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao_studies.page import CELLS, DIAGNOSED, DIAGNOSED_SIM
 from experiments.walking.evaluation import Study, evaluate
-from experiments.walking.reward import FALL_PENALTY_CM_S
+from experiments.walking.trials import FALL_PENALTY_CM_S
 from experiments.walking.tuning import Budget, Rater, tune
 from sgat.transformers.catalogue import grounding
 from sgat.walks.gait_cloud import GaitCloud
