@@ -6,12 +6,12 @@ STUDIES = {
     "toy": Verb("transfer.toy", "TransferToy", "the paper's toy MDPs, solved exactly"),
     "cliff": Verb("transfer.cliff", "TransferCliff", "cliff walking over noise"),
     "inverted-pendulum": Verb(
-        "transfer.inverted_pendulum",
+        "transfer.gym_domains",
         "TransferInvertedPendulum",
         "a noisy pendulum with a heavier pole",
     ),
     "half-cheetah": Verb(
-        "transfer.half_cheetah", "TransferHalfCheetah", "noisy and heavier cheetahs"
+        "transfer.gym_domains", "TransferHalfCheetah", "noisy and heavier cheetahs"
     ),
     "nao": Verb("transfer.nao", "TransferNao", "gaits for uneven ground"),
     "nao-falls": Verb(

@@ -16,21 +16,24 @@ from sgat.transformers.transformer import Transformer
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 
 NOISY_SIM, NOISY_REAL = "noisy-sim", "noisy-real"
-"""Settings: what is real differs from the sim by noise only, or by masses, too."""
+"""Settings of a real world: it differs from the sim by noise on actions only, or by
+noise and masses."""
 
 
 @dataclass(frozen=True)
 class Domain:
-    """An environment of Gymnasium, and how its real world differs.
+    """An environment of Gymnasium, which is the sim, and how its real world differs.
 
     Attributes:
-      environment: its name; as it is, it is the sim.
-      mass_factor: of the real world's heavier bodies.
-      heavy_bodies: their names; none stands for all.
-      control_cost: what the reward charges for the action's square.
-      settings: that the paper shows.
+      name: of the domain, as on the command line.
+      environment: id of the environment in Gymnasium.
+      mass_factor: mass and inertia of the real world's heavier bodies over the sim's.
+      heavy_bodies: names of those bodies; all bodies if empty.
+      control_cost: what the reward charges for the square of an action of 1.
+      settings: of real worlds that the SGAT paper shows.
     """
 
+    name: str
     environment: str
     mass_factor: float
     heavy_bodies: tuple[str, ...] = ()
@@ -38,24 +41,27 @@ class Domain:
     settings: tuple[str, ...] = (NOISY_REAL,)
 
     def sim(self, transformer: Transformer | None = None) -> Environment:
-        """The sim, or the sim behind an action transformer.
+        """The sim, behind an action transformer if one is given.
 
-        The reward is always that of the policy's own action, as the paper defines it.
+        The reward is that of the policy's own action, as in the SGAT paper.
         """
         return self._behind(transformer, self._plain())
 
     def noisy_sim(self, noise: float) -> Environment:
-        """The sim behind noise; see `real`."""
+        """The sim with noise on its actions.
+
+        Args:
+          noise: standard deviation, in the unit of `real`.
+        """
         return self._behind(self._noise(noise), self._plain())
 
     def real(self, setting: str, noise: float) -> Environment:
-        """A world that stands for the real one.
+        """A world that plays the role of the real one.
 
         Args:
           setting: `NOISY_SIM` or `NOISY_REAL`.
           noise: standard deviation of the Gaussian noise on actions, as a fraction of
-            half of the action's range. It is added, then the sum is clipped to the
-            range, and the policy's array stays as it is.
+            half of the action's range. The noisy action is clipped to the range.
         """
         env = self._plain()
         if setting == NOISY_REAL:
@@ -65,7 +71,7 @@ class Domain:
         return self._behind(self._noise(noise), env)
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(a,) least and (a,) largest action."""
+        """(a,) least and (a,) largest action, in the environment's unit."""
         space = self._plain().action_space
         assert isinstance(space, gym.spaces.Box)
         return space.low.astype(float), space.high.astype(float)
@@ -84,7 +90,7 @@ class Domain:
         return GroundedEnv(env, transformer, self._reward_of())
 
     def _reward_of(self) -> RewardOf | None:
-        """Charges the policy's action instead of the one that the environment got."""
+        """Corrects the reward: the control cost is that of the policy's action."""
         if not self.control_cost:
             return None
 
@@ -95,10 +101,14 @@ class Domain:
         return charged
 
 
-INVERTED_PENDULUM = Domain("InvertedPendulum-v5", 10.0, ("pole",))
+INVERTED_PENDULUM = Domain("inverted-pendulum", "InvertedPendulum-v5", 10.0, ("pole",))
 """The paper's real pendulum: its pole weighs ten times as much (50.186 kg)."""
 
 HALF_CHEETAH = Domain(
-    "HalfCheetah-v5", 20 / 14, (), 0.1, settings=(NOISY_SIM, NOISY_REAL)
+    "half-cheetah",
+    "HalfCheetah-v5",
+    20 / 14,
+    control_cost=0.1,
+    settings=(NOISY_SIM, NOISY_REAL),
 )
 """The paper's real cheetah weighs 43 % more: 20 instead of 14 kg."""

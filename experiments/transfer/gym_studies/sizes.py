@@ -1,8 +1,13 @@
 """How large a Gymnasium study is: the full grid, a reduced one, or a smoke test."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
+from experiments.transfer.gym_studies.environments import (
+    HALF_CHEETAH,
+    INVERTED_PENDULUM,
+)
 from experiments.transfer.gym_studies.training import TrpoConfig
 
 SizeName = Literal["full", "reduced", "smoke"]
@@ -10,18 +15,18 @@ SizeName = Literal["full", "reduced", "smoke"]
 
 @dataclass(frozen=True)
 class Size:
-    """What the options of a study stand for where they are not given.
+    """Values for the options of a study that are not given.
 
     Attributes:
-      seeds: trainings of each method.
-      noises: of the real worlds.
-      timesteps: of each training.
-      episodes: on real, of each policy that was found.
-      real_steps: transitions of the real world for a grounding.
-      sim_steps: transitions of the sim for a grounding.
-      envelopes: noise levels that ANE chooses from.
-      search_episodes: on real, for ANE to judge a level.
-      trpo: of the policies.
+      seeds: number of trainings of each method.
+      noises: of the real worlds' actions; see `Domain.real`.
+      timesteps: environment steps in each training.
+      episodes: real episodes in which each policy is tried.
+      real_steps: transitions of the real world that a grounding collects.
+      sim_steps: transitions of the sim that a grounding collects.
+      envelopes: noise levels that ANE chooses from; units as in `Domain.real`.
+      search_episodes: real episodes by which ANE judges a level.
+      trpo: parameters of the training algorithm.
     """
 
     seeds: int
@@ -35,6 +40,65 @@ class Size:
     trpo: TrpoConfig
 
 
+PENDULUM_TRPO = TrpoConfig(5000, 0.98, 0.9, 0.01, 20, 2.35e-4, 10, 0.00428, 125)
+CHEETAH_TRPO = TrpoConfig(2048, 0.99, 0.95, 0.01, 15, 0.1, 5, 1e-3, 128)
+"""Parameters from `rl_gat`, later code by the authors of the grounding papers."""
+
 SMOKE_TRPO = TrpoConfig(64, 0.99, 0.95, 0.01, 5, 0.1, 1, 1e-3, 64)
+"""Parameters that train nothing useful, but everything runs once."""
 
 SMOKE = Size(2, (0.5,), 64, 2, 200, 200, (0.2, 0.5), 1, SMOKE_TRPO)
+
+SIZES: Mapping[str, Mapping[SizeName, Size]] = {
+    INVERTED_PENDULUM.name: {
+        "full": Size(
+            seeds=10,
+            noises=(0.0, 0.1, 0.2, 0.3, 0.4, 0.5),
+            timesteps=1_000_000,
+            episodes=50,
+            real_steps=5000,
+            sim_steps=20_000,
+            envelopes=(0.1, 0.3, 0.5),
+            search_episodes=10,
+            trpo=PENDULUM_TRPO,
+        ),
+        "reduced": Size(
+            seeds=6,
+            noises=(0.0, 0.25, 0.5),
+            timesteps=100_000,
+            episodes=20,
+            real_steps=5000,
+            sim_steps=10_000,
+            envelopes=(0.2, 0.5),
+            search_episodes=5,
+            trpo=replace(PENDULUM_TRPO, batch=1024, max_kl=0.04, value_batch=128),
+        ),
+        "smoke": SMOKE,
+    },
+    HALF_CHEETAH.name: {
+        "full": Size(
+            seeds=10,
+            noises=(0.1, 0.2, 0.3, 0.4, 0.5),
+            timesteps=1_000_000,
+            episodes=50,
+            real_steps=10_000,
+            sim_steps=40_000,
+            envelopes=(0.1, 0.3, 0.5),
+            search_episodes=10,
+            trpo=CHEETAH_TRPO,
+        ),
+        "reduced": Size(
+            seeds=3,
+            noises=(0.2, 0.5),
+            timesteps=200_000,
+            episodes=20,
+            real_steps=10_000,
+            sim_steps=20_000,
+            envelopes=(0.1, 0.3, 0.5),
+            search_episodes=5,
+            trpo=CHEETAH_TRPO,
+        ),
+        "smoke": SMOKE,
+    },
+}
+"""Sizes by the name of the domain."""

@@ -5,13 +5,14 @@ import json
 import pytest
 from matplotlib.image import imread
 
-from experiments.transfer import half_cheetah as transfer_half_cheetah
-from experiments.transfer import inverted_pendulum as transfer_inverted_pendulum
+from experiments.transfer import gym_domains
+from experiments.transfer.gym_domains import (
+    TransferHalfCheetah,
+    TransferInvertedPendulum,
+)
 from experiments.transfer.gym_studies.figure import returns_figure
 from experiments.transfer.gym_studies.rows import check_claims, rows_of
 from experiments.transfer.gym_studies.study import METHODS
-from experiments.transfer.half_cheetah import TransferHalfCheetah
-from experiments.transfer.inverted_pendulum import TransferInvertedPendulum
 from groundwalk.errors import BadValueError, UnknownNameError
 
 
@@ -20,7 +21,7 @@ def pendulum(tmp_path_factory):
     """A smoke run with every method: its folder."""
     folder = tmp_path_factory.mktemp("pendulum") / "run"
     options = TransferInvertedPendulum(size="smoke", out=folder)
-    transfer_inverted_pendulum.main(options)
+    gym_domains.main(options)
     return folder
 
 
@@ -66,7 +67,7 @@ def test_resuming_computes_only_what_is_missing(pendulum, in_this_process):
     lost.unlink()
     marked = json.loads(kept.read_text()) | {"kept": True}
     kept.write_text(json.dumps(marked))
-    transfer_inverted_pendulum.main(TransferInvertedPendulum(resume=pendulum))
+    gym_domains.main(TransferInvertedPendulum(resume=pendulum))
     after = result_of(pendulum)
     assert sum(cell.pop("kept", False) for cell in after["cells"]) == 1
     # the lost cell came out the same, in another process
@@ -82,7 +83,7 @@ def test_the_cheetah_has_both_settings(tmp_path, capsys, in_this_process):
         out=tmp_path / "run",
         json=True,
     )
-    transfer_half_cheetah.main(options)
+    gym_domains.main(options)
     result = json.loads(capsys.readouterr().out)
     assert [row["setting"] for row in result["rows"]] == ["noisy-sim", "noisy-real"]
     assert not (tmp_path / "run" / "policies" / "ane_0.2_s0.zip").exists()

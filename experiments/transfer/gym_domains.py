@@ -1,6 +1,5 @@
-"""What the Gymnasium studies share: their options, their run, and its resuming."""
+"""The verbs `transfer inverted-pendulum` and `transfer half-cheetah`."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,36 +10,38 @@ from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
 from experiments.transfer.claims import claim_lines
-from experiments.transfer.gym_studies.environments import Domain
+from experiments.transfer.gym_studies.environments import (
+    HALF_CHEETAH,
+    INVERTED_PENDULUM,
+    Domain,
+)
 from experiments.transfer.gym_studies.figure import draw_returns
 from experiments.transfer.gym_studies.grounding import GroundingConfig
 from experiments.transfer.gym_studies.page import write_gym_page
 from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
-from experiments.transfer.gym_studies.sizes import Size, SizeName
+from experiments.transfer.gym_studies.sizes import SIZES, SizeName
 from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, Job, do_job
 
 
 @dataclass(frozen=True)
 class TransferGym(RunOptions):
-    """Options of a study.
+    """Options of a study; a subclass names its domain and its page's title.
 
     Options that are not given follow from the size.
 
-    A study is a subclass that names its environment and its sizes.
-
     Attributes:
-      size: of the grid.
-      seeds: trainings of each method.
-      noises: of the real worlds: standard deviations of the actions' noise, as
-        fractions of half of their range.
-      methods: to compare.
-      timesteps: of each training.
-      episodes: on real, of each policy that was found.
-      threads: trainings at a time, each in a process of its own.
+      size: gives the values of all options that are not given.
+      seeds: number of trainings of each method.
+      noises: noise on the actions of the real worlds to try, as standard deviations in
+        fractions of half of the action's range.
+      methods: methods to compare.
+      timesteps: environment steps in each training.
+      episodes: real episodes in which each policy is tried.
+      threads: number of trainings at a time, each in its own process.
     """
 
     domain: ClassVar[Domain]
-    sizes: ClassVar[Mapping[str, Size]]
+    title: ClassVar[str]
 
     size: SizeName = "reduced"
     seeds: int | None = None
@@ -57,8 +58,8 @@ class TransferGym(RunOptions):
         super().__post_init__()
 
     def study(self) -> GymStudy:
-        """How the methods are compared."""
-        size = self.sizes[self.size]
+        """The study that these options describe."""
+        size = SIZES[self.domain.name][self.size]
         return GymStudy(
             self.domain,
             self.domain.settings,
@@ -75,15 +76,30 @@ class TransferGym(RunOptions):
         )
 
 
-def run_study(verb: str, title: str, figure: str, config: TransferGym) -> None:
-    """Compare the methods in every real world, and write everything down.
+@dataclass(frozen=True)
+class TransferInvertedPendulum(TransferGym):
+    """Train for noisy, heavier pendulums: no grounding, GAT, SGAT, ANE, real."""
 
-    Args:
-      verb: as on the command line.
-      title: of the page.
-      figure: its file.
-      config: what to do.
-    """
+    domain: ClassVar[Domain] = INVERTED_PENDULUM
+    title: ClassVar[str] = (
+        "Inverted pendulum: from the sim to a noisy world with a heavier pole"
+    )
+
+
+@dataclass(frozen=True)
+class TransferHalfCheetah(TransferGym):
+    """Train cheetahs for noisy, heavier worlds: no grounding, GAT, SGAT, ANE, real."""
+
+    domain: ClassVar[Domain] = HALF_CHEETAH
+    title: ClassVar[str] = (
+        "Half cheetah: from the sim to noisy worlds, one of them heavier"
+    )
+
+
+def main(config: TransferGym) -> None:
+    """Compare the methods in every real world, and write everything down."""
+    verb = f"transfer-{config.domain.name}"
+    figure = f"{verb.replace('-', '_')}.png"
     folder, config = open_run(verb, config)
     study = config.study()
     cells = _compute(study, folder, config.threads)
@@ -98,7 +114,7 @@ def run_study(verb: str, title: str, figure: str, config: TransferGym) -> None:
     folder.write_json(RESULT, result)
     with extra(figure):
         draw_returns(rows, folder.path / figure)
-    write_gym_page(folder, title, figure, (config.size, study), result)
+    write_gym_page(folder, config.title, figure, (config.size, study), result)
     if config.json:
         print_json(result)
     else:
@@ -108,7 +124,7 @@ def run_study(verb: str, title: str, figure: str, config: TransferGym) -> None:
 
 
 def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
-    """All cells; files that the run's folder has are not computed again."""
+    """Compute the cells whose files are missing in the run's folder, and read all."""
     stages = study.stages()
     every = [job for stage in stages for job in stage]
     done = sum(folder.has(job.file) for job in every)
