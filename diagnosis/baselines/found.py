@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import norm
 
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import EffectAt, Estimate, Found
 
-NORMAL_80 = 1.2815515655446004
+NORMAL_80 = float(norm.ppf(0.9))
 """Half of an 80 % interval, in standard deviations."""
 
 _LARGEST = 1e12
@@ -42,7 +43,10 @@ def found_effect(
             for each in (value, *span)
         )
         estimates[parameter.name] = Estimate(
-            value, min(low, value), max(high, value), parameter.unit
+            value,
+            min(low, value),
+            max(high, value),
+            plant.unit(parameter.unit, placed.place),
         )
     return Found(
         placed.name,

@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.stats import norm
 
 from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.baselines.sysid_models import (
@@ -51,7 +52,7 @@ viscous friction and a servo's damping, are the same to these data."""
 LEAST_CHANGE = 0.1
 """Of a size worth trying first; below it nothing counts as missing."""
 
-_NORMAL_95 = 1.959963984540054
+_NORMAL_95 = float(norm.ppf(0.975))
 _WORST = 1e3
 
 

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 
 from diagnosis.baselines import BASELINES, bic, sparse, sysid
+from diagnosis.baselines.found import found_effect
 from diagnosis.baselines.sparse import sequential_threshold
 from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.verdict.verdict import Estimate, Verdict
 from groundwalk.errors import GroundwalkError
 from worlds.recordings.metadata import ServoGains
 
@@ -124,6 +125,15 @@ def test_sparse_names_dry_friction_only_where_it_is(plant, dry, clean):
     assert torque == pytest.approx(0.15, rel=0.4)  # smoothing takes some of it
     assert sum(each.probability for each in verdict.effects) <= 1 + 1e-9
     assert sparse.answer(plant, clean).kind == "none"
+
+
+def test_a_sliding_joint_has_forces_and_metres(tmp_path):
+    path = tmp_path / "sled.xml"
+    path.write_text(XML.replace('axis="0 1 0"', 'axis="1 0 0" type="slide"'))
+    sled = load_plant(path, "fixed", servo=ServoGains(KP, KD, LIMIT))
+    rubs = PlacedEffect("coulomb_friction", "swing", (0.15,))
+    found = found_effect(sled, rubs, [(0.1, 0.2)], 0.9)
+    assert found.parameters["torque"] == Estimate(0.15, 0.1, 0.2, "N")
 
 
 def test_thresholding_keeps_what_made_the_target_and_drops_the_rest():
