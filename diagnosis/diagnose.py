@@ -43,8 +43,7 @@ from diagnosis.search.reference import (
 from diagnosis.search.result import SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
-from diagnosis.traces.torque_drive import DriveBy
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import DriveBy, Trace
 from diagnosis.verdict.verdict import Amount, EffectAt, Fit, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 

@@ -13,9 +13,8 @@ from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.diagnose import Diagnosis, diagnose
 from diagnosis.search.rules import Rules
-from diagnosis.traces.read import read_traces
-from diagnosis.traces.reference_reading import read_reference
-from diagnosis.traces.torque_drive import DriveBy
+from diagnosis.traces.read import read_reference, read_traces
+from diagnosis.traces.trace import DriveBy
 from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict

@@ -71,8 +71,7 @@ def _motion(trace: Trace, every: int) -> Motion:
     servo = trace.servo
     kp = np.broadcast_to(servo.kp_nm_rad, q.shape)
     kd = np.broadcast_to(servo.kd_nm_s_rad, q.shape)
-    limit = servo.max_torque_nm
-    torque = np.clip(kp * (command - q) - kd * v, -limit, limit)
+    torque = servo.torque(command - q, v)
     since_s = (trace.time_s - trace.time_s[0])[:, None]
     whole = np.isfinite(np.hstack([q, v, a, command, rate])).all(axis=1)
     inside = (since_s[:, 0] > _EDGE_S) & (since_s[:, 0] < since_s[-1, 0] - _EDGE_S)

@@ -1,4 +1,4 @@
-"""What holds each joint of a plant at its command."""
+"""The servos that drive a robot model's joints towards their commands."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,19 +9,55 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 
 
+def servo_torque(
+    kp_nm_rad: FloatArray,
+    kd_nm_s_rad: FloatArray,
+    max_torque_nm: FloatArray,
+    error_rad: FloatArray,
+    velocity_rad_s: FloatArray,
+) -> FloatArray:
+    """The torque that servos ask for: clip(kp error - kd velocity, +-max_torque).
+
+    All arguments have shapes that broadcast against each other. Sliding joints have
+    N for N m and m for rad.
+
+    Args:
+      kp_nm_rad: stiffness.
+      kd_nm_s_rad: damping.
+      max_torque_nm: torque limit; infinite where there is none.
+      error_rad: command less position.
+      velocity_rad_s: velocity of the joints.
+
+    Returns:
+      Torques [N m], without the back-EMF of the motors.
+    """
+    asked = kp_nm_rad * error_rad - kd_nm_s_rad * velocity_rad_s
+    return np.asarray(np.clip(asked, -max_torque_nm, max_torque_nm))
+
+
 @dataclass(frozen=True, eq=False)
 class Servo:
-    """The servos of all j joints.
+    """The servos of all j joints of a robot model.
 
-    Torque = clip(kp (command - q) - kd v, +-max_torque) - back_emf v: what a firmware
-    asks for is limited, what the turning motor induces is not. For sliding joints read
-    N for N m and m for rad.
+    Their torque is `servo_torque` - back_emf * velocity: the firmware limits what it
+    asks for, but not the torque that the turning motor induces. Sliding joints have N
+    for N m and m for rad.
 
     Attributes:
       kp_nm_rad: (j,) stiffness.
-      kd_nm_s_rad: (j,) damping within the limit.
-      max_torque_nm: (j,) limit; infinite where there is none.
-      back_emf_nm_s_rad: (j,) damping beside the limit.
+      kd_nm_s_rad: (j,) damping, part of the limited torque.
+      max_torque_nm: (j,) torque limit; infinite where there is none.
+      back_emf_nm_s_rad: (j,) damping outside of the limit.
+
+    Raises:
+      BadValueError: a value is negative or missing.
+
+    Example:
+      >>> import numpy as np
+      >>> one = np.ones(1)
+      >>> servo = Servo(20 * one, one, 3 * one, 0 * one)
+      >>> servo.torque(0.1 * one, 0.5 * one)
+      array([1.5])
     """
 
     kp_nm_rad: FloatArray
@@ -30,19 +66,34 @@ class Servo:
     back_emf_nm_s_rad: FloatArray
 
     def __post_init__(self) -> None:
-        """Refuse servos that push the wrong way."""
+        """Refuse negative values and arrays of unequal lengths."""
         for name, values in vars(self).items():
             if values.shape != self.kp_nm_rad.shape:
                 raise BadValueError(f"{name} must have one value for each joint")
             if np.isnan(values).any() or (values < 0).any():
                 raise BadValueError(f"{name} must not be negative: {values}")
 
+    def torque(self, error_rad: FloatArray, velocity_rad_s: FloatArray) -> FloatArray:
+        """(..., j) torques [N m] that the servos ask for, without back-EMF.
+
+        Args:
+          error_rad: (..., j) command less position.
+          velocity_rad_s: (..., j) velocities of the joints.
+        """
+        return servo_torque(
+            self.kp_nm_rad,
+            self.kd_nm_s_rad,
+            self.max_torque_nm,
+            error_rad,
+            velocity_rad_s,
+        )
+
     def of(self, columns: Sequence[int]) -> "Servo":
-        """Those of some joints."""
+        """The servos of the joints in some columns."""
         return Servo(*(values[list(columns)] for values in vars(self).values()))
 
     @classmethod
     def ideal(cls, joints: int) -> "Servo":
-        """No servo at all: for joints that are driven by torque."""
+        """Servos without stiffness: `joints` joints that are driven by torques."""
         zero = np.zeros(joints)
         return cls(zero, zero, np.full(joints, np.inf), zero)

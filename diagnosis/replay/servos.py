@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.plant.servo import Servo
+from diagnosis.plant.servo import Servo, servo_torque
 from diagnosis.replay.columns import columns
 from diagnosis.replay.elastic import ElasticJoints
 from groundwalk.arrays import FloatArray
@@ -102,7 +102,7 @@ class BatchServos:
         kp, kd, limit = (self.law[name] for name in ("kp", "kd", "limit"))
         share = first_share(mean_rad, ends)
         first, last = (
-            np.clip(kp * (end - angle) - kd * velocity, -limit, limit) for end in ends
+            servo_torque(kp, kd, limit, end - angle, velocity) for end in ends
         )
         torque = share * first + (1 - share) * last
         target = angle + (torque + kd * velocity) / np.maximum(kp, LEAST_KP)
@@ -127,7 +127,8 @@ class BatchServos:
           velocity: likewise.
         """
         kp, kd = self.law["kp"], self.law["kd"]
-        torque = np.abs(kp * (asked_rad - angle) - kd * velocity)
+        unlimited = np.asarray(np.inf)
+        torque = np.abs(servo_torque(kp, kd, unlimited, asked_rad - angle, velocity))
         free = (torque > self._limit) & (torque < self._held_from)
         relaxed = bool(free.any())
         if relaxed or self._relaxed:

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.traces.stretches import stretches
+from diagnosis.traces.trace import stretches
 from groundwalk.arrays import BoolArray, FloatArray
 
 BIN_S = 0.05

@@ -4,7 +4,7 @@ import numpy as np
 
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.traces.moving_mean import moving_mean
+from diagnosis.traces.smoothing import moving_mean
 from diagnosis.verdict.verdict import Unexplained
 from groundwalk.arrays import FloatArray
 

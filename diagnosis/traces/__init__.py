@@ -1,1 +1,21 @@
-"""Recordings made ready to be held against a plant: read, cut, smoothed, split."""
+"""Recordings as traces in a robot model's order of joints, and their analysis.
+
+`read_traces` reads recordings and loads their robot model; `read_reference` reads those
+of the healthy robot. The other modules smooth, cut and divide traces, estimate sensor
+noise, and find stalls and pulses.
+"""
+
+from diagnosis.traces.read import read_reference, read_traces, trace_of
+from diagnosis.traces.split import Split, split
+from diagnosis.traces.trace import DriveBy, Trace, driven_by_torques
+
+__all__ = [
+    "DriveBy",
+    "Split",
+    "Trace",
+    "driven_by_torques",
+    "read_reference",
+    "read_traces",
+    "split",
+    "trace_of",
+]

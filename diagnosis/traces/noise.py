@@ -9,29 +9,29 @@ from scipy.stats import chi2
 from groundwalk.arrays import BoolArray, FloatArray
 
 _ORDERS = (3, 5)
-"""Of the differences; the higher one cancels quick motion better."""
+"""Orders of the differences; the higher one cancels quick motion better."""
 _BLOCK = 40
-"""Rows in which motion is either there or not."""
+"""Rows of a block; each block is judged as quiet or moving."""
 _QUIET = 0.25
-"""Share of blocks taken as quiet."""
+"""Quantile of the blocks' mean squares that stands for the quiet ones."""
 _FINEST = 1e-6
-"""A step below this share of the range is no quantum but rounding."""
+"""Smallest quantum as a share of the range; smaller steps are rounding."""
 _ON_GRID = 0.1
-"""A value counts as a multiple within this share of a step ..."""
+"""Largest distance from a multiple of the step, as a share of the step."""
 _NEARLY_ALL = 0.95
-"""... and a grid must hold this share of the values."""
+"""Share of the values that must be multiples of a quantum."""
 _CANDIDATES = (0.0, 0.02, 0.1, 0.25, 0.5, 0.75)
-"""Quantiles of the gaps between levels that are tried as steps."""
+"""Quantiles of the gaps between distinct values that are tried as quanta."""
 _GAP = 2.5
-"""Ticks longer than this many median ones interrupt the differences."""
+"""Ticks longer than this many median ticks interrupt the differences."""
 
 
 @dataclass(frozen=True)
 class Noise:
-    """What a channel shows when nothing happens, in its unit.
+    """Sensor noise of a channel, in the channel's unit.
 
     Attributes:
-      std: of the white noise besides rounding.
+      std: standard deviation of the white noise, rounding not included.
       quantum: step to which values are rounded; None if they are continuous.
     """
 
@@ -40,26 +40,29 @@ class Noise:
 
     @property
     def total(self) -> float:
-        """Standard deviation with that of rounding, quantum / sqrt(12)."""
+        """Standard deviation of noise and rounding together."""
         return float(np.hypot(self.std, (self.quantum or 0.0) / np.sqrt(12)))
 
     @property
     def step(self) -> float:
-        """What a row may differ by from the one before though nothing happens."""
+        """Difference of two rows in a row that noise alone can make."""
         return max(self.total, self.quantum or 0.0)
 
 
 def noise_of(time_s: FloatArray, values: FloatArray) -> Noise:
-    """The noise of one channel.
+    """Estimate the noise of one channel.
 
-    White noise comes from differences of high order, which a parabola does not have;
-    of these from the quietest quarter of blocks, so that motion counts as little as
-    it can. Blocks in which a rounded value does not change tell nothing and are left
-    out. What remains is an upper bound where the channel never rests.
+    Differences of high order cancel smooth motion and keep white noise. They are taken
+    from the quietest quarter of all blocks of rows, so that motion counts as little as
+    possible. Blocks in which a rounded value does not change are left out. The result
+    is an upper bound where the channel never rests.
 
     Args:
       time_s: (T,) increasing, may be uneven.
       values: (T,) NaN where missing.
+
+    Returns:
+      White noise and quantum in the channel's unit.
     """
     quantum = quantum_of(values)
     there = np.isfinite(values)
@@ -68,15 +71,17 @@ def noise_of(time_s: FloatArray, values: FloatArray) -> Noise:
 
 
 def quantum_of(values: FloatArray) -> float | None:
-    """The step of which nearly all values are multiples, from any origin.
+    """Find the step to which values are rounded, whatever the origin of the steps.
 
-    Of steps that qualify the largest counts: its fractions would, too.
+    The largest step of which nearly all values are multiples counts, since all of its
+    fractions would fit, too.
 
     Args:
       values: (T,) NaN where missing.
 
     Returns:
-      The step, or None: values are continuous, or too few differ to tell.
+      The step in the unit of the values; None if they are continuous, or if too few of
+      them differ to know.
     """
     there = values[np.isfinite(values)]
     levels = np.unique(there)
@@ -98,7 +103,7 @@ def quantum_of(values: FloatArray) -> float | None:
 
 
 def _refined(levels: FloatArray, gaps: FloatArray, step: float) -> float:
-    """A better step: the gaps' average, then the slope of levels over their number."""
+    """Refine a step: first by the median gap, then by a line through the levels."""
     counts = np.maximum(np.round(gaps / step), 1.0)
     on_grid = np.abs(gaps / step - counts) < 2 * _ON_GRID
     if not on_grid.any():
@@ -137,7 +142,7 @@ def _differences(
 
 
 def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
-    """Mean square of differences in quiet blocks, as all of white noise would have."""
+    """Mean square of white noise, estimated from the differences in quiet blocks."""
     differences, valid = _differences(time_s, values, order)
     squares = np.where(valid, differences**2, np.nan)
     whole = len(squares) // _BLOCK * _BLOCK
@@ -157,7 +162,7 @@ def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
 
 
 def _correlated(order: int) -> float:
-    """By how much differences of white noise tell less than independent values.
+    """How many correlated differences of white noise count as one independent value.
 
     The correlation of those k rows apart is binom(2p, p + k) / binom(2p, p) for the
     order p; a mean square of n correlated values has n / sum(correlation^2) degrees

@@ -1,4 +1,8 @@
-"""Where pulses came in: which signal jumps at their edges, what the motion obeys."""
+"""Finds out where pulses came in: at the actuator, a torque or a position sensor.
+
+The signal that jumps at the edges of the pulses says so, and whether the motion obeys
+them.
+"""
 
 from collections.abc import Sequence
 
@@ -12,20 +16,20 @@ from diagnosis.verdict.parts import PulseSource
 from groundwalk.arrays import BoolArray, FloatArray
 
 Stretch = tuple[int, int]
-"""First row, and one past the last."""
+"""First row of a pulse, and the row after its last one."""
 
 EDGE_ROWS, NEAR_ROWS = 4, 3
-"""Before and after an edge that say how far a signal jumps there; an edge is known to a
-few rows."""
+"""Rows before and after an edge that are compared, and the uncertainty of an edge in
+rows."""
 
 UNSURE_S = 0.02
-"""Around an edge smoothed speeds and accelerations are wrong."""
+"""Time around an edge [s] in which smoothed speeds and accelerations are wrong."""
 
 MOSTLY = 0.5
-"""Share of pulses that is felt if they are real."""
+"""Share of a pulse that the motion must obey for the pulse to be a real torque."""
 
 NEARLY_ALL = 0.7
-"""Share of the jumps that is in one signal, if pulses are."""
+"""Share of the pulses' size that one signal must jump by to be their origin."""
 
 
 def source_of(
@@ -35,7 +39,19 @@ def source_of(
     where: Sequence[Stretch],
     sizes: FloatArray,
 ) -> tuple[PulseSource | None, dict[str, float], float]:
-    """Where pulses came in, how much jumps in which signal, and how much was felt."""
+    """Find out in which signal a joint's pulses are.
+
+    Args:
+      plant: the nominal robot model.
+      trace: a whole recording with commands and measured torques.
+      column: the joint's.
+      where: rows of the pulses.
+      sizes: torque of each pulse [N m].
+
+    Returns:
+      The source, or None if no signal has them; the jumps at the edges by signal, as a
+      share of the pulses' sizes; and the share of the pulses that the motion obeys.
+    """
     assert trace.torque_nm is not None
     assert trace.command_rad is not None
     kp = float(trace.servo.kp_nm_rad[column])
@@ -55,7 +71,7 @@ def source_of(
 
 
 def _jump(values: FloatArray, where: Sequence[Stretch], sizes: FloatArray) -> float:
-    """How far a signal jumps at the pulses' edges, as a share of their sizes."""
+    """Mean jump of a signal at the pulses' edges, as a share of their sizes."""
     steps, wanted, margin = 0.0, 0.0, EDGE_ROWS + NEAR_ROWS
     for (first, last), size in zip(where, sizes, strict=True):
         for row, sign in ((first, 1.0), (last, -1.0)):
@@ -66,7 +82,14 @@ def _jump(values: FloatArray, where: Sequence[Stretch], sizes: FloatArray) -> fl
 
 
 def step_at(values: FloatArray, row: int) -> tuple[float, int]:
-    """What a signal jumps by, besides its even course, and at which row near one."""
+    """Largest jump of a signal near a row, and the row where it is.
+
+    A line with a step is fitted to the rows before and after.
+
+    Args:
+      values: (T,) the signal.
+      row: where an edge is expected, to within `NEAR_ROWS`.
+    """
     time = np.arange(-EDGE_ROWS, EDGE_ROWS) + 0.5
     design = np.stack([np.ones_like(time), time, (time > 0).astype(float)], axis=1)
     rows = [
@@ -91,8 +114,9 @@ def _felt(
 ) -> float:
     """Share of the measured pulses that the motion obeys.
 
-    What the motion needed less what was measured, regressed on friction and on the
-    pulses: 0 of them is left if they were real, -1 if the joint never felt them.
+    The torque that the motion needs, by inverse dynamics, less the measured torque is
+    regressed on friction and on the pulses. The pulses' coefficient is 0 if they were
+    real and -1 if the joint never felt them.
     """
     assert trace.torque_nm is not None
     smoothed = [smooth(trace.time_s, own) for own in trace.position_rad.T]
@@ -113,7 +137,7 @@ def _felt(
 
 
 def _sure_rows(trace: Trace, where: Sequence[Stretch]) -> BoolArray:
-    """(T,) rows that are not near an edge."""
+    """(T,) whether a row is so far from all edges that its smoothed speed holds."""
     edges = trace.time_s[[min(row, trace.ticks - 1) for one in where for row in one]]
     near = np.abs(trace.time_s[:, None] - edges) < UNSURE_S
     return np.asarray(~near.any(axis=1), bool)

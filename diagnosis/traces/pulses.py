@@ -1,11 +1,11 @@
-"""Pulses: what was added to a servo's torque for a while, and where it came in.
+"""Finds pulses: constant offsets between a measured torque and what the servo asked.
 
-A servo's law says what torque it asks for; where the torque was measured, too, the
-difference of the two is zero as long as all is well. A pulse is a stretch in which it
-is not, flat and between sharp edges. Its edges say in which signal it is, and whether
-the motion obeys it says which torque was real: structured residuals, as for telling a
-fault of an actuator from that of a sensor (Isermann 2005, "Model-based fault-detection
-and diagnosis").
+A servo's law says what torque it asks for. Where the torque was measured, the
+difference of the two is zero for a healthy joint. A pulse is a time span in which the
+difference is constant, between sharp edges. The signal that jumps at the edges, and
+whether the motion obeys the pulse, say where it came in. Such structured residuals
+distinguish the fault of an actuator from that of a sensor (Isermann 2005, "Model-based
+fault-detection and diagnosis").
 """
 
 from collections.abc import Sequence
@@ -22,44 +22,50 @@ from diagnosis.traces.pulse_sources import (
     source_of,
     step_at,
 )
-from diagnosis.traces.servo_law import servo_law
-from diagnosis.traces.stretches import stretches
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.trace import Trace, filled, stretches
 from diagnosis.verdict.parts import Pulse
 from groundwalk.arrays import FloatArray
 
 FILTER_S = 0.01
-"""Single rows that are off are no pulse."""
+"""Width of the median filter [s] that removes outliers of single rows."""
 
 SHORTEST_S, FEWEST = 0.03, 8
-"""A pulse lasts so long, and so many rows."""
+"""A pulse lasts at least this long [s] and at least this many rows."""
 
 QUIET = 0.2
-"""What is left between the pulses, as a part of the smallest ..."""
+"""Largest rms difference between pulses, as a share of the smallest pulse."""
 
 FLAT = 0.3
-"""... and what they vary by themselves, as a part of each."""
+"""Largest standard deviation within a pulse, as a share of its size."""
 
 LEAST_OUTSIDE = 0.1
-"""Share of the rows that no pulse may be in."""
+"""Smallest share of the rows that must lie outside of all pulses."""
 
 LATE = (0.0, 0.5, 1.0)
-"""Ticks: recordings differ in when they note a torque. What leaves least of the ..."""
+"""Delays [ticks] after which a recording may note a torque; all are tried."""
 
 CALM = 0.2
-"""... calmest rows, as a share of all, is right."""
+"""Quantile of the absolute difference by which the delays of `LATE` are compared."""
+
+_QUARTILES = 1.349
+"""Distance of the quartiles of normal noise, in standard deviations."""
 
 
 def pulses_of(plant: Plant, trace: Trace) -> tuple[Pulse, ...]:
-    """The pulses of a recording; none where a servo or its measured torque is missing.
+    """Find the pulses of a recording.
 
     Args:
-      plant: nominal.
-      trace: whole.
+      plant: the nominal robot model.
+      trace: a whole recording.
+
+    Returns:
+      The pulses in the order of time; none where there is no servo, no measured torque
+      or a floating base.
     """
     if trace.torque_nm is None or trace.unheld or plant.base == "floating":
         return ()
-    added = np.stack([trace.torque_nm - servo_law(trace, late) for late in LATE])
+    added = np.stack([trace.torque_nm - _asked_nm(trace, late) for late in LATE])
     found: list[Pulse] = []
     for column in range(len(plant.joints)):
         own = added[:, :, column]
@@ -70,10 +76,11 @@ def pulses_of(plant: Plant, trace: Trace) -> tuple[Pulse, ...]:
 
 
 def without_pulses(plant: Plant, trace: Trace, pulses: Sequence[Pulse]) -> Trace:
-    """The trace with its pulses accounted for.
+    """Take the pulses out of a trace, so that they are not mistaken for physics.
 
-    Those at the actuator's input drive the joint from now on, beside the servo, whose
-    torque is what is left of the measured one. What a sensor made up is missing.
+    A pulse at the actuator's input becomes a torque that acts on the joint in addition
+    to the servo's, and is subtracted from the measured torque. Values that a faulty
+    sensor reported become missing values.
     """
     if not pulses:
         return trace
@@ -96,7 +103,14 @@ def without_pulses(plant: Plant, trace: Trace, pulses: Sequence[Pulse]) -> Trace
 def _of_joint(
     plant: Plant, trace: Trace, column: int, added: FloatArray
 ) -> list[Pulse]:
-    """Of one joint, whose servo got (T,) more than it asked for."""
+    """The pulses of one joint.
+
+    Args:
+      plant: the nominal robot model.
+      trace: a whole recording.
+      column: the joint's.
+      added: (T,) measured torque less what the servo asked for [N m].
+    """
     where = _flat_stretches(trace.time_s, added)
     if not where:
         return []
@@ -128,10 +142,10 @@ def _of_joint(
 
 
 def _flat_stretches(time_s: FloatArray, added: FloatArray) -> list[Stretch]:
-    """Where something flat was added; nowhere if what is between is not quiet.
+    """Time spans of constant difference; none if the difference between is not small.
 
-    A wrong gain or a late command is off in proportion to the servo's own torque: that
-    is neither flat nor quiet in between.
+    A wrong gain or a late command makes a difference in proportion to the servo's own
+    torque, which is neither constant nor small in between.
     """
     tick_s = float(np.median(np.diff(time_s)))
     width = 2 * round(FILTER_S / tick_s / 2) + 1
@@ -160,6 +174,24 @@ def _flat_stretches(time_s: FloatArray, added: FloatArray) -> list[Stretch]:
 
 
 def _spread(values: FloatArray) -> float:
-    """Standard deviation, as the middle half of the values has it."""
+    """Standard deviation by the quartiles, which outliers do not change."""
     low, high = np.quantile(values, (0.25, 0.75))
-    return float(high - low) / 1.349
+    return float(high - low) / _QUARTILES
+
+
+def _asked_nm(trace: Trace, late: float) -> FloatArray:
+    """(T, j) torques that the nominal servos ask for, without back-EMF.
+
+    Args:
+      trace: with position commands.
+      late: when a torque was noted, in ticks: 0 after its row's command took effect, 1
+        before it did, between them the mean of both.
+    """
+    assert trace.command_rad is not None
+    command = filled(trace.command_rad)
+    before = np.vstack([command[:1], command[:-1]])
+    velocity = np.stack(
+        [smooth(trace.time_s, own).rate for own in trace.position_rad.T], axis=1
+    )
+    error = late * before + (1 - late) * command - trace.position_rad
+    return trace.servo.torque(error, velocity)

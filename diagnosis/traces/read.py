@@ -1,4 +1,4 @@
-"""From recordings to traces."""
+"""Reads recordings as traces, and makes the robot model that they belong to."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ _JOINTS = {
 def read_traces(
     paths: Sequence[Path], source: str | Path, servo: Gains | None = None
 ) -> tuple[Plant, list[Trace]]:
-    """Read recordings of one robot and make its plant.
+    """Read recordings of one robot and make its nominal model.
 
     Args:
       paths: the recordings; all have the same joints and the same kind of base.
@@ -48,7 +48,11 @@ def read_traces(
     Raises:
       BadRecordingError: there is no recording, one cannot be read, they do not fit
         together, or they do not fit the robot.
-      UnknownNameError, BadModelError: as `load_plant`.
+      UnknownNameError: there is no such robot.
+      BadModelError: the robot's file is no model.
+
+    Example:
+      See docs/python.md.
     """
     if not paths:
         raise BadRecordingError("no recordings are given")
@@ -72,26 +76,66 @@ def read_traces(
     return plant, traces
 
 
+def read_reference(
+    paths: Sequence[Path],
+    source: str | Path,
+    plant: Plant,
+    servo: Gains | None = None,
+) -> list[Trace]:
+    """Read reference recordings: those of the same robot while it was healthy.
+
+    Args:
+      paths: the recordings; an empty list gives an empty list.
+      source: the robot, as for `load_plant`.
+      plant: robot model of the recordings that are diagnosed.
+      servo: gains for recordings that state none.
+
+    Raises:
+      BadRecordingError: one cannot be read, or it has other joints or another base
+        than the recordings that are diagnosed.
+      UnknownNameError: there is no such robot.
+      BadModelError: the robot's file is no model.
+
+    Example:
+      See docs/diagnosis.md.
+    """
+    if not paths:
+        return []
+    own, traces = read_traces(paths, source, servo)
+    if own.base != plant.base:
+        raise BadRecordingError(
+            f"{paths[0]}: the base of the reference is {own.base}, that of the "
+            f"recordings {plant.base}"
+        )
+    differing = sorted(set(own.joints) ^ set(plant.joints))
+    if differing:
+        raise BadRecordingError(
+            f"{paths[0]}: only one of the reference and the recordings has joint "
+            f"{differing[0]!r}"
+        )
+    return traces
+
+
 def _gains(recording: Recording, servo: Gains | None) -> Gains:
-    """What a recording states, and of other joints what is given."""
+    """Gains by joint: the recording's own, or the given ones where it has none."""
     if isinstance(servo, ServoGains):
         servo = dict.fromkeys(recording.joints, servo)
     return {**(servo or {}), **(recording.metadata.servo or {})}
 
 
 def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
-    """A recording in a plant's order of joints; missing values stay NaN.
+    """Arrange a recording in a robot model's order of joints; missing values stay NaN.
 
     A quantity that only some joints have is NaN at the others. Foot forces are left
-    out where the plant has not two feet.
+    out unless the robot model has two feet.
 
     Args:
-      recording: with a base as the plant's.
-      plant: with the joints of the recording.
-      name: of the trace.
+      recording: with the same kind of base as the plant.
+      plant: a robot model with the joints of the recording.
+      name: the trace's.
 
     Raises:
-      BadRecordingError: the joints are not the plant's, or the base is not.
+      BadRecordingError: the joints or the base are not the plant's.
     """
     for joint in recording.joints:
         if joint not in plant.joints:

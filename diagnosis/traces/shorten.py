@@ -1,4 +1,4 @@
-"""Long recordings cut down to what a search can afford: their liveliest parts."""
+"""Cuts long recordings down to the parts in which the joints move most."""
 
 from collections.abc import Sequence
 
@@ -7,23 +7,26 @@ import numpy as np
 from diagnosis.traces.trace import Trace
 
 LEAST_S = 3.0
-"""Of each trace at least so much is kept, if it has so much."""
+"""Time [s] that is kept of each trace at least, if it is that long."""
 
 LEAST_FLOATING_S = 1.5
-"""Likewise of a robot on its feet, which is replayed in windows: none is warmed up."""
+"""Time [s] that is kept of each trace of a robot with a floating base at least.
+
+It is shorter than `LEAST_S` because such a robot is replayed in short windows without
+a warm-up."""
 
 
 def shortened(
     traces: Sequence[Trace], longest_s: float, least_s: float = LEAST_S
 ) -> list[Trace]:
-    """The traces, or of each the contiguous part in which the joints move most.
+    """Cut each trace to the contiguous part in which the joints move most.
 
     Every trace keeps the same share of its time, as each has a motion of its own.
 
     Args:
-      traces: to be cut.
-      longest_s: of all together.
-      least_s: of each trace.
+      traces: to be cut; all of them stay whole if they are short enough together.
+      longest_s: duration of all parts together [s].
+      least_s: shortest duration of each part [s].
     """
     total_s = sum(trace.duration_s for trace in traces)
     if total_s <= longest_s:

@@ -11,22 +11,22 @@ from groundwalk.arrays import FloatArray
 
 _DEGREE = 5
 _ORDER = 3
-"""The third derivative is what costs."""
+"""Order of the differences of coefficients that the penalty squares."""
 _LEAST_ROWS = 8
 _RIDGE = 1e-9
-"""Holds what no value is near to."""
+"""Added to the diagonal, so that coefficients far from all values are defined."""
 _STIFFNESS = np.logspace(-4, 10, 22)
-"""Weights of the cost, for knots one tick apart."""
+"""Weights of the penalty that are tried, for knots one tick apart."""
 
 
 @dataclass(frozen=True, eq=False)
 class Smoothed:
-    """A channel and its derivatives at the channel's own times, arrays (T,).
+    """A smoothed channel and its derivatives at the channel's own times.
 
     Attributes:
-      value: in the channel's unit.
-      rate: per second.
-      acceleration: per second squared.
+      value: (T,) in the channel's unit.
+      rate: (T,) first derivative, per second.
+      acceleration: (T,) second derivative, per second squared.
     """
 
     value: FloatArray
@@ -37,12 +37,12 @@ class Smoothed:
 def smooth(
     time_s: FloatArray, values: FloatArray, noise_std: float | None = None
 ) -> Smoothed:
-    """Smooth one channel as far as its noise asks for.
+    """Smooth one channel as much as its noise requires.
 
     A quintic P-spline with a knot each tick and a third-difference penalty (Eilers
     and Marx 1996). Its penalty minimises Mallows' Cp: squared residual plus twice
     the noise's variance for every degree of freedom, which for even samples is
-    known in closed form (see `_freedom`). Rows without a value get the spline's.
+    known in closed form (see `_freedom`). Missing values are filled by the spline.
 
     Args:
       time_s: (T,) increasing, may be uneven.
@@ -70,7 +70,7 @@ def smooth(
 
 
 def _knots(time_s: FloatArray) -> FloatArray:
-    """Even knots, one tick apart, as far beyond both ends as the degree needs."""
+    """Knots one median tick apart, beyond both ends as far as the degree needs."""
     tick = float(np.median(np.diff(time_s)))
     spans = max(int(np.ceil((time_s[-1] - time_s[0]) / tick)), 1)
     tick = (time_s[-1] - time_s[0]) / spans
@@ -82,7 +82,7 @@ def _knots(time_s: FloatArray) -> FloatArray:
 def _fit(
     time_s: FloatArray, values: FloatArray, noise_std: float, knots: FloatArray
 ) -> FloatArray:
-    """Coefficients of the penalty with the least Cp."""
+    """Spline coefficients for the penalty weight with the smallest Cp."""
     design = BSpline.design_matrix(time_s, knots, _DEGREE)
     count = design.shape[1]
     gram = design.T @ design
@@ -108,7 +108,7 @@ def _fit(
 
 
 def _freedom(stiffness: float, rows: int) -> float:
-    """Degrees of freedom of the fit to even samples, one a knot.
+    """Degrees of freedom of the fit to evenly spaced samples, one for each knot.
 
     Far from the ends a frequency w per sample passes by 1 / (1 + stiffness w^6); the
     trace is the mean of that over all frequencies, and three for the parabola.
@@ -132,8 +132,23 @@ def _penalty_bands(count: int) -> FloatArray:
 
 
 def _upper_bands(diagonals: list[FloatArray], count: int) -> FloatArray:
-    """As `solveh_banded` wants them: the main diagonal in the last row."""
+    """Diagonals as `solveh_banded` expects them: the main one in the last row."""
     bands = np.zeros((len(diagonals), count))
     for k, diagonal in enumerate(diagonals):
         bands[-1 - k, k:] = diagonal
     return bands
+
+
+def moving_mean(values: FloatArray, width: int) -> FloatArray:
+    """(T,) means over `width` neighbours; beyond the ends the end values hold.
+
+    SciPy's `uniform_filter1d` is no substitute: its running sum leaves rounding errors
+    behind, so that a joint that rests would seem to turn back and forth.
+
+    Args:
+      values: (T,) without missing values.
+      width: number of neighbours, the row itself included.
+    """
+    before = width // 2
+    padded = np.pad(values, (before, width - 1 - before), mode="edge")
+    return np.convolve(padded, np.full(width, 1 / width), mode="valid")

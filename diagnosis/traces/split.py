@@ -1,4 +1,4 @@
-"""Which rows are for fitting, which for selection, which for the final test."""
+"""Divides recordings into data for fitting, for selection and for the final test."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,29 +12,33 @@ from groundwalk.errors import BadRecordingError
 
 _LEAST_WHOLE, _LEAST_WHOLE_IF_LONG = 3, 6
 _LONG_S = 8.0
-"""From this many recordings on, whole ones are set aside. Of a few, each of a motion of
-its own, what one shows would be fitted, or judged, or tested, but never all of it: if
-they are long enough, all are cut instead."""
+"""Number of recordings from which on whole ones are set aside; the second holds if all
+of them last `_LONG_S` [s]. Fewer recordings are cut, since each may show a motion of
+its own, which must be fitted as well as judged and tested."""
 _SHARE = 0.25
+"""Share of the time that is set aside for selection, and for the test."""
 _GAP_S = 0.2
+"""Time between the parts of a recording [s] that is not used."""
 _TWICE_S = 20.0
-"""Recordings of this length are cut into eight parts instead of four."""
+"""Recordings of this length [s] are cut into eight parts instead of four."""
 _STROKE_S = 0.2
-"""Time between positions that say how fast a joint goes."""
+"""Time between two positions whose difference stands for a joint's speed [s]."""
 _MANY = 12
 """Up to this many recordings all choices are compared."""
 _LEAST_PART_ROWS = 8
+"""Fewest rows of a part."""
 FIT, SELECT, TEST = 0, 1, 2
+"""Numbers of the three uses in the order of parts."""
 
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Traces, or parts of them; no row is in two of them.
+    """Traces or parts of them by their use; no row has two uses.
 
     Attributes:
-      fit: about half of the time.
-      select: about a quarter; says which of the fitted models is taken.
-      test: about a quarter; opened once.
+      fit: about half of the time; parameters are fitted to it.
+      select: about a quarter of the time; decides which fitted model is taken.
+      test: about a quarter of the time, held out for the final errors.
     """
 
     fit: tuple[Trace, ...]
@@ -43,12 +47,12 @@ class Split:
 
 
 def split(traces: Sequence[Trace]) -> Split:
-    """Set traces aside; the same traces are always split alike.
+    """Divide traces by their use; the same traces are always divided alike.
 
-    With six or more, or three short ones, whole traces are, such that what moves in
-    those set aside moves in the others, too. Otherwise, or where that cannot be, each
-    is cut into contiguous parts, 0.2 s apart, in the order that leaves the most motion
-    to fit; no two traces next to each other are cut alike.
+    Of six or more traces, or of three short ones, whole ones are set aside, chosen such
+    that every joint that moves in them moves in the others, too. Otherwise, or if there
+    is no such choice, each trace is cut into contiguous parts, 0.2 s apart, in the
+    order that leaves the most motion to fit; neighbouring traces are cut differently.
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
@@ -70,7 +74,7 @@ def split(traces: Sequence[Trace]) -> Split:
 
 
 def _travel(trace: Trace) -> FloatArray:
-    """(j,) range of each joint without its outermost percents."""
+    """(j,) range of each joint between its 1 % and 99 % quantiles [rad]."""
     position = trace.position_rad
     low, high = np.zeros(position.shape[1]), np.zeros(position.shape[1])
     for column, values in enumerate(position.T):
@@ -81,9 +85,10 @@ def _travel(trace: Trace) -> FloatArray:
 
 
 def _motion(trace: Trace) -> FloatArray:
-    """(3 j,) how far each joint travels, and how fast it goes forward and backward.
+    """(3 j,) travel of each joint, and its speed forward and backward.
 
-    Friction is told from a constant force only where a joint went both ways.
+    Both ways count, since only a joint that moved both ways distinguishes friction from
+    a constant force.
     """
     apart = max(round(_STROKE_S / trace.tick_s), 1)
     position = trace.position_rad
@@ -97,13 +102,13 @@ def _motion(trace: Trace) -> FloatArray:
 def _aside(
     travel: FloatArray, seconds: FloatArray, left: list[int], wanted_s: float
 ) -> list[int]:
-    """Traces to set aside: nearly as long as wanted, what they do done by others, too.
+    """Choose traces to set aside whose motion the remaining ones cover.
 
     Args:
-      travel: (traces, j).
-      seconds: (traces,).
+      travel: (traces, j) range of each joint.
+      seconds: (traces,) duration of each trace.
       left: traces to choose from; one of them stays at least.
-      wanted_s: how much.
+      wanted_s: duration of the chosen ones together.
     """
     best, chosen = -np.inf, list[int]()
     for taken in _choices(left):
@@ -119,7 +124,7 @@ def _aside(
 
 
 def _choices(left: list[int]) -> list[tuple[int, ...]]:
-    """Sets of traces that may be taken; of many only stretches of their order."""
+    """Sets of traces that may be set aside; only regular ones of many traces."""
     most = len(left) - 1
     if len(left) <= _MANY:
         sizes = range(1, most // 2 + 1 if most > 1 else 2)
@@ -132,7 +137,7 @@ def _choices(left: list[int]) -> list[tuple[int, ...]]:
 
 
 def _covered(taken: FloatArray, rest: FloatArray) -> float:
-    """Least share of a joint's travel in the one that is in the other, too."""
+    """Smallest share, over the joints, of the travel in `taken` that `rest` has."""
     most = np.maximum(taken.max(axis=0), rest.max(axis=0))
     moves = taken.max(axis=0) > 0.1 * most
     if not moves.any():
@@ -141,10 +146,10 @@ def _covered(taken: FloatArray, rest: FloatArray) -> float:
 
 
 def _cut(traces: Sequence[Trace]) -> Split:
-    """Parts of each trace in the order that covers the test's motion best.
+    """Cut each trace into parts, with uses in the order that covers motion best.
 
-    Each trace begins one part later in that order: what happens in all of them at the
-    same time, such as a push or what a drift has come to, is then fitted in some and
+    Each trace begins one part later in that order. An event that all traces have at the
+    same time, such as a push or the end of a drift, is then fitted in some of them and
     judged in others.
     """
     best, chosen = -np.inf, list[tuple[Trace, int]]()
@@ -179,7 +184,7 @@ def _rotated(order: tuple[int, ...], by: int) -> tuple[int, ...]:
 
 
 def _parts(trace: Trace, order: tuple[int, ...]) -> list[tuple[Trace, int]]:
-    """Contiguous parts of equal length, with a gap after each, and their use."""
+    """Cut a trace into contiguous parts of equal length, each with its use."""
     # there and back, or a motion that repeats itself would always be used alike
     uses = order + order[::-1] if trace.duration_s >= _TWICE_S else order
     length_s = (trace.duration_s + _GAP_S) / len(uses)

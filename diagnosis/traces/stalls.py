@@ -1,7 +1,7 @@
-"""Recordings that stall: from some moment on all joints follow their commands later.
+"""Finds stalls: moments after which all joints follow their commands later.
 
-A bus that loses ticks, or a clock that is set, shifts what is measured against what was
-commanded, at all joints alike. No robot does that, but every fit would try to.
+A bus that loses ticks, or a clock that is set, shifts the measured positions against
+the commands, at all joints alike. A fit would mistake that for physics of the robot.
 """
 
 from dataclasses import dataclass
@@ -12,18 +12,24 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 WINDOW_S, STEP_S, LONGEST_S = 1.0, 0.5, 0.3
+"""Length and distance of the windows in which lags are measured, and the longest lag
+that is looked for [s]."""
+
 MOVES = 0.1
-"""Of the range of a joint: what it must move in a window to tell its lag."""
+"""Share of its range that a joint must move in a window for its lag to count."""
 
 SURE = 0.97
-"""Correlation of position and late command."""
+"""Least correlation of position and delayed command for a lag to count."""
 
 APART = 4
-"""Windows over which a jump may spread."""
+"""Distance in windows between the two lags that are compared."""
 
 LEAST_S, LEAST_TICKS, SPREAD_TICKS = 0.04, 3, 1.5
+"""Smallest jump of the lag in seconds and in ticks, and the largest spread of it over
+the joints in ticks."""
+
 FEWEST_JOINTS = 3
-"""Friction changes lags, too, with speed and load, but not of all joints alike."""
+"""Joints that must jump alike; friction changes the lag of single joints, too."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +37,8 @@ class LagJump:
     """A moment after which a recording's joints follow their commands later.
 
     Attributes:
-      time_s: in the recording's time, about the middle of the change.
-      later_s: by how much; below 0 for earlier.
+      time_s: middle of the change in the recording's time [s].
+      later_s: change of the lag [s]; negative if the joints follow earlier.
     """
 
     time_s: float
@@ -40,7 +46,7 @@ class LagJump:
 
 
 def lag_jumps(trace: Trace) -> list[LagJump]:
-    """All jumps of a recording, in the order of time; none without commands."""
+    """Find all jumps of the lag, in the order of time; none without commands."""
     if trace.command_rad is None or trace.position_rad.shape[1] < FEWEST_JOINTS:
         return []
     time_s, lag = _lags(trace)
@@ -69,7 +75,7 @@ def lag_jumps(trace: Trace) -> list[LagJump]:
 
 
 def said_of_stalls(trace: Trace) -> list[str]:
-    """A sentence for each jump of a recording."""
+    """Sentences for the report, one for each jump of a recording's lag."""
     return [
         f"{trace.name}: from {jump.time_s:.1f} s on all joints follow their commands "
         f"{abs(jump.later_s):.2f} s {'later' if jump.later_s > 0 else 'earlier'}: the "
@@ -79,7 +85,7 @@ def said_of_stalls(trace: Trace) -> list[str]:
 
 
 def steady(trace: Trace) -> Trace:
-    """The longest part of a recording that has no jump in it, with a margin."""
+    """The longest part of a recording without a jump of its lag."""
     jumps = lag_jumps(trace)
     if not jumps:
         return trace

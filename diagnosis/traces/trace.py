@@ -1,43 +1,50 @@
-"""A recording made ready to be held against a plant."""
+"""A recording as arrays in the joint order of the robot model it is compared with."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Literal
 
 import numpy as np
+from scipy.ndimage import find_objects, label
 
 from diagnosis.plant.servo import Servo
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.errors import BadRecordingError
+
+DriveBy = Literal["servos", "torques"]
+"""What drives the joints in a replay: simulated servos or the measured torques."""
 
 JOINT_WISE = (
     *("position_rad", "velocity_rad_s", "torque_nm", "added_nm"),
     *("command_rad", "command_torque_nm"),
 )
-"""What a trace has for each joint."""
+"""Fields of a trace that have one column for each joint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """One recording, or a contiguous part of one; columns in the plant's joint order.
+    """One recording, or a contiguous part of one, with T rows at uneven times.
 
-    T ticks at uneven times; NaN is a missing value, None a channel that is not there.
-    Row k was measured at `time_s[k]` before `command_rad[k]` took effect, which holds
-    until `time_s[k + 1]`.
+    The j columns of joints are in the order of the robot model's joints. NaN is a
+    missing value, None a channel that was not recorded. Row k was measured at
+    `time_s[k]` before `command_rad[k]` took effect, which holds until
+    `time_s[k + 1]`. Sliding joints have m for rad and N for N m.
 
     Attributes:
-      name: of the recording.
+      name: name of the recording, with the time span if it is a part.
       time_s: (T,) increasing.
       position_rad: (T, j) measured.
-      servo: of this recording.
+      servo: the servos of this recording; gains may differ between recordings.
       velocity_rad_s: (T, j) measured.
       command_rad: (T, j) position targets.
       command_torque_nm: (T, j) torque targets.
       torque_nm: (T, j) measured.
-      added_nm: (T, j) torques that drive the joints beside their servos.
+      added_nm: (T, j) torques that act on the joints in addition to the servos'.
       gyroscope_rad_s: (T, 3) in the sensor's frame.
       accelerometer_m_s2: (T, 3) in the sensor's frame.
-      foot_force_n: (T, feet) vertical, one sum a foot.
+      foot_force_n: (T, feet) vertical force under each foot.
       base_position_m: (T, 3) world frame.
-      base_orientation: (T, 4) w, x, y, z, base to world.
+      base_orientation: (T, 4) quaternion w, x, y, z, base to world.
       base_linear_velocity_m_s: (T, 3) world frame.
       base_angular_velocity_rad_s: (T, 3) body frame.
     """
@@ -66,21 +73,21 @@ class Trace:
 
     @property
     def duration_s(self) -> float:
-        """From the first to the last row."""
+        """Time from the first to the last row [s]."""
         return float(self.time_s[-1] - self.time_s[0])
 
     @property
     def tick_s(self) -> float:
-        """Median time between rows."""
+        """Median time between rows [s]."""
         return float(np.median(np.diff(self.time_s)))
 
     @property
     def unheld(self) -> bool:
-        """Whether no servo holds a joint: measured or asked torques drive them."""
+        """Whether no joint has a servo, so that torques drive all of them."""
         return self.command_rad is None or not self.servo.kp_nm_rad.any()
 
     def of(self, columns: Sequence[int]) -> "Trace":
-        """What concerns some joints, and what concerns none."""
+        """The trace with some joints' columns, and all channels that are no joint's."""
         chosen = list(columns)
         changes = {
             name: values[:, chosen]
@@ -90,7 +97,7 @@ class Trace:
         return replace(self, servo=self.servo.of(chosen), **changes)
 
     def part(self, start: int, stop: int) -> "Trace":
-        """Rows `start` to `stop - 1`; the name says which."""
+        """Rows `start` to `stop - 1`, with their time span added to the name."""
         rows = slice(start, stop)
         changes = {
             field.name: getattr(self, field.name)[rows]
@@ -101,10 +108,49 @@ class Trace:
         return replace(self, name=name, **changes)
 
 
+def driven_by_torques(trace: Trace) -> Trace:
+    """The same trace without servos: the measured torques drive the joints.
+
+    A servo hides much of what its joint lacks, and anything unknown about the servo,
+    such as when it computes, is mistaken for physics of the joint. Replaying the
+    torques depends on neither.
+
+    Raises:
+      BadRecordingError: no torque was measured.
+    """
+    if trace.torque_nm is None:
+        raise BadRecordingError(
+            f"{trace.name}: no torque was measured that could drive the joints"
+        )
+    torque = trace.torque_nm
+    if trace.added_nm is not None:
+        torque = torque + trace.added_nm
+    servo = Servo.ideal(torque.shape[1])
+    return replace(trace, servo=servo, torque_nm=torque, added_nm=None)
+
+
 def filled(values: FloatArray) -> FloatArray:
-    """(T, j) missing values replaced by those before, leading ones by the first."""
+    """Replace missing values by the last ones before them, leading ones by the first.
+
+    Args:
+      values: (T, j) NaN where missing. A column without any value becomes 0.
+    """
     rows = np.arange(len(values))[:, None]
     last = np.maximum.accumulate(np.where(np.isnan(values), -1, rows), axis=0)
     first = np.argmax(~np.isnan(values), axis=0)
     last = np.where(last < 0, first, last)
     return np.nan_to_num(np.take_along_axis(values, last, axis=0))
+
+
+def stretches(flags: BoolArray) -> list[tuple[int, int]]:
+    """Runs of flagged rows; a single row that is not flagged interrupts no run.
+
+    Args:
+      flags: (T,) one flag a row.
+
+    Returns:
+      For each run its first row and the row after its last one.
+    """
+    closed = flags.copy()
+    closed[1:-1] |= flags[:-2] & flags[2:]
+    return [(rows.start, rows.stop) for (rows,) in find_objects(label(closed)[0])]

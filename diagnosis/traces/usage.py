@@ -1,4 +1,4 @@
-"""How much of itself each joint used in some traces."""
+"""How far, how fast and how strongly each joint moved in some traces."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,19 +10,21 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 _MOST = 0.99
+"""Quantile that stands for the largest value: single outliers do not count."""
+
 _APART = 2
-"""Rows on both sides whose positions say how fast a joint goes."""
+"""Half width [rows] of the central difference for velocities."""
 
 
 @dataclass(frozen=True, eq=False)
 class Usage:
-    """Of j joints, arrays (j,).
+    """The range, speed and torque that each of j joints used, arrays (j,).
 
     Attributes:
-      low_rad: least position.
+      low_rad: smallest position.
       high_rad: largest position.
-      command_speed_rad_s: that the commands seldom exceed.
-      torque_nm: that the servos, as they should be, seldom exceed.
+      command_speed_rad_s: 99 % of the commands' speeds are below it.
+      torque_nm: 99 % of the nominal servos' torques are below it.
     """
 
     low_rad: FloatArray
@@ -32,7 +34,7 @@ class Usage:
 
     @classmethod
     def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Usage":
-        """Joint by joint over all traces."""
+        """The usage of each of a plant's joints over all traces."""
         position = np.concatenate([trace.position_rad for trace in traces])
         speeds, torques = [], []
         for trace in traces:
@@ -51,12 +53,11 @@ class Usage:
 
 
 def _servo_nm(trace: Trace, command_rad: FloatArray) -> FloatArray:
-    """(T, j) sizes of the torques that the servos should give."""
+    """(T, j) sizes of the torques [N m] that the servos ask for."""
     servo, position = trace.servo, trace.position_rad
     rows = np.arange(len(position))
     before = np.maximum(rows - _APART, 0)
     after = np.minimum(rows + _APART, len(rows) - 1)
     lasted_s = (trace.time_s[after] - trace.time_s[before])[:, None]
     velocity = (position[after] - position[before]) / lasted_s
-    torque = servo.kp_nm_rad * (command_rad - position) - servo.kd_nm_s_rad * velocity
-    return np.asarray(np.minimum(np.abs(torque), servo.max_torque_nm))
+    return np.asarray(np.abs(servo.torque(command_rad - position, velocity)))

@@ -1,4 +1,4 @@
-"""Stretches of traces that replays go through, and the states that they start from."""
+"""Windows of traces: the parts that are replayed, with their start states."""
 
 from dataclasses import dataclass
 
@@ -10,19 +10,21 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 HEAD_ROWS = 60
-"""Rows that the state at the start of a whole trace is smoothed from."""
+"""Rows at the start of a whole trace from which its start state is smoothed."""
 
 UNHELD_WINDOW_S = 0.5
-"""Nothing holds a joint without a servo near its course: errors grow with time."""
+"""Window [s] for joints without servos: nothing keeps their errors from growing."""
 
 FLOATING_WINDOW_S = 0.3
-"""A robot on its feet is an inverted pendulum: after this its errors have doubled."""
+"""Window [s] for a standing robot, an inverted pendulum: its errors double in it."""
 
 EDGE_S = 0.05
-"""At the edge of a recording speeds are not well known: no window starts there."""
+"""Time [s] at the start of a recording in which no window starts.
+
+Smoothed speeds are not accurate there."""
 
 LEAST_WINDOW_S = 0.1
-"""What is shorter is left over at an end, and not scored."""
+"""Shortest window [s] of a floating base that is scored."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,13 +32,13 @@ class Run:
     """One trace, or a part of one, to be replayed from its first row on.
 
     Attributes:
-      trace: the commands, and what was measured.
-      position_rad: (j,) measured positions at the start, without noise.
-      velocity_rad_s: (j,) likewise.
-      base: (13,) of a floating base at the start: position (3), orientation (4), linear
-        velocity (3, world frame), angular velocity (3, body frame).
-      whole: what the trace is a window of, if it is one: commands of before it may
-        arrive late.
+      trace: the rows that are replayed, with their commands and measurements.
+      position_rad: (j,) smoothed positions at the start.
+      velocity_rad_s: (j,) smoothed velocities at the start.
+      base: (13,) state of a floating base at the start: position (3), orientation (4),
+        linear velocity (3, world frame), angular velocity (3, body frame).
+      whole: the trace of which `trace` is a window, None if it is a whole one. With
+        late commands, those from before the window still act in it.
     """
 
     trace: Trace
@@ -47,7 +49,7 @@ class Run:
 
     @classmethod
     def of(cls, trace: Trace) -> "Run":
-        """All of a trace, from the smoothed state at its start."""
+        """Replay all of a trace, from the smoothed state at its start."""
         head = slice(0, min(trace.ticks, HEAD_ROWS))
         smoothed = [
             smooth(trace.time_s[head], column[head]) for column in trace.position_rad.T
@@ -60,19 +62,19 @@ class Run:
 
 
 def window_s(plant: Plant, trace: Trace) -> float | None:
-    """How long a replay of a trace may last; None for all of it."""
+    """Longest replay of a trace [s]; None if it is replayed as a whole."""
     if plant.base == "floating":
         return FLOATING_WINDOW_S
     return UNHELD_WINDOW_S if trace.unheld else None
 
 
 def is_left_over(plant: Plant, trace: Trace) -> bool:
-    """Whether a run of a floating base is no window, but what is left at an end."""
+    """Whether a floating base's window is only the short rest at a recording's end."""
     return plant.base == "floating" and trace.duration_s < LEAST_WINDOW_S
 
 
 def runs_of(plant: Plant, trace: Trace) -> list[Run]:
-    """The runs that a trace is replayed in: together they have all of its rows."""
+    """Divide all rows of a trace into the windows in which it is replayed."""
     longest_s = window_s(plant, trace)
     if longest_s is None:
         return [Run.of(trace)]
@@ -98,7 +100,7 @@ def runs_of(plant: Plant, trace: Trace) -> list[Run]:
 
 
 def _smoothed(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values and rates of (T, k) columns."""
+    """Smoothed values and rates, (T, k) each, of k channels."""
     found = [smooth(time_s, column) for column in values.T]
     return (
         np.stack([one.value for one in found], axis=1),
@@ -107,7 +109,7 @@ def _smoothed(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, Float
 
 
 def _bases(trace: Trace) -> FloatArray:
-    """(T, 13) as `Run.base`, smoothed."""
+    """(T, 13) smoothed states of a floating base, columns as in `Run.base`."""
     assert trace.base_position_m is not None
     assert trace.base_orientation is not None
     position, velocity = _smoothed(trace.time_s, trace.base_position_m)
@@ -124,14 +126,14 @@ def _bases(trace: Trace) -> FloatArray:
 def _with_measured(
     trace: Trace, rates: FloatArray, measured: FloatArray | None
 ) -> FloatArray:
-    """The mean of rates from two sources: their errors are not the same."""
+    """Mean of derived and measured rates, whose errors are independent."""
     if measured is None or not np.isfinite(measured).all():
         return rates
     return np.asarray((rates + _smoothed(trace.time_s, measured)[0]) / 2)
 
 
 def continuous(quaternion: FloatArray) -> FloatArray:
-    """(T, 4) the same rotations, without jumps to the opposite sign."""
+    """Quaternions (T, 4) of the same rotations, without jumps to the opposite sign."""
     products = np.sum(quaternion[1:] * quaternion[:-1], axis=1)
     signs = np.cumprod(np.concatenate([[1.0], np.where(products < 0, -1.0, 1.0)]))
     return np.asarray(quaternion * signs[:, None])

@@ -4,8 +4,7 @@ import json
 from pathlib import Path
 
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.read import read_traces
-from diagnosis.traces.reference_reading import read_reference
+from diagnosis.traces.read import read_reference, read_traces
 from diagnosis.traces.trace import Trace
 from groundwalk.errors import RunFolderError
 

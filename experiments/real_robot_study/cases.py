@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from diagnosis.traces.torque_drive import DriveBy
+from diagnosis.traces.trace import DriveBy
 from worlds import ServoGains
 
 

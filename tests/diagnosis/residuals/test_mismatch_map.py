@@ -9,7 +9,7 @@ from made_up_traces import arm
 
 from diagnosis.residuals.mismatch_map import mismatch_map
 from diagnosis.residuals.predictor import Channels, Predictor
-from diagnosis.traces.moving_mean import moving_mean
+from diagnosis.traces.smoothing import moving_mean
 
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))

@@ -12,7 +12,7 @@ from diagnosis.search.fitting import fit_all
 from diagnosis.traces.pulses import pulses_of
 from diagnosis.traces.read import read_traces
 from diagnosis.traces.split import split
-from diagnosis.traces.torque_drive import driven_by_torques
+from diagnosis.traces.trace import driven_by_torques
 
 EMPS = Path(__file__).parents[3] / ".." / "shared" / "data" / "emps"
 FRICTION = (

@@ -7,7 +7,7 @@ from pulsed_sled import recorded, sled
 from diagnosis.effects.variants import Variants
 from diagnosis.replay.replay import replay
 from diagnosis.traces.pulses import pulses_of, without_pulses
-from diagnosis.traces.torque_drive import driven_by_torques
+from diagnosis.traces.trace import driven_by_torques
 from diagnosis.traces.windows import runs_of
 from groundwalk.errors import BadRecordingError
 
