@@ -38,7 +38,7 @@ def at_words(effect: EffectAt | Found) -> str:
 
 
 def answer_words(effects: tuple[EffectAt, ...]) -> str:
-    """Effects that form one answer: "dry friction at hip together with late commands"."""
+    """Effects of one answer: "dry friction at hip together with late commands"."""
     return " together with ".join(map(at_words, effects))
 
 
