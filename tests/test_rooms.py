@@ -42,6 +42,11 @@ def small_house(tmp_path):
     for package in PROJECT["tool"]["importlinter"]["root_packages"]:
         (tmp_path / package).mkdir()
         (tmp_path / package / "__init__.py").touch()
+    for contract in PROJECT["tool"]["importlinter"]["contracts"]:
+        for room in contract.get("containers", ()):
+            for shelf in re.findall(r"\w+", " ".join(contract["layers"])):
+                (tmp_path / room / shelf).mkdir(exist_ok=True)
+                (tmp_path / room / shelf / "__init__.py").touch()
     for name, code in files.items():
         path = tmp_path / name
         for folder in path.relative_to(tmp_path).parents:
