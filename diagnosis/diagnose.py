@@ -119,8 +119,9 @@ def diagnose(
       >>> diagnose(plant, traces, np.random.SeedSequence(1)).verdict.effects
     """
     begun_s, hooks = time.monotonic(), hooks or Hooks()
-    hooks.stage("audit", 0)
+    hooks.stage("audit", 1)
     material = Material.of(plant, traces, reference, drive)
+    hooks.advance(1)
     if hooks.progress is not None:
         recordings = material.traces, material.reference
         seconds = expected_seconds(plant, *recordings, material.channels, threads)

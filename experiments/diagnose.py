@@ -1,6 +1,8 @@
 """`groundwalk diagnose`: what physics does the sim lack that recordings show?"""
 
+import shutil
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -12,29 +14,41 @@ import robots
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.diagnose import Diagnosis, diagnose
+from diagnosis.plant.plant import Plant
+from diagnosis.search.hooks import Hooks
 from diagnosis.search.rules import Rules
 from diagnosis.traces.read import read_reference, read_traces
-from diagnosis.traces.trace import DriveBy
+from diagnosis.traces.trace import DriveBy, Trace
 from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import ReportFacts, write_report
 from experiments.reports.origin import command_of
+from experiments.runs.checkpoint_files import CheckpointFiles
 from experiments.runs.extras import extra
-from experiments.runs.folder import PROVENANCE, RunFolder, check_free, to_plain
-from experiments.runs.options import check_at_least
-from groundwalk.errors import BadValueError, GroundwalkError
+from experiments.runs.folder import (
+    PROVENANCE,
+    RunFolder,
+    check_free,
+    open_run,
+    to_plain,
+)
+from experiments.runs.options import RunOptions, check_at_least
+from experiments.runs.progress import Stages
+from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
 from worlds import ServoGains
 
 VERB = "diagnose"
 VERDICT, REPORT, OVERLAY, AUDIT = (
     "diagnosis.json", "report.html", "overlay.rrd", "audit.json",
 )  # fmt: skip
+STAGES = "stages"
+"""Folder of a run's checkpoint; it is deleted when the run is complete."""
 
 
 @dataclass(frozen=True)
-class Diagnose:
+class Diagnose(RunOptions):
     """Find out what physics a sim lacks, from recordings of the robot.
 
     Attributes:
@@ -48,31 +62,28 @@ class Diagnose:
       drive: what moves the joints of the model where both commands and torques were
         recorded: its servos, or the measured torques.
       least_share: of the sim's squared error that an effect must explain to count.
-      seed: every random number follows from it.
-      threads: of the replays.
-      out: the run's folder; a new one under runs/ by default.
-      json: print the verdict as JSON.
+      threads: processor threads of the replays.
     """
 
     recordings: Annotated[
         tuple[Path, ...], tyro.conf.Positional, tyro.conf.arg(metavar="RECORDING...")
-    ]
-    robot: str
+    ] = ()
+    robot: str = ""
     reference: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="RECORDING...")] = ()
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
     drive: DriveBy = "servos"
     least_share: float = Rules.least_share
-    seed: int = 1
     threads: int = 2
-    out: Path | None = None
-    json: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what no diagnosis can do."""
-        if not self.recordings:
+        super().__post_init__()
+        if self.resume is None and not self.recordings:
             raise BadValueError("no recording is given; give one at least")
+        if self.resume is None and not self.robot:
+            raise BadValueError("no robot is given; give one with --robot")
         for name in ("kp", "kd", "max_torque"):
             value = getattr(self, name)
             if value is not None and not 0 <= value < np.inf:
@@ -81,7 +92,7 @@ class Diagnose:
             raise BadValueError("kd or max_torque is given without kp")
         if not 0 <= self.least_share < 1:
             raise BadValueError(f"least_share is {self.least_share}; it must be a part")
-        check_at_least(self, seed=0, threads=0)
+        check_at_least(self, threads=0)
 
     @property
     def gains(self) -> ServoGains | None:
@@ -104,26 +115,81 @@ def main(config: Diagnose) -> None:
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
-    """Diagnose, and write down the verdict, the report and the overlay."""
+    """Diagnose, and write down the verdict, the report and the overlay.
+
+    A run that was interrupted goes on from its last long stage if `config.resume` names
+    its folder; the verdict is the same to the last digit, except for its duration.
+
+    Example:
+      >>> folder, verdict = run_diagnosis(Diagnose((Path("a.parquet"),), robot="nao"))
+    """
     check_free(config.out)
+    # recordings that cannot be read are refused before a folder is made
+    read = None if config.resume else _read(config)
+    folder, config = open_run(VERB, config)
+    checkpoint = CheckpointFiles(folder.path / STAGES)
+    if folder.has(VERDICT) and not checkpoint.exists():
+        return folder, Verdict.from_json((folder.path / VERDICT).read_text())
+    with Stages("diagnosis", config.threads) as stages:
+        hooks = Hooks(stages, checkpoint)
+        found = _diagnosed(config, read or _read(config), folder, hooks)
+        stages.stage("report", 3)
+        _write(config, folder, found, stages.advance)
+    checkpoint.delete()
+    return folder, found.verdict
+
+
+Read = tuple[Plant, list[Trace], list[Trace]]
+"""The robot model, its recordings, and those of the reference."""
+
+
+def _read(config: Diagnose) -> Read:
+    """Read all recordings."""
     plant, traces = read_traces(config.recordings, config.robot, config.gains)
-    seed = np.random.SeedSequence(config.seed)
-    rules = Rules(least_share=config.least_share)
-    wells = read_reference(config.reference, config.robot, plant, config.gains)
-    found = diagnose(plant, traces, seed, rules, config.threads, wells, config.drive)
-    folder = RunFolder.create(VERB, config)
+    reference = read_reference(config.reference, config.robot, plant, config.gains)
+    return plant, traces, reference
+
+
+def _diagnosed(
+    config: Diagnose, read: Read, folder: RunFolder, hooks: Hooks
+) -> Diagnosis:
+    """Diagnose; a run whose recordings are refused leaves no folder."""
+    plant, traces, reference = read
+    try:
+        return diagnose(
+            plant,
+            traces,
+            np.random.SeedSequence(config.seed),
+            Rules(least_share=config.least_share),
+            config.threads,
+            reference,
+            config.drive,
+            hooks,
+        )
+    except BadRecordingError:
+        if config.resume is None:
+            shutil.rmtree(folder.path)
+        raise
+
+
+def _write(
+    config: Diagnose, folder: RunFolder, found: Diagnosis, advance: Callable[[], None]
+) -> None:
+    """Write the verdict, then all that explains it."""
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
     with extra(CORRECTED_XML):
         write_correction(folder, found)
+    advance()
     series = found.held_out()
     with extra(REPORT):
         facts = _facts(config, folder, found)
         write_report(folder.path / REPORT, found.verdict, series, facts)
+    advance()
     with extra(OVERLAY):
         fit = found.verdict.fit
         write_overlay(folder.path / OVERLAY, series, fit, _description(config))
-    return folder, found.verdict
+    advance()
 
 
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:
@@ -152,7 +218,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
     settings = {
         name: str(value)
         for name, value in to_plain(config).items()
-        if value is not None and name not in ("recordings", "out", "json")
+        if value is not None and name not in ("recordings", "out", "resume", "json")
     }
     files = {
         VERDICT: "the verdict, for programs",

@@ -19,8 +19,8 @@ class Progress(Protocol):
     Example:
       >>> class Printed:
       ...     def cost(self, seconds): print(f"about {seconds:.0f} s")
-      ...     def stage(self, name, replays): print(name)
-      ...     def advance(self, replays): pass
+      ...     def stage(self, name, steps): print(name)
+      ...     def advance(self, steps): pass
       >>> diagnose(plant, traces, seed, hooks=Hooks(progress=Printed()))
     """
 
@@ -31,19 +31,19 @@ class Progress(Protocol):
           seconds: estimated duration of the whole diagnosis.
         """
 
-    def stage(self, name: str, replays: int) -> None:
+    def stage(self, name: str, steps: int) -> None:
         """Called when a stage begins.
 
         Args:
           name: for example "search round 2".
-          replays: rough number of replays in this stage.
+          steps: rough number of replays in this stage.
         """
 
-    def advance(self, replays: int) -> None:
+    def advance(self, steps: int) -> None:
         """Called after each batch of replays.
 
         Args:
-          replays: number of replays in the batch.
+          steps: number of replays in the batch.
         """
 
 
@@ -97,15 +97,15 @@ class Hooks:
         """The same hooks for a named part of the diagnosis, such as "reference"."""
         return Hooks(self.progress, self._checkpoint, part)
 
-    def stage(self, name: str, replays: int) -> None:
+    def stage(self, name: str, steps: int) -> None:
         """Report that a stage begins; see `Progress.stage`."""
         if self.progress is not None:
-            self.progress.stage(f"{self._part} {name}".strip(), replays)
+            self.progress.stage(f"{self._part} {name}".strip(), steps)
 
-    def advance(self, replays: int) -> None:
+    def advance(self, steps: int) -> None:
         """Report that replays are done."""
         if self.progress is not None:
-            self.progress.advance(replays)
+            self.progress.advance(steps)
 
     def saved(
         self,

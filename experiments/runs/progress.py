@@ -1,32 +1,41 @@
-"""How far a long run is: a bar on a terminal, quiet lines elsewhere."""
+"""Progress of long runs: a bar on a terminal, a few lines of text elsewhere."""
 
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Protocol
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING, Protocol, Self
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-_LINES_PER_TASK = 10
+LINES_PER_TASK = 10
+"""Number of lines that are printed for a whole piece of work."""
+
+LONG_S = 60.0
+"""Expected duration [s] from which the cost of a run is announced."""
 
 
 class Task(Protocol):
-    """One long piece of work."""
+    """A piece of work whose progress is shown."""
 
-    def advance(self, note: str = "") -> None:
-        """One step is done; the note says how it went."""
+    def advance(self, note: str = "", steps: int = 1) -> None:
+        """Report that steps are done.
+
+        Args:
+          note: short text about the last step, such as its result.
+          steps: how many steps are done since the last report.
+        """
 
 
 @contextmanager
 def progress(title: str, steps: int, done: int = 0) -> Iterator[Task]:
-    """Show a piece of work on standard error while it runs.
+    """Show the progress of a piece of work on standard error, with the time left.
 
     Args:
-      title: what it is.
-      steps: how many steps it has.
-      done: how many of them are done already.
+      title: name of the work.
+      steps: number of its steps.
+      done: number of steps that an earlier run has done.
     """
     if sys.stderr.isatty():
         from rich.console import Console
@@ -53,28 +62,93 @@ def progress(title: str, steps: int, done: int = 0) -> Iterator[Task]:
 
 
 class _Bar:
-    """A bar of rich."""
+    """A progress bar of the library rich."""
 
     def __init__(self, bars: "Progress", bar: "TaskID") -> None:
         self._bars, self._bar = bars, bar
 
-    def advance(self, note: str = "") -> None:
-        self._bars.update(self._bar, advance=1, note=note)
+    def advance(self, note: str = "", steps: int = 1) -> None:
+        self._bars.update(self._bar, advance=steps, note=note)
 
 
 class _Lines:
-    """A line for each tenth of the work."""
+    """Prints a line of text for each tenth of the work."""
 
     def __init__(self, title: str, steps: int, done: int) -> None:
         self._title, self._steps, self._done = title, steps, done
         self._start_s, self._before = time.monotonic(), done
 
-    def advance(self, note: str = "") -> None:
-        self._done += 1
-        every = max(1, self._steps // _LINES_PER_TASK)
-        if self._done % every and self._done != self._steps:
+    def advance(self, note: str = "", steps: int = 1) -> None:
+        every = max(1, self._steps // LINES_PER_TASK)
+        lines, self._done = self._done // every, self._done + steps
+        if self._done // every == lines and self._done != self._steps:
             return
         spent_s = time.monotonic() - self._start_s
         left_s = spent_s / (self._done - self._before) * (self._steps - self._done)
         line = f"{self._title} {self._done}/{self._steps}, {left_s:.0f} s left"
         print(f"{line}, {note}" if note else line, file=sys.stderr, flush=True)
+
+
+class Stages:
+    """Progress of work in stages, one after another, each with its time left.
+
+    It is the progress display of `diagnosis.diagnose`. Use it in a `with` block.
+    """
+
+    def __init__(self, work: str, threads: int) -> None:
+        """Begin without a stage.
+
+        Args:
+          work: name of the work, for the line about its cost.
+          threads: number of threads, for the same line.
+        """
+        self._work, self._threads = work, max(threads, 1)
+        self._open = ExitStack()
+        self._task: Task | None = None
+        self._left = 0
+
+    def __enter__(self) -> Self:
+        """Begin to show progress."""
+        return self
+
+    def __exit__(self, *failure: object) -> None:
+        """Finish the last stage, unless an error ended it."""
+        if failure[0] is None:
+            self._finish()
+        self._open.close()
+
+    def cost(self, seconds: float) -> None:
+        """Print how long the work will take if that is more than a minute.
+
+        Args:
+          seconds: estimated duration.
+        """
+        if seconds > LONG_S:
+            threads = f"{self._threads} thread{'s' if self._threads > 1 else ''}"
+            minutes = round(seconds / 60)
+            unit = "minutes" if minutes > 1 else "minute"
+            line = f"{self._work}: about {minutes} {unit} on {threads}"
+            print(line, file=sys.stderr, flush=True)
+
+    def stage(self, name: str, steps: int) -> None:
+        """Finish the present stage and begin the next one.
+
+        Args:
+          name: of the stage.
+          steps: rough number of its steps; if it has fewer, it ends early, if it has
+            more, it stays at its end until the next stage begins.
+        """
+        self._finish()
+        self._left = max(steps, 1)
+        self._task = self._open.enter_context(progress(name, self._left))
+
+    def advance(self, steps: int = 1) -> None:
+        """Report that steps of the present stage are done."""
+        if self._task is not None and self._left > 0:
+            self._task.advance(steps=min(steps, self._left))
+            self._left -= min(steps, self._left)
+
+    def _finish(self) -> None:
+        self.advance(self._left)
+        self._open.close()
+        self._task = None

@@ -1,5 +1,6 @@
 import json
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -7,6 +8,7 @@ from diagnosis.verdict.verdict import Verdict
 from experiments.diagnose import Diagnose, main
 from experiments.record import Record
 from experiments.record import main as record
+from experiments.runs.checkpoint_files import CheckpointFiles
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 
 
@@ -43,6 +45,53 @@ def test_a_diagnosis_writes_all_that_it_promises(recording, tmp_path, capsys):
     assert "servo" in capsys.readouterr().out
     with pytest.raises(RunFolderError, match="exists already"):
         main(Diagnose((recording,), str(model), out=out))
+
+
+@pytest.mark.slow
+def test_an_interrupted_diagnosis_is_resumed(recording, tmp_path, capsys, monkeypatch):
+    model = recording.with_name("swing.nominal.xml")
+    out, saved = tmp_path / "run", CheckpointFiles.save
+
+    def interrupted(files, key, content):
+        saved(files, key, content)
+        if key.endswith("001"):
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(CheckpointFiles, "save", interrupted)
+        main(Diagnose((recording,), str(model), out=out))
+    assert not (out / "diagnosis.json").exists()
+    main(Diagnose(resume=out))
+    said = capsys.readouterr().err
+    assert "search round 1" in said
+    assert "report 3/3" in said
+    whole = tmp_path / "whole"
+    main(Diagnose((recording,), str(model), out=whole))
+    resumed, verdict = (
+        Verdict.from_json((path / "diagnosis.json").read_text())
+        for path in (out, whole)
+    )
+    assert replace(resumed, seconds=0.0) == replace(verdict, seconds=0.0)
+    written = {path.name for path in out.iterdir()}
+    assert written == {path.name for path in whole.iterdir()}
+    capsys.readouterr()
+    main(Diagnose(resume=out))  # a run that is complete is only shown again
+    assert "search round" not in capsys.readouterr().err
+
+
+def test_recordings_that_the_audit_refuses_leave_no_folder(recording, tmp_path):
+    short = tmp_path / "short.parquet"
+    options = {"robot": "pendulum", "motion": "multisine"}
+    record(Record(**options, duration=1.0, out=short))
+    with pytest.raises(BadRecordingError):
+        main(
+            Diagnose(
+                (short,),
+                str(short.with_name("short.nominal.xml")),
+                out=tmp_path / "run",
+            )
+        )
+    assert not (tmp_path / "run").exists()
 
 
 @pytest.mark.slow
@@ -113,6 +162,7 @@ def test_a_recording_of_another_robot_is_refused_and_nothing_is_written(
     ("change", "said"),
     [
         ({"recordings": ()}, "no recording"),
+        ({"robot": ""}, "no robot"),
         ({"kp": -1.0}, "kp is -1.0"),
         ({"kd": 1.0}, "without kp"),
         ({"seed": -1}, "negative"),

@@ -1,0 +1,52 @@
+"""Stores the results of a diagnosis' long stages as files of its run folder."""
+
+import io
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnosis.search.hooks import Saved
+from groundwalk.files import write_bytes
+
+PLAIN = "plain"
+"""Name of the array that holds JSON text as bytes."""
+
+
+class CheckpointFiles:
+    """A checkpoint with one npz file for each result; pickle is never used."""
+
+    def __init__(self, folder: Path) -> None:
+        """Use a folder.
+
+        Args:
+          folder: for the files alone; it is made with the first of them.
+        """
+        self._folder = folder
+
+    def load(self, key: str) -> Saved | None:
+        """The result that was saved under a key; None if there is none."""
+        path = self._folder / f"{key}.npz"
+        if not path.is_file():
+            return None
+        with np.load(path, allow_pickle=False) as stored:
+            arrays = dict(stored)
+        return Saved(json.loads(arrays.pop(PLAIN).tobytes()), arrays)
+
+    def save(self, key: str, saved: Saved) -> None:
+        """Write a result under a key, all of it or nothing."""
+        text = np.frombuffer(json.dumps(saved.plain).encode(), np.uint8)
+        arrays: dict[str, Any] = {PLAIN: text, **saved.arrays}
+        content = io.BytesIO()
+        np.savez(content, **arrays)
+        write_bytes(self._folder / f"{key}.npz", content.getvalue())
+
+    def exists(self) -> bool:
+        """Whether the run has results that are not complete yet."""
+        return self._folder.exists()
+
+    def delete(self) -> None:
+        """Delete all files; a complete run does not need them."""
+        shutil.rmtree(self._folder, ignore_errors=True)
