@@ -1,4 +1,4 @@
-"""`groundwalk concealed` as a script."""
+"""Runs `groundwalk concealed` as `python -m experiments.concealed`."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Makes one concealed case: draws it, lets it move, writes recordings and truth."""
+"""Makes one concealed case: draws it, simulates it, writes recordings and truth."""
 
 import json
 import shutil
@@ -30,27 +30,31 @@ from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
 
 REFERENCES = (0, 2)
+"""Numbers of the motions that the healthy robot is recorded in, too."""
 _SCALE_STEP_S = 0.0005
+"""Physics step [s] while sizes are sought: coarser than in recordings, and faster."""
 _ATTEMPTS = 30
+"""Draws of a case before it is given up."""
 _SOURCE = "groundwalk concealed"
 
 
 def case_name(number: int) -> str:
-    """The name of a case's folder."""
+    """The name of a case, such as "case_007"."""
     return f"case_{number:03d}"
 
 
 def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
-    """Make one case, all at once: first its truth, then its folder.
+    """Make one case: write its truth, then its folder, which is never incomplete.
 
     Args:
-      cases: folder of the cases.
-      truths: folder of sealed parts; gets `case_000.json` and the like.
+      cases: folder of all cases.
+      truths: folder for the truths; gets a file such as `case_000.json`.
       seed: of the set.
       number: of the case.
 
     Raises:
-      GroundwalkError: whatever was drawn, the robot fell or nothing could be told.
+      GroundwalkError: in every attempt the robot fell, or no size of the effect showed
+        as clearly in the recordings as was drawn.
     """
     for attempt in range(_ATTEMPTS):
         maker = _Maker(seed, number, attempt)
@@ -70,7 +74,7 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Made:
-    """A run and how it was set up."""
+    """A simulated motion, its number, and the effects that were hidden in it."""
 
     motion: int
     run: Run
@@ -78,7 +82,7 @@ class _Made:
 
 
 class _Maker:
-    """One attempt at a case. The sort of case is the same in every attempt."""
+    """One attempt at a case; plant, kind and engine are the same in every attempt."""
 
     def __init__(self, seed: int, number: int, attempt: int) -> None:
         # Lists of numbers, not spawned children: a case knows nothing of the others.
@@ -100,7 +104,7 @@ class _Maker:
         self._hidden: Concealed | None = None
 
     def run(self) -> bool:
-        """Compute everything; False if the robot fell, or no size tells as drawn."""
+        """Simulate all motions; False if the robot fell or no size fits."""
         motion = self._motion
         engine = self._sort.engine
         if motion.plant.floating:
@@ -121,9 +125,12 @@ class _Maker:
         return True
 
     def _concealed(self, does: Scales) -> Concealed | None:
-        """What is hidden; one effect on a fixed base tells as much as was drawn.
+        """The hidden effects with their sizes; None if no size fits the drawn level.
 
-        On feet two runs part by chance, whatever is hidden: there sizes are drawn.
+        A single effect on a fixed base gets the size at which its recordings tell as
+        many nats as were drawn. Other sizes are drawn directly: on a robot that stands
+        or walks, tiny differences grow into large ones, so that information says
+        little.
         """
         motion = self._motion
 
@@ -149,7 +156,7 @@ class _Maker:
         return None if ease is None else drawn(ease)
 
     def _trials(self, effects: Sequence[Hidden]) -> list[Run]:
-        """All recordings' runs, in steps that are good enough to size effects."""
+        """All motions in coarse physics steps, for finding the size of an effect."""
         return [
             self._move(number, effects, self._sort.engine, _SCALE_STEP_S).run
             for number in range(len(self._motion.names))
@@ -170,7 +177,7 @@ class _Maker:
         return _Made(number, run, effects)
 
     def write(self, folder: Path) -> None:
-        """Nominal model and recordings."""
+        """Write the nominal model and the recordings into a folder."""
         plant = self._motion.plant
         robot = plant.name
         if plant.file is not None:
@@ -194,7 +201,7 @@ class _Maker:
         write_recording(recording, folder / name)
 
     def truth(self) -> dict[str, Any]:
-        """What the sealed file says of the case."""
+        """The case's entry in the sealed file."""
         hidden = self._hidden
         if hidden is None:
             raise GroundwalkError("the case has not been run")

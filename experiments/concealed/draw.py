@@ -1,9 +1,9 @@
-"""What a concealed case is: plant, engine, effects, sensors; drawn from (seed, i).
+"""Draws a concealed case: plant, engine, effects and sensors.
 
-Nothing is drawn that could not be told even from perfect recordings: effects only
-where they differ from all others (`experiments.concealed.where`), and two together
-only if they are not one and the same (`APART`). In pairs and triples sizes are from the
-easier half, so that every one of them matters.
+Only effects that perfect recordings would distinguish from all others are drawn: an
+effect at places where it differs from the others (its `spots`), and two effects
+together only if their sum is not a third (their `apart`). In pairs and triples the
+sizes are from the easier half, so that each effect matters.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ PLANTS = {
     "nao_standing": 0.10,
     "nao_walking": 0.05,
 }
-"""How often each is drawn."""
+"""Robots of the cases, and the share of cases that each gets."""
 CASE_KINDS = {
     "single": 0.45,
     "pair": 0.15,
@@ -37,7 +37,7 @@ CASE_KINDS = {
     "outside": 0.10,
     "unexcited": 0.10,
 }
-"""How often each is drawn."""
+"""Kinds of cases, and the share of cases that each gets."""
 CONFUSABLE = (
     ("coulomb_friction", "backlash"),
     ("command_latency", "viscous_friction"),
@@ -45,15 +45,26 @@ CONFUSABLE = (
     ("ground_slope", "encoder_offset"),
     ("contact_friction", "contact_compliance"),
 )
+"""Pairs of effects that are hard to distinguish."""
 _CONFUSABLE_SHARE = 0.6
+"""Share of pairs and triples that hold such a pair."""
 _COMPOUND_EASE = 0.5
+"""Least ease of effects in pairs and triples."""
 _QUANTA_RAD = (0.0015, 2 * np.pi / 2**14)
+"""Steps of the encoders [rad]: those of 12 and of 14 bits a turn."""
 _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "none": 0}
+"""Hidden effects by kind of case."""
 
 
 @dataclass(frozen=True)
 class CaseSort:
-    """What is settled before anything is simulated."""
+    """The choices that are made before anything is simulated.
+
+    Attributes:
+      plant: a key of `PLANTS`.
+      kind: a key of `CASE_KINDS`.
+      engine: "bullet" or "mujoco".
+    """
 
     plant: str
     kind: str
@@ -61,7 +72,7 @@ class CaseSort:
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> "CaseSort":
-        """Plant and kind by their shares; unexcited joints need a fixed base."""
+        """Draw plant, kind and engine; an unexcited joint needs a fixed base."""
         plant = str(rng.choice(list(PLANTS), p=list(PLANTS.values())))
         kind = str(rng.choice(list(CASE_KINDS), p=list(CASE_KINDS.values())))
         if kind == "unexcited" and plant in ("nao_standing", "nao_walking"):
@@ -71,16 +82,23 @@ class CaseSort:
 
 @dataclass(frozen=True, eq=False)
 class Concealed:
-    """What is hidden in a case, and how easy it is to see, at most 1."""
+    """The effects hidden in a case.
+
+    Attributes:
+      effects: with their sizes.
+      ease: how easy they are to see: 1 is easiest, 0 hard, below 0 harder still.
+    """
 
     effects: tuple[Hidden, ...]
     ease: float
 
 
 def drawn_sensors(kind: str, rng: np.random.Generator) -> tuple[HiddenSensors, float]:
-    """Sensors of a case, and the most by which its ticks are off [s].
+    """The sensors of a case, and the largest error of its time stamps [s].
 
-    With nothing missing the noise may be up to three times as strong.
+    Args:
+      kind: of the case; with nothing hidden the noise is up to three times as strong.
+      rng: draws both.
     """
     stronger = float(rng.uniform(1.0, 3.0)) if kind == "none" else 1.0
     sensors = HiddenSensors(
@@ -101,16 +119,16 @@ def drawn_effects(
     rng: np.random.Generator,
     ease: float | None = None,
 ) -> Concealed:
-    """What is hidden in a case.
+    """Draw the effects of a case: their names, places and sizes.
 
     Args:
-      sort: plant and kind.
+      sort: plant, kind and engine.
       plant: the robot.
-      scales: what it does with nothing hidden.
-      joints: where effects may be.
-      duration_s: of the recordings.
-      rng: draws all of it.
-      ease: how easy it is to see; drawn where None.
+      scales: torques, speeds and ranges of the robot with nothing hidden.
+      joints: indices of the joints where effects may be.
+      duration_s: of the recordings [s].
+      rng: draws everything.
+      ease: how easy the effects are to see, 0 to 1; drawn where None.
     """
     drawn = float(rng.uniform())
     if sort.kind in ("pair", "triple"):
@@ -135,7 +153,10 @@ def drawn_effects(
 def _spot(
     options: Sequence[Spot], used: set[int], together: bool, rng: np.random.Generator
 ) -> Spot:
-    """One of the spots, if it can be at a joint that is used or at one that is not."""
+    """Draw a place: at a joint in use if `together`, otherwise at another one.
+
+    Where no such place exists, any of the options is drawn.
+    """
     wanted = [spot for spot in options if (spot.joint in used) == together]
     wanted = wanted or list(options)
     return wanted[int(rng.integers(len(wanted)))]

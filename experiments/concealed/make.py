@@ -1,7 +1,6 @@
 """`groundwalk concealed make`: draw cases, write recordings, seal the truth.
 
-How cases are drawn, such that their truth can be told: `experiments.concealed.draw`,
-`experiments.concealed.where`, `experiments.concealed.motion`; docs/concealed.md.
+How cases are drawn is written in docs/concealed.md.
 """
 
 import hashlib
@@ -15,27 +14,28 @@ import tyro
 
 from experiments.command_line import run_verb
 from experiments.concealed.case import case_name, make_case
+from experiments.concealed.reading import CASES, FORMAT, HASH, SEALED, TRUTH
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_text
 
-CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"
-FORMAT = 1
 _PARTS, _SET = "parts", "set.json"
+"""In the sealed folder: the truths of the cases made so far, and what was asked for."""
 _MOST_CASES = 1000
+"""Names of cases have three digits."""
 
 
 @dataclass(frozen=True)
 class ConcealedMake:
-    """Draw cases with hidden physics; the truth goes into a sealed file.
+    """Draw cases with hidden physics, and seal their truth in a file with a hash.
 
     Attributes:
-      folder: where the set is made; one that was begun is finished.
-      cases: how many.
-      seed: every case follows from it and its own number.
-      threads: processes; 0 for one per core.
+      folder: of the set; a set that was begun there is finished.
+      cases: number of cases.
+      seed: a case depends on the seed and its own number only.
+      threads: number of processes; 0 for one per core.
     """
 
     if_interrupted: ClassVar[str] = REPEATABLE
@@ -46,14 +46,18 @@ class ConcealedMake:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse sets that cannot be."""
+        """Refuse numbers out of range.
+
+        Raises:
+          BadValueError: there would be no case or too many, or a number is negative.
+        """
         if not 1 <= self.cases <= _MOST_CASES:
             raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
         check_at_least(self, seed=0, threads=0)
 
 
 def main(config: ConcealedMake) -> None:
-    """Make what is missing of the set, and print the hash of its truth."""
+    """Make the cases that are not there yet, and print the hash of the sealed truth."""
     sealed = config.folder / SEALED
     _open(config)
     if not (config.folder / HASH).exists():
@@ -63,7 +67,7 @@ def main(config: ConcealedMake) -> None:
 
 
 def _open(config: ConcealedMake) -> None:
-    """Begin a set, or find that the folder holds this very one."""
+    """Begin a set, or check that the folder holds the set that is asked for."""
     asked = {"format": FORMAT, "seed": config.seed, "cases": config.cases}
     path = config.folder / SEALED / _SET
     if path.exists():
@@ -79,7 +83,7 @@ def _open(config: ConcealedMake) -> None:
 
 
 def _make_all(config: ConcealedMake, parts: Path) -> None:
-    """Make the cases that are not there yet; each depends on (seed, number) alone."""
+    """Make the cases that are not there yet, several at a time."""
     cases = config.folder / CASES
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
@@ -98,7 +102,7 @@ def _make_all(config: ConcealedMake, parts: Path) -> None:
 
 
 def _seal(config: ConcealedMake) -> None:
-    """All truths in one file, and its hash beside the folder that nobody opens."""
+    """Write all truths into one file, and its hash beside the sealed folder."""
     sealed = config.folder / SEALED
     names = [case_name(i) for i in range(config.cases)]
     parts = {name: sealed / _PARTS / f"{name}.json" for name in names}

@@ -1,9 +1,10 @@
 """How the robot of a concealed case moves: plant, ticks, servo gains and commands.
 
-On a fixed base two of the four recordings are made with half the servos' gains, as
-their metadata say: what is a wrong gain grows and shrinks with it, what is a payload or
-a friction does not. These are the chirp and the ramps, so that most pairs of motions,
-such as multisine and chirp, have both: a diagnosis sets whole recordings aside.
+On a fixed base two of the four recordings, the chirp and the ramps, are made with half
+the servo gains, which their metadata state. The effect of a wrong gain grows and
+shrinks with the gain, that of a payload or of friction does not, so that the two can be
+distinguished. A diagnosis holds whole recordings out: most pairs of motions have both
+gains.
 """
 
 from collections.abc import Sequence
@@ -19,36 +20,44 @@ from worlds.hidden.plant import HiddenPlant, hidden_plant
 from worlds.hidden.run import Feed
 
 STEP_S = 0.00025
+"""Physics step with a fixed base [s]."""
 FLOATING_STEP_S = 0.0005
+"""Physics step of a robot that stands or walks [s]; contacts make steps expensive."""
 _STANDING = ("squat", "fast_squat", "sway", "squat")
+"""Motions of a standing robot, one a recording."""
 _RATES_HZ, _RATE_SHARES = (100.0, 200.0, 50.0), (0.7, 0.15, 0.15)
+"""Ticks a second with a fixed base, and how often each is drawn."""
 _FLOATING_HZ = 100.0
+"""Ticks a second of a robot that stands or walks: the rate of a NAO."""
 _DURATION_S, _FLOATING_DURATION_S = (8.0, 10.0), (5.0, 6.0)
-"""Contacts cost time: recordings on feet are shorter."""
+"""Range of durations [s] with a fixed base, and of a robot that stands or walks, whose
+contacts take longer to simulate."""
 _SOFT_MOTIONS, _SOFT = ("chirp", "ramps"), 0.5
-"""Recordings with a part of the gains."""
+"""Motions that are recorded with lower servo gains, and the factor."""
 _MIDDLE = 0.4
-"""Centres lie within this part of a joint's range."""
+"""A motion's centre lies within this share of the joint's range, around its middle."""
 _WALK_REST_S = 0.8
+"""Time that a robot stands before it walks [s]."""
 _BEFORE_S, _STILL_S = (0.3, 1.2), 8.0
-"""Time before a recording; a joint that is not to be excited has sagged by then."""
+"""Range of times before a recording begins [s], and the time that is added if a joint
+does not move: by then it has sagged under its load."""
 
 
 @dataclass(frozen=True, eq=False)
 class CaseMotion:
-    """What the robot of a case is told, in each of its recordings.
+    """The motions of a case, one for each of its recordings.
 
     Attributes:
-      plant: the robot.
-      plants: the same with each recording's servo gains.
+      plant: the robot with its own servo gains.
+      plants: the robot with the servo gains of each recording.
       names: of the motions.
-      places: joints at which something may be hidden.
-      moves: (j,) joints that are excited.
-      centre_rad: (j,) that fixed robots start from.
+      places: indices of the joints at which effects may be hidden.
+      moves: (j,) whether each joint is excited.
+      centre_rad: (j,) pose from which a robot with a fixed base starts.
       rate_hz: ticks a second.
-      spans_s: before each recording, and of it.
-      jitter_s: most by which a tick is off.
-      seeds: entropy of each motion.
+      spans_s: for each recording, the time before it and its duration.
+      jitter_s: largest error of a time stamp.
+      seeds: seed of each motion.
     """
 
     plant: HiddenPlant
@@ -66,13 +75,13 @@ class CaseMotion:
     def drawn(
         cls, plant_name: str, held: bool, jitter_s: float, rng: np.random.Generator
     ) -> "CaseMotion":
-        """Draw rate, durations, gains, pose, and which joint is held still.
+        """Draw rate, durations, gains, pose, and the joint that is held still.
 
         Args:
-          plant_name: one of `concealed_draw.PLANTS`.
-          held: whether the joint where something is hidden never moves.
-          jitter_s: most by which a tick is off.
-          rng: draws all of it.
+          plant_name: a key of `experiments.concealed.draw.PLANTS`.
+          held: if true, the joint with the hidden effect is not excited.
+          jitter_s: largest error of a time stamp.
+          rng: draws everything.
         """
         plant, names = _plant(plant_name)
         coupled = plant.description.coupled if plant.description else ()
@@ -106,15 +115,15 @@ class CaseMotion:
 
     @property
     def duration_s(self) -> float:
-        """Of each recording."""
+        """Duration of each recording."""
         return self.spans_s[0][1]
 
     def clock(self, number: int, step_s: float | None = None) -> Clock:
-        """When the ticks of a recording happen.
+        """The times of a recording's ticks and physics steps.
 
         Args:
           number: of the recording.
-          step_s: fine step; the case's own where None.
+          step_s: physics step; the case's own where None.
         """
         own = FLOATING_STEP_S if self.plant.floating else STEP_S
         rng = np.random.default_rng([self.seeds[number], 1])
@@ -123,7 +132,11 @@ class CaseMotion:
         )
 
     def feed(self, number: int) -> tuple[FloatArray, Feed]:
-        """Pose at the start, and commands, of a recording."""
+        """Start pose (j,) [rad] and commands of a recording.
+
+        Args:
+          number: of the recording.
+        """
         rng = np.random.default_rng([self.seeds[number], 0])
         name, description = self.names[number], self.plant.description
         if name == "walk" and description is not None:
@@ -144,7 +157,11 @@ class CaseMotion:
 
 
 def table_feed(command_rad: FloatArray) -> tuple[FloatArray, Feed]:
-    """The first row of commands (rows, j) as pose, and the rows one by one."""
+    """A table of commands as start pose and feed.
+
+    Args:
+      command_rad: (rows, j), a row for each tick; the first is the start pose.
+    """
     return command_rad[0], lambda row, sense: command_rad[row]
 
 
@@ -159,7 +176,7 @@ def _plant(name: str) -> tuple[HiddenPlant, tuple[str, ...]]:
 def _gains(
     plant: HiddenPlant, names: Sequence[str], rng: np.random.Generator
 ) -> tuple[HiddenPlant, ...]:
-    """Known servo gains of each recording; on feet the robot needs its own."""
+    """The robot with the gains of each recording; one that stands keeps its own."""
     if plant.floating:
         return (plant,) * len(names)
     # A described robot's gain is known; others' may be set to anything.

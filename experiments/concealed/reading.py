@@ -1,4 +1,4 @@
-"""Reading what a case shows: its plant, its recordings, those of when all was well."""
+"""The files of a set of concealed cases; reads a case without its truth."""
 
 import json
 from pathlib import Path
@@ -8,16 +8,23 @@ from diagnosis.traces.read import read_reference, read_traces
 from diagnosis.traces.trace import Trace
 from groundwalk.errors import RunFolderError
 
+CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"
+"""In a set: folder of the cases, folder of the sealed truth, the truth's file, and the
+file with its hash."""
 RECORDINGS, REFERENCE, PLANT_FILE = "recordings", "reference", "plant.json"
+"""In a case: folder of recordings, folder of recordings of the healthy robot, and the
+file that names the robot model."""
 ANSWERS, BASELINE_ANSWERS = "answers", "baselines"
-"""Folders of a set: of the diagnosis' verdicts, and with one for each baseline."""
+"""In a set: folder of the diagnosis' verdicts; folder with one for each baseline."""
+FORMAT = 1
+"""Version of the file with the sealed truth."""
 
 
 def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
-    """Nominal plant, recordings and reference of a case; not its truth.
+    """Nominal plant, recordings and reference recordings of a case; not its truth.
 
     Args:
-      folder: of the case; a robot that stands or walks has a reference.
+      folder: of the case. Only robots that stand or walk have reference recordings.
 
     Raises:
       RunFolderError: the folder holds no case.
@@ -29,5 +36,5 @@ def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
     robot = json.loads(path.read_text())["robot"]
     source = folder / robot if (folder / robot).exists() else robot
     plant, traces = read_traces(sorted((folder / RECORDINGS).glob("*.parquet")), source)
-    wells = sorted((folder / REFERENCE).glob("*.parquet"))
-    return plant, traces, read_reference(wells, source, plant)
+    healthy = sorted((folder / REFERENCE).glob("*.parquet"))
+    return plant, traces, read_reference(healthy, source, plant)

@@ -1,4 +1,4 @@
-"""`groundwalk concealed run`: answer every case without looking at its truth."""
+"""`groundwalk concealed run`: answer every case without reading its truth."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +14,12 @@ from diagnosis.diagnose import diagnose
 from diagnosis.traces.split import split
 from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
-from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, read_case
+from experiments.concealed.reading import (
+    ANSWERS,
+    BASELINE_ANSWERS,
+    CASES,
+    read_case,
+)
 from experiments.runs.folder import PROVENANCE, RunFolder, provenance
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
@@ -25,7 +30,6 @@ from groundwalk.errors import BadRecordingError, RunFolderError
 from groundwalk.files import write_text
 
 VERB = "concealed-run"
-CASES = "cases"
 
 
 @dataclass(frozen=True)
@@ -33,9 +37,9 @@ class ConcealedRun:
     """Diagnose the cases of a set; cases with an answer are not diagnosed again.
 
     Attributes:
-      folder: the set.
-      by: what answers: the diagnosis, or one of the baselines it is compared with.
-      seed: every random number follows from it and the case's name.
+      folder: of the set.
+      by: the method that answers: the diagnosis, or a baseline to compare it with.
+      seed: the random numbers of a case depend on the seed and the case's name only.
       threads: cases at a time, each in a process of its own; 0 for one per core.
     """
 
@@ -47,14 +51,19 @@ class ConcealedRun:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what is no set."""
+        """Refuse a folder without cases, and negative numbers.
+
+        Raises:
+          RunFolderError: the folder holds no cases.
+          BadValueError: seed or threads is negative.
+        """
         if not (self.folder / CASES).is_dir():
             raise RunFolderError(f"{self.folder} holds no {CASES}: make them first")
         check_at_least(self, seed=0, threads=0)
 
 
 def main(config: ConcealedRun) -> None:
-    """Answer what has no answer yet, and note the code that does."""
+    """Answer the cases that have no answer yet, and note the version of the code."""
     kind, answer = ANSWERS, diagnosed
     if config.by != "diagnosis":
         kind, answer = (
@@ -66,7 +75,11 @@ def main(config: ConcealedRun) -> None:
 
 
 def _note_code(config: ConcealedRun, kind: str) -> None:
-    """Write down what answers; not beside answers of code that nobody noted."""
+    """Note the version of the code that answers.
+
+    Where there are answers whose code was never noted, nothing is written: the note
+    would wrongly claim them.
+    """
     answers = RunFolder(config.folder / kind)
     missing, cases = unanswered(config.folder, kind), cases_of(config.folder)
     if missing and answers.has(PROVENANCE):
@@ -77,33 +90,38 @@ def _note_code(config: ConcealedRun, kind: str) -> None:
 
 
 def unanswered(folder: Path, kind: str) -> list[Path]:
-    """The cases of a set that have no answer of a kind yet."""
+    """Folders of the cases that have no answer yet.
+
+    Args:
+      folder: of the set.
+      kind: subfolder of the answers, such as "answers" or "baselines/bic".
+    """
     return [case for case in cases_of(folder) if not _path(folder, kind, case).exists()]
 
 
 def cases_of(folder: Path) -> list[Path]:
-    """The folders of all cases of a set."""
+    """Folders of all cases of a set, in order."""
     return sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
 
 
 Answer = Callable[[Path, int], Verdict]
-"""The verdict on a case's folder, with a seed."""
+"""A function from a case's folder and a seed to a verdict."""
 
 
 def answer_all(
     folder: Path, kind: str, answer: Answer, seed: int, threads: int
 ) -> None:
-    """Write the missing answers of a kind; a case that fails does not stop the others.
+    """Write the missing answers; a case that fails does not stop the others.
 
     Args:
-      folder: the set.
+      folder: of the set.
       kind: subfolder for the answers.
-      answer: a function of a module, so that processes find it.
-      seed: of every case.
-      threads: processes; 0 for one per core.
+      answer: gives the verdict; a function of a module, so that processes find it.
+      seed: given to `answer` for every case.
+      threads: number of processes; 0 for one per core.
 
     Raises:
-      Exception: what the first case that failed has raised, once all others are done.
+      Exception: the error of the first case that failed, once all others are done.
     """
     missing = unanswered(folder, kind)
     total = len(cases_of(folder))
@@ -126,7 +144,12 @@ def answer_all(
 
 
 def diagnosed(case: Path, seed: int) -> Verdict:
-    """The diagnosis' own verdict; recordings that it refuses are not identifiable."""
+    """The diagnosis' verdict on a case; "not_identifiable" if it refuses a recording.
+
+    Args:
+      case: its folder.
+      seed: of the random numbers, together with the case's number.
+    """
     own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
     try:
         plant, traces, reference = read_case(case)
@@ -137,7 +160,13 @@ def diagnosed(case: Path, seed: int) -> Verdict:
 
 @one_blas_thread
 def by_baseline(name: str, case: Path, seed: int) -> Verdict:
-    """A baseline's verdict, from what a diagnosis learns from; none uses the seed."""
+    """A baseline's verdict, from the recordings that a diagnosis fits and selects on.
+
+    Args:
+      name: of the baseline.
+      case: its folder.
+      seed: not used; baselines draw no random numbers.
+    """
     try:
         plant, traces, _ = read_case(case)
         parts = split(traces)

@@ -10,8 +10,7 @@ import tyro
 
 from diagnosis.verdict.verdict import Found, Verdict
 from experiments.command_line import run_verb
-from experiments.concealed.make import CASES
-from experiments.concealed.reading import ANSWERS
+from experiments.concealed.reading import ANSWERS, CASES
 from experiments.concealed.scoring.figure import draw_score
 from experiments.concealed.scoring.marks import NAMED_KINDS, mark
 from experiments.concealed.scoring.measures import measures
@@ -39,7 +38,7 @@ FORMAT = 1
 DIAGNOSIS = "diagnosis"
 ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
 Answers = Mapping[str, Mapping[str, Verdict]]
-"""By method and case."""
+"""Verdicts by method ("diagnosis" or a baseline) and name of the case."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +46,9 @@ class ConcealedScore:
     """Open the sealed truth of a set of cases and score all answers to it.
 
     Attributes:
-      folder: with cases, sealed truth and answers; gets score.json, .md, .png and
-        report.html.
-      threads: processes that fit the true structures; 0 for one per core.
+      folder: of the set, with answers. The results are written there: score.json,
+        score.md, score.png and report.html.
+      threads: number of processes that fit the true effects; 0 for one per core.
     """
 
     if_interrupted: ClassVar[str] = REPEATABLE
@@ -82,18 +81,18 @@ def main(config: ConcealedScore) -> None:
     score_report(score, FIGURE).write(folder, PAGE)
     print_table(*score_rows(score))
     if score["missing"]:
-        print(f"without an answer, counted as wrong: {', '.join(score['missing'])}")
+        print(f"Unanswered (counted as wrong): {', '.join(score['missing'])}")
 
 
 def score_of(
     truth: Truth, answers: Answers, oracles: Mapping[str, Oracle]
 ) -> dict[str, Any]:
-    """All figures of all methods, as score.json has them.
+    """The scores of all methods, in the form of score.json.
 
     Args:
       truth: of the set.
-      answers: those of `DIAGNOSIS`, and of baselines.
-      oracles: by case, where something of the library is to be found.
+      answers: by method and case; "diagnosis" is one of the methods.
+      oracles: by the names of the cases in which a known effect is hidden.
     """
     figures = {
         method: measures(
@@ -127,7 +126,7 @@ def score_of(
 
 
 def _code_that_answered(folder: Path) -> str | None:
-    """The commit of the diagnosis; None if nobody noted it."""
+    """The commit at which the diagnosis answered; None if it was not noted."""
     answers = RunFolder(folder / ANSWERS)
     if not answers.has(PROVENANCE):
         return None
@@ -137,13 +136,15 @@ def _code_that_answered(folder: Path) -> str | None:
 def consult_all(
     folder: Path, cases: Sequence[TrueCase], answers: Answers, threads: int
 ) -> dict[str, Oracle]:
-    """The oracles of all cases that need one; what was computed before is kept.
+    """The oracles of all cases in which a known effect is hidden.
+
+    Each is kept in the set's folder, and computed again only if an answer has changed.
 
     Args:
-      folder: of the set; they are kept in its `oracle`.
+      folder: of the set.
       cases: the truth.
-      answers: whose effects are replayed beside the oracle's.
-      threads: processes; 0 for one per core.
+      answers: their effects are replayed on the held-out recordings.
+      threads: number of processes; 0 for one per core.
     """
     asked = [case for case in cases if case.kind in NAMED_KINDS]
     found = {case.name: _kept(folder, case.name, answers) for case in asked}
@@ -168,7 +169,7 @@ def consult_all(
 def _consult(
     folder: Path, case: TrueCase, found: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """One oracle; kept at once, whatever becomes of the others."""
+    """Compute one oracle, and keep it at once, so that an interruption loses little."""
     oracle = consult(folder / CASES / case.name, case, found)
     write_text(_path(folder, case.name), oracle.to_json())
     return oracle
@@ -179,7 +180,7 @@ def _path(folder: Path, name: str) -> Path:
 
 
 def _kept(folder: Path, name: str, answers: Answers) -> Oracle | None:
-    """An oracle that was computed beside these very answers."""
+    """The oracle that was kept, if it was computed with the same answers."""
     path = _path(folder, name)
     if not path.is_file():
         return None

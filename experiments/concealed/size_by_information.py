@@ -1,10 +1,9 @@
-"""How large a concealed effect must be to tell so much: sizes by information.
+"""Finds the size at which a hidden effect shows as clearly as a case demands.
 
-What a case tells is the log-likelihood that the true physics gains on the nominal
-model, in nats per recording: half the squared difference of both motions, in units of
-the encoders' noise, of which replays in short windows keep a part. Ranges of sizes say
-little about that: half of one joint's friction may be thousands of nats, a tenth of
-another's none.
+How clearly it shows is measured by information: the log-likelihood that the true
+physics gains over the nominal model, in nats per recording. That is half the squared
+difference of both motions in units of the encoders' noise. The size itself says little:
+half of one joint's friction may give thousands of nats, a tenth of another's none.
 """
 
 import math
@@ -16,28 +15,36 @@ from worlds.hidden.recorded import HiddenSensors
 from worlds.hidden.run import Run
 
 LEVELS = {"L1": 100.0, "L2": 20.0, "L3": 5.0, "L4": 1.0}
-"""From easy to see to next to invisible; the least nats per recording ..."""
+"""Levels from easy to see to nearly invisible, with their least nats per recording."""
 
 MOST_NATS = 1e5
-"""... and the most of the first."""
+"""Most nats per recording that are drawn, in the easiest level."""
 
 SHARES = {"L1": 0.40, "L2": 0.35, "L3": 0.15, "L4": 0.10}
-"""How often a level is drawn. The second is narrow: what a fit of the truth tells then
-often lies beside it."""
+"""Share of cases that are drawn for each level. The second level is narrow and gets
+many: the level that is later measured by a fit of the true effects often misses it."""
 
 KEPT = 0.6
-"""Of the nats by which whole motions differ, in replays of windows that start anew."""
+"""Share of the nats that a diagnosis can see: it replays short windows, each with its
+own start state, which takes up a part of the difference. A rough value: levels are
+measured later."""
 
 LEAST_EASE, MOST_EASE = -2.0, 1.0
+"""Range in which the ease is sought; sizes are drawn from 0 to 1."""
 NEAR = math.log(1.3)
+"""The search ends when the nats are right within this factor (as a logarithm)."""
 FAR = math.log(3.0)
+"""A best trial that is off by more than this factor (as a logarithm) is no answer."""
 MOST_TRIALS = 8
+"""Trials of a search; each simulates all motions of the case."""
 _LEAST_TOLD, _MOST_TOLD = 0.1, 1e9
+"""Nats are kept within these bounds before their logarithm is taken."""
 _INNER = 0.1
+"""A trial keeps this share of the bracket away from the bracket's ends."""
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
-    """A level by its share, then even in the logarithm."""
+    """Draw nats per recording: a level by its share, then evenly in the logarithm."""
     ends = [MOST_NATS, *LEVELS.values()]
     level = int(rng.choice(len(LEVELS), p=[SHARES[name] for name in LEVELS]))
     high, low = ends[level], ends[level + 1]
@@ -45,17 +52,23 @@ def drawn_nats(rng: np.random.Generator) -> float:
 
 
 def level_of(nats_per_recording: float) -> str:
-    """The first level that is reached, or the last."""
+    """The easiest level whose least nats are reached; otherwise the last level."""
     *_, last = LEVELS
     reached = (name for name, least in LEVELS.items() if nats_per_recording >= least)
     return next(reached, last)
 
 
 def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) -> float:
-    """What a replay would tell runs from nominal ones by, in the recordings' median.
+    """Nats by which motions with hidden effects differ from nominal ones.
 
-    What shows in one of them only cannot be learned from others, nor shown to hold
-    there. Infinite where the physics blew up.
+    The median over the recordings: an effect that shows in only one of them can be
+    neither learned from the others nor confirmed there. Infinite where the physics blew
+    up.
+
+    Args:
+      nominal: motions with nothing hidden, one a recording.
+      runs: the same motions with the hidden effects.
+      sensors: whose noise counts.
     """
     if not all(run.ok for run in runs):
         return math.inf
@@ -70,16 +83,16 @@ def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) ->
 def ease_that_tells(
     wanted: float, told: Callable[[float], float], first: float
 ) -> float | None:
-    """The ease at which so much is told, nearly; None if no size tells it.
+    """The ease at which recordings tell nearly the wanted nats; None if none does.
 
-    By secants of the logarithm over the ease, in which sizes are even: what is told
-    goes with a size's square, so that these are nearly straight. They stay between
-    trials that told too little and too much, since a limit or an end stop tells
-    nothing at all until it is reached.
+    By the secant method on the logarithm of the nats over the ease. Sizes are
+    exponential in the ease and nats go with the square of a size, so that this function
+    is nearly straight. Trials stay between those with too few and too many nats: a
+    torque limit or an end stop gives no nats at all until it is reached.
 
     Args:
       wanted: nats per recording.
-      told: these, at an ease; each call costs runs of a whole case.
+      told: gives the nats at an ease; each call simulates all motions of a case.
       first: the ease to begin with.
     """
     goal = math.log(wanted)
@@ -97,10 +110,14 @@ def ease_that_tells(
 
 
 def _next(tried: dict[float, float], nothing: float) -> float:
-    """Where the line through the two best trials is right, within the range.
+    """The next ease to try: the zero of the line through the two best trials.
 
-    Halfway where that is not well between too little and too much, or where the little
-    is nothing at all, of which no line can be drawn.
+    The middle of the bracket is tried instead where that zero is not well inside the
+    bracket, or where the lower trial gave no nats at all.
+
+    Args:
+      tried: by ease, logarithm of the nats over the wanted nats.
+      nothing: that logarithm where there are no nats.
     """
 
     def off(one: float) -> tuple[float, float]:

@@ -1,1 +1,1 @@
-"""Answers to concealed cases held against their truths."""
+"""Scores the answers to concealed cases against the sealed truth."""

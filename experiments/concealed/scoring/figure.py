@@ -1,4 +1,4 @@
-"""A picture of a score: accuracy by level, and what probabilities are worth."""
+"""Picture of a score: accuracy by level, and calibration of stated probabilities."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,19 +14,28 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-"""That colour-blind people tell apart (Okabe and Ito); the diagnosis first."""
+"""Colours of the methods, the diagnosis first; colour-blind people can distinguish them
+(Okabe and Ito)."""
 
 
 def draw_score(score: Mapping[str, Any], path: Path) -> None:
-    """Draw into a PNG file; see `score_figure`."""
+    """Write the figure of a score as a PNG file.
+
+    Args:
+      score: the contents of score.json.
+      path: of the PNG file.
+    """
     write_figure(score_figure(score), path)
 
 
 def score_figure(score: Mapping[str, Any]) -> "Figure":
-    """Left: right effects by level, all methods. Right: the diagnosis' reliability.
+    """Figure with the accuracy of all methods, and with the diagnosis' calibration.
+
+    Left, the share of single effects named rightly, by level. Right, the share of right
+    names over the stated probability.
 
     Args:
-      score: as score.json has it.
+      score: the contents of score.json.
     """
     from matplotlib.figure import Figure
 
@@ -88,7 +97,7 @@ def _draw_reliability(axes: "Axes", bins: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _bars(figures: Sequence[Mapping[str, Any]]) -> list[list[float]]:
-    """Lengths of the bars below and above."""
+    """Lengths of error bars: a row below and a row above the values."""
     below = [max(one["value"] - one["low"], 0.0) for one in figures]
     above = [max(one["high"] - one["value"], 0.0) for one in figures]
     return [below, above]

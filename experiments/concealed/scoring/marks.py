@@ -1,4 +1,4 @@
-"""How right an answer to one concealed case is: everything that can be counted."""
+"""Compares the answer to one concealed case with its truth."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,7 +10,7 @@ from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase
 
 NAMED_KINDS = ("single", "pair", "triple")
-"""Cases in which something of the library is to be found."""
+"""Kinds of cases in which effects that the diagnosis knows are hidden and excited."""
 
 MAIN: Mapping[str, tuple[str, ...]] = {
     "stribeck_friction": ("coulomb_torque", "extra_torque"),
@@ -20,34 +20,38 @@ MAIN: Mapping[str, tuple[str, ...]] = {
     "external_force": ("x", "y", "z"),
     "contact_compliance": ("stiffness",),
 }
-"""Parameters that say how large an effect is; all of them where it is not listed."""
+"""By effect, the parameters that say how large it is; effects that are not listed have
+no other parameters."""
 
 _BOUND = 1.0
+"""Shares of closed error are kept within plus and minus this, so that one bad answer
+does not decide a mean."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """One answer held against the truth.
+    """What is right and wrong about one answer.
 
     Attributes:
       case: the truth.
-      level: by the oracle; None where nothing of the library is to be found.
+      level: of difficulty, "L1" (easy) to "L4"; None where no known effect is hidden.
       kind: of the verdict, or "missing".
       names_something: whether any effect is named.
       top1: whether the verdict is "effects" and its first effect has a true name.
-      in_set: whether a true name is among all that the answer considers.
-      set_size: how many names it considers.
+      in_set: whether a true name is among all names that the answer considers.
+      set_size: how many names the answer considers.
       places: for each effect found with a true name, whether its place is true.
-      hits: effects found that are true in name and place ...
-      extra: ... that are not ...
-      missed: ... and true effects that were not found.
+      hits: number of effects found that are true in name and place.
+      extra: number of effects found that are not.
+      missed: number of true effects that were not found.
       errors: relative error of each effect that is true in name and place.
-      covered: for each of their main parameters, whether its interval holds the truth.
-      closed: share of what the oracle closes that the answer closes; None where there
-        is nothing to close.
-      wrong_place: the same for the answer's own control at a wrong place.
-      wrong_effect: the same for its control with a wrong effect.
-      probability: of the first effect; None without one.
+      covered: for each main parameter of these effects, whether its interval holds the
+        truth.
+      closed: the part of the error that the oracle removes which the answer removes,
+        too; None where there is nothing to remove.
+      wrong_place: the part that the answer's own control at a wrong place removes.
+      wrong_effect: the part that its control with a wrong effect removes.
+      probability: stated for the first effect; None without one.
     """
 
     case: TrueCase
@@ -72,8 +76,9 @@ class Mark:
     def right(self) -> bool:
         """Whether the answer is right as a whole.
 
-        All that is there is named, by name and place, and nothing else. Where nothing
-        of the library is there, nothing is; where it is not excited, that may be said.
+        Exactly the hidden effects are named, at their places. Where nothing is hidden,
+        nothing is named; outside the library, the verdict is not "effects"; where the
+        joint never moves, "none" and "not_identifiable" are right, too.
         """
         exact = self.kind == "effects" and not self.extra and not self.missed
         match self.case.kind:
@@ -90,13 +95,13 @@ class Mark:
 def mark(
     case: TrueCase, verdict: Verdict | None, oracle: Oracle | None, method: str
 ) -> Mark:
-    """Hold an answer against the truth.
+    """Compare an answer with the truth.
 
     Args:
       case: the truth.
-      verdict: the answer; None is wrong in every respect.
-      oracle: of the case; None where nothing of the library is to be found.
-      method: whose answer it is.
+      verdict: the answer; None (no answer) is wrong in every respect.
+      oracle: of the case; None where no known effect is hidden.
+      method: that gave the answer, such as "diagnosis".
     """
     found = verdict.effects if verdict else ()
     true = {_at(each): each for each in case.effects}
@@ -133,7 +138,7 @@ def _at(effect: Found | EffectValues) -> tuple[str, str]:
 
 
 def _considered(verdict: Verdict) -> set[str]:
-    """All names that an answer does not rule out."""
+    """Names of all effects that an answer finds or does not rule out."""
     found = {each.name for each in verdict.effects}
     others = {other.name for each in verdict.effects for other in each.confusable_with}
     answers = {each.name for answer in verdict.alternatives for each in answer}
@@ -146,11 +151,12 @@ def _main(found: Found, true: EffectValues) -> list[str]:
 
 
 def _error(found: Found, true: EffectValues, oracle: Oracle | None) -> float:
-    """Distance of the estimate from the truth, over that of the truth from nothing.
+    """Error of the main parameters, relative to the size of the true effect.
 
-    Main parameters together as a vector. Where nothing happens at infinity, as with a
-    stiffness, the truth itself is the measure. A parameter that is not stated is as
-    wrong as if nothing had been found.
+    The parameters form a vector. The error is the distance from the estimate to the
+    truth, the size that from the truth to the value at which the effect does nothing.
+    Where that value is infinite, as with a stiffness, it counts as zero. A parameter
+    that is not stated counts as if it did nothing.
     """
     key = f"{true.name}@{true.place}"
     neutral = oracle.neutral.get(key, {}) if oracle else {}
@@ -174,7 +180,11 @@ def _covered(found: Found, true: EffectValues) -> list[bool]:
 
 
 def _closed(oracle: Oracle, method: str) -> float | None:
-    """Within +-1; an answer that is not there, or names nothing, closes nothing."""
+    """The part of the oracle's gain in held-out error that an answer reaches.
+
+    From -1 to 1; 0 for an answer that is missing or names nothing. None in cases that
+    are too hard (beyond level L2), or where the oracle gains nothing.
+    """
     if oracle.level not in ("L1", "L2") or oracle.nominal <= oracle.fitted:
         return None
     _, error = oracle.answered.get(method, ("", oracle.nominal))
@@ -185,9 +195,11 @@ def _closed(oracle: Oracle, method: str) -> float | None:
 def _controls(
     verdict: Verdict | None, closed: float | None
 ) -> tuple[float | None, float | None]:
-    """What the controls close, as a part of what the effect closes that they replace.
+    """Error closed by the control at a wrong place, and by that with a wrong effect.
 
-    From the answer's own held-out errors; an answer that closes nothing has none.
+    Each is `closed` times the control's gain over the gain of the effect it replaces,
+    from the held-out errors that the answer states. None where that effect gains
+    nothing.
     """
     fit = verdict.fit if verdict else None
     if fit is None or closed is None:
@@ -206,5 +218,5 @@ def _controls(
 
 
 def by_kind(marks: Sequence[Mark], *kinds: str) -> list[Mark]:
-    """Marks of cases of some kinds."""
+    """The marks of cases of the given kinds."""
     return [each for each in marks if each.case.kind in kinds]

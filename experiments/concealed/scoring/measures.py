@@ -1,9 +1,9 @@
-"""What a method's marks come to: shares and medians with their intervals.
+"""The figures of a method's score: shares, means and medians with their intervals.
 
 Every figure is {"value", "n", "low", "high"}, with a 95 % interval: Wilson's for
-shares of things that are right or wrong, else the bootstrap over cases (Efron 1979).
-Where there is nothing to count all but n = 0 is None. docs/concealed.md has the
-definitions.
+shares of things that are right or wrong, otherwise the bootstrap over cases (Efron
+1979). Where there is nothing to count, n is 0 and the others are None. The definitions
+are in docs/concealed.md.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -19,7 +19,9 @@ Figure = dict[str, float | int | None]
 Statistic = Callable[[Sequence[Mark]], float]
 
 RESAMPLES = 1000
+"""Bootstrap samples; a usual number for 95 % intervals."""
 BINS = 10
+"""Bins of stated probability, from 0 to 1."""
 
 
 def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
@@ -77,14 +79,18 @@ def share(right: Iterable[bool]) -> Figure:
 
 
 def f1(marks: Sequence[Mark]) -> float:
-    """2 hits / (2 hits + extra + missed), of the effects of all cases together."""
+    """F1 score of the effects named: 2 hits / (2 hits + extra + missed).
+
+    Args:
+      marks: whose effects are counted together.
+    """
     hits = sum(each.hits for each in marks)
     wrong = sum(each.extra + each.missed for each in marks)
     return 2 * hits / max(2 * hits + wrong, 1)
 
 
 def median_error(marks: Sequence[Mark]) -> float:
-    """Of all effects that are true in name and place."""
+    """Median relative error of all effects that are true in name and place."""
     return float(np.median([error for each in marks for error in each.errors]))
 
 
@@ -120,7 +126,7 @@ def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
 
 
 def verdicts(marks: Sequence[Mark]) -> dict[str, dict[str, int]]:
-    """How often each kind of case got each kind of verdict."""
+    """Number of cases by kind of case and kind of verdict."""
     table: dict[str, dict[str, int]] = {}
     for each in marks:
         row = table.setdefault(each.case.kind, {})
@@ -139,7 +145,7 @@ def _by_level(
 
 
 def _mean(marks: Sequence[Mark], name: str, rng: np.random.Generator) -> Figure:
-    """Mean of a number that some of the marks have."""
+    """Mean of an attribute over the marks in which it is not None."""
     there = [each for each in marks if getattr(each, name) is not None]
 
     def statistic(some: Sequence[Mark]) -> float:

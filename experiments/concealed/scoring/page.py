@@ -1,4 +1,4 @@
-"""The score of a concealed set as a page of Markdown and as a table."""
+"""The score of a set of concealed cases as a page of Markdown and as a table."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,24 +7,25 @@ from typing import Any
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 
-TITLE = "Concealed physics: what the diagnosis found, and what it only thought it did"
+TITLE = "Concealed physics: how often the diagnosis is right"
 NOTES = """
-Levels are by information: how many nats per recording the true structure, its values
-fitted, gains on the nominal model (L1 at least 100, L2 at least 20, L3 at least
-5, L4 less). Brackets hold 95 % intervals: Wilson's for shares, else the bootstrap over
-cases. An answer that is not there counts as wrong. Definitions: docs/concealed.md.
+Levels say how easy a case is: the log-likelihood in nats per recording that the true
+effects, with fitted values, gain over the nominal model (L1 at least 100, L2 at least
+20, L3 at least 5, L4 less). Brackets hold 95 % intervals: Wilson's for shares,
+otherwise the bootstrap over cases. A missing answer counts as wrong. Definitions:
+docs/concealed.md.
 """
 
 
 @dataclass(frozen=True)
 class Goal:
-    """A figure and what it should be.
+    """A figure of the score, and the range that it should lie in.
 
     Attributes:
-      title: in plain words.
-      path: keys that lead to it in the score.
-      low: the least that is good enough ...
-      high: ... and the most.
+      title: of the figure, in plain words.
+      path: keys that lead to it in score.json.
+      low: the least value that is good enough; None without a lower bound.
+      high: the largest value that is good enough; None without an upper bound.
     """
 
     title: str
@@ -33,7 +34,7 @@ class Goal:
     high: float | None = None
 
     def of(self, figures: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The figure, out of a method's."""
+        """The figure, taken from the scores of one method."""
         found: Any = figures
         for key in self.path:
             found = found[key]
@@ -80,11 +81,12 @@ GOALS = (
     Goal("not excited, and said so", ("unexcited_right",)),
     Goal("calibration error (ECE)", ("ece",), high=0.10),
 )
-"""What is asked of the diagnosis. Controls must close less than half of that."""
+"""The figures on the page, with the goals of the diagnosis. A control's goal is to
+close less than half of the error that the diagnosis closes."""
 
 
 def text_of(figure: Mapping[str, Any], with_interval: bool = True) -> str:
-    """Such as "0.91 [0.85, 0.95], n 120"."""
+    """A figure as text, such as "0.91 [0.85, 0.95], n 120"."""
     if figure["value"] is None:
         return "-"
     value = f"{figure['value']:.2f}"
@@ -94,7 +96,7 @@ def text_of(figure: Mapping[str, Any], with_interval: bool = True) -> str:
 
 
 def score_rows(score: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows: each goal, the diagnosis beside it, then every baseline."""
+    """Headings and rows of the table of figures: goals, diagnosis and baselines."""
     baselines = score["baselines"]
     columns = ["figure", "goal", "holds", "diagnosis", *baselines]
     rows = []
@@ -132,10 +134,10 @@ def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
 
 
 def score_report(score: Mapping[str, Any], figure: str) -> Report:
-    """All of a score, and where it comes from.
+    """The page of a score.
 
     Args:
-      score: as score.json has it.
+      score: the contents of score.json.
       figure: name of the picture's file.
     """
     body = markdown_table(*score_rows(score))
@@ -152,7 +154,7 @@ def score_report(score: Mapping[str, Any], figure: str) -> Report:
 
 
 def _answer(score: Mapping[str, Any]) -> list[str]:
-    """How often the diagnosis was right, and how many goals that meets."""
+    """A sentence with the main figures and the number of goals that are met."""
     held = [holds for goal in GOALS if (holds := _holds(goal, score)) is not None]
     right, wrong = score["top1"]["all"]["value"], score["null_false_alarms"]["value"]
     whole = score["right"]
@@ -171,11 +173,11 @@ def _answer(score: Mapping[str, Any]) -> list[str]:
 
 
 def _unanswered(score: Mapping[str, Any]) -> list[str]:
-    """What had no answer."""
+    """A line for each method that left cases unanswered."""
     methods = {"diagnosis": score["missing"]}
     methods |= {name: each["missing"] for name, each in score["baselines"].items()}
     lines = [
-        f"- without an answer from {name}, counted as wrong: {', '.join(missing)}"
+        f"- unanswered by {name} (counted as wrong): {', '.join(missing)}"
         for name, missing in methods.items()
         if missing
     ]

@@ -1,4 +1,4 @@
-"""What was hidden in a set of concealed cases, and what was answered."""
+"""Reads the sealed truth of a set of concealed cases, and the answers to it."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -7,22 +7,29 @@ from pathlib import Path
 
 from diagnosis.corrected.effects_json import EffectValues
 from diagnosis.verdict.verdict import Verdict
-from experiments.concealed.make import FORMAT, HASH, SEALED, TRUTH
-from experiments.concealed.reading import BASELINE_ANSWERS
+from experiments.concealed.reading import (
+    BASELINE_ANSWERS,
+    FORMAT,
+    HASH,
+    SEALED,
+    TRUTH,
+)
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.json_data import from_plain, parse_object
 
 
 @dataclass(frozen=True)
 class TrueCase:
-    """What is true of one case.
+    """The truth of one case.
 
     Attributes:
       name: such as "case_000".
-      plant: such as "so101".
-      engine: that made the recordings.
-      kind: "single", "pair", "triple", "none", "outside" or "unexcited".
-      effects: what is hidden.
+      plant: name of the robot model, such as "so101".
+      engine: "mujoco" or "bullet", which made the recordings.
+      kind: "single", "pair" or "triple" (number of hidden effects), "none", "outside"
+        (an effect that the diagnosis does not know) or "unexcited" (one effect at a
+        joint that never moves).
+      effects: the hidden effects with their parameters.
     """
 
     name: str
@@ -34,7 +41,16 @@ class TrueCase:
 
 @dataclass(frozen=True)
 class _SealedCase:
-    """One case as the sealed file holds it; see `experiments.concealed.case`."""
+    """One case in the form of the sealed file, which `make_case` writes.
+
+    Attributes:
+      plant: name of the robot model.
+      engine: "mujoco" or "bullet".
+      kind: of the case.
+      effects: the hidden effects with their parameters.
+      size: how easy they are to see, from 0 to 1; None where nothing is hidden.
+      held: joints that never move.
+    """
 
     plant: str
     engine: str
@@ -44,13 +60,13 @@ class _SealedCase:
     held: tuple[str, ...] = ()
 
     def named(self, name: str) -> TrueCase:
-        """The case under its name, without how its sizes were drawn."""
+        """The case with its name, for scoring."""
         return TrueCase(name, self.plant, self.engine, self.kind, self.effects)
 
 
 @dataclass(frozen=True)
 class _SealedSet:
-    """The sealed file of a set: its seed, and its cases by name."""
+    """The contents of a sealed file: the seed of the set, and its cases by name."""
 
     seed: int
     cases: Mapping[str, _SealedCase]
@@ -58,12 +74,12 @@ class _SealedSet:
 
 @dataclass(frozen=True)
 class Truth:
-    """The sealed file, opened.
+    """The truth of a set of cases.
 
     Attributes:
-      seed: that the cases were drawn from.
-      sha256: of the file, as it was printed when the cases were made.
-      cases: in their order.
+      seed: from which the cases were drawn.
+      sha256: hash of the sealed file, as it was printed when the cases were made.
+      cases: in the order of their numbers.
     """
 
     seed: int
@@ -74,8 +90,12 @@ class Truth:
 def read_truth(folder: Path) -> Truth:
     """Open the sealed file of a set of cases.
 
+    Args:
+      folder: of the set.
+
     Raises:
-      RunFolderError: there is none, or it is not the one that was sealed.
+      RunFolderError: the file is missing, has changed since it was sealed, or cannot be
+        read.
     """
     path, stamp = folder / SEALED / TRUTH, folder / HASH
     for needed in (path, stamp):
@@ -100,7 +120,11 @@ def read_truth(folder: Path) -> Truth:
 
 
 def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
-    """The verdicts in a folder by the case's name; those that are missing left out.
+    """The verdicts in a folder, by the names of the cases that have one.
+
+    Args:
+      folder: of the verdicts.
+      names: of the cases to look for.
 
     Raises:
       RunFolderError: the folder is not there, or a verdict in it cannot be read.
@@ -120,7 +144,12 @@ def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
 
 
 def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Verdict]]:
-    """The verdicts of all baselines that answered, by their names."""
+    """The verdicts of each baseline that answered, by baseline and case.
+
+    Args:
+      folder: of the set.
+      names: of the cases to look for.
+    """
     parent = folder / BASELINE_ANSWERS
     found = sorted(path for path in parent.glob("*") if path.is_dir())
     return {path.name: read_answers(path, names) for path in found}
