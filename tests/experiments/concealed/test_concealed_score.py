@@ -85,7 +85,7 @@ def test_a_set_is_scored_with_its_baselines_and_oracles_are_not_computed_twice(
     assert digest in page
     assert "seed 7" in page
     assert "diagnosed at commit abc" in page
-    assert "without an answer from diagnosis, counted as wrong: case_002" in page
+    assert "unanswered by diagnosis (counted as wrong): case_002" in page
     assert "case_002" in capsys.readouterr().out
 
 
