@@ -1,1 +1,67 @@
-"""Where sim and recordings differ: what physics is missing, and a sim that has it."""
+"""Finds out where sim and recordings differ, and what physics the sim lacks.
+
+The names below are the face of this room. They are imported when they are first used,
+so that `import diagnosis` stays quick.
+
+Example:
+  >>> import numpy as np
+  >>> from diagnosis import diagnose, read_traces
+  >>> plant, traces = read_traces(["a.parquet", "b.parquet"], "nao")
+  >>> found = diagnose(plant, traces, np.random.SeedSequence(1))
+  >>> print(found.verdict.kind, [one.name for one in found.verdict.effects])
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from diagnosis.effects.effect import Effect, Parameter, PlacedEffect
+    from diagnosis.effects.library import EFFECTS, also_known, effect
+    from diagnosis.pipeline import Diagnosis, diagnose
+    from diagnosis.plant.load import load_plant
+    from diagnosis.plant.plant import Plant
+    from diagnosis.search.hooks import Hooks
+    from diagnosis.search.rules import Rules
+    from diagnosis.traces.read import read_reference, read_traces
+    from diagnosis.traces.trace import Trace
+    from diagnosis.verdict.verdict import Verdict
+
+__all__ = [
+    "EFFECTS",
+    "Diagnosis",
+    "Effect",
+    "Hooks",
+    "Parameter",
+    "PlacedEffect",
+    "Plant",
+    "Rules",
+    "Trace",
+    "Verdict",
+    "also_known",
+    "diagnose",
+    "effect",
+    "load_plant",
+    "read_reference",
+    "read_traces",
+]
+
+_MODULES = {
+    "effects.effect": ("Effect", "Parameter", "PlacedEffect"),
+    "effects.library": ("EFFECTS", "also_known", "effect"),
+    "pipeline": ("Diagnosis", "diagnose"),
+    "plant.load": ("load_plant",),
+    "plant.plant": ("Plant",),
+    "search.hooks": ("Hooks",),
+    "search.rules": ("Rules",),
+    "traces.read": ("read_reference", "read_traces"),
+    "traces.trace": ("Trace",),
+    "verdict.verdict": ("Verdict",),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name of `__all__` when it is first used (PEP 562)."""
+    for module, names in _MODULES.items():
+        if name in names:
+            return getattr(importlib.import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

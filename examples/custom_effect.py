@@ -12,11 +12,14 @@ import mujoco
 import numpy as np
 import tyro
 
-from diagnosis.diagnose import diagnose
-from diagnosis.effects.effect import Effect, Parameter
-from diagnosis.effects.library import also_known
-from diagnosis.traces.read import read_traces
-from diagnosis.verdict.verdict import Verdict
+from diagnosis import (
+    Effect,
+    Parameter,
+    Verdict,
+    also_known,
+    diagnose,
+    read_traces,
+)
 from experiments.diagnosis_report.console import print_verdict
 from worlds import Recording, RecordingMetadata, ServoGains, write_recording
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import tyro
 
-from diagnosis.verdict.verdict import Verdict
+from diagnosis import Verdict
 from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_report.console import print_verdict
 from experiments.record import Record

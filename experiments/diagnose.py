@@ -13,7 +13,7 @@ import tyro
 import robots
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
-from diagnosis.diagnose import Diagnosis, diagnose
+from diagnosis.pipeline import Diagnosis, diagnose
 from diagnosis.plant.plant import Plant
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.rules import Rules

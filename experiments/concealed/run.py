@@ -10,7 +10,7 @@ import numpy as np
 import tyro
 
 from diagnosis.baselines import BASELINES
-from diagnosis.diagnose import diagnose
+from diagnosis.pipeline import diagnose
 from diagnosis.traces.split import split
 from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb

@@ -8,7 +8,7 @@ from known_arms import LEAN, measured
 from made_up_traces import arm
 from swinger_rig import moved, swinger
 
-from diagnosis.diagnose import diagnose
+from diagnosis.pipeline import diagnose
 from diagnosis.search.hooks import Hooks
 
 

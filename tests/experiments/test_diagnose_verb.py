@@ -57,9 +57,10 @@ def test_an_interrupted_diagnosis_is_resumed(recording, tmp_path, capsys, monkey
         if key.endswith("001"):
             raise KeyboardInterrupt
 
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+    with monkeypatch.context() as patch:
         patch.setattr(CheckpointFiles, "save", interrupted)
-        main(Diagnose((recording,), str(model), out=out))
+        with pytest.raises(KeyboardInterrupt):
+            main(Diagnose((recording,), str(model), out=out))
     assert not (out / "diagnosis.json").exists()
     main(Diagnose(resume=out))
     said = capsys.readouterr().err

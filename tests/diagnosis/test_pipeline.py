@@ -9,7 +9,7 @@ from joint_rigs import integrated, plant_of, ticks, trace_of
 from known_arms import LEAN, NOISE_RAD, measured
 from made_up_traces import arm, arm_command
 
-from diagnosis.diagnose import diagnose
+from diagnosis.pipeline import diagnose
 from diagnosis.verdict.verdict import Verdict
 from groundwalk.errors import BadRecordingError
 
