@@ -114,6 +114,15 @@ def test_forbidden_imports_are_caught(small_house):
     assert missed == [], done.stdout
 
 
+def test_shelves_of_the_grounding_are_layered(small_house):
+    (small_house / "sgat" / "walks" / "world.py").touch()
+    wrong = small_house / "sgat" / "models" / "wrong.py"
+    wrong.write_text("def inside():\n    import sgat.walks.world\n")
+    done = lint_imports(small_house)
+    assert done.returncode == 1
+    assert re.search(r"sgat\.models\.wrong\W+sgat\.walks", done.stdout), done.stdout
+
+
 def heavy_imports_after(code):
     code += "\nimport sys\nprint('', *sys.modules, sep='\\n')"
     done = subprocess.run(
