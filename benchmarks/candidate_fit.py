@@ -18,9 +18,9 @@ import numpy as np
 from benchmarks.judged import judged
 from benchmarks.stopwatch import seconds
 from diagnosis.baselines.sysid import fitted
-from diagnosis.baselines.sysid_models import Unknown, unknowns
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.baselines.sysid_models import FreeParameter, free_parameters
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Model, Predictor
@@ -47,7 +47,7 @@ def measure() -> list[float]:
     predictor = Predictor(plant, traces, shared_channels(plant, traces), threads=1)
     predictor.calibrate()
     models = [_model(plant, joint) for joint in JOINTS]
-    free = unknowns(plant, traces)
+    free = free_parameters(plant, traces)
     _check_found(predictor, models[0], _of(free, JOINTS[0]))
     ratios = []
     for number in range(ROUNDS):
@@ -86,15 +86,19 @@ def _model(plant: Plant, joint: str) -> Model:
     )
 
 
-def _of(free: list[Unknown], joint: str) -> list[Unknown]:
-    return [one for one in free if one.place == joint and one.effect in EFFECTS]
+def _of(free: list[FreeParameter], joint: str) -> list[FreeParameter]:
+    return [
+        one for one in free if one.placed.key in {f"{name}@{joint}" for name in EFFECTS}
+    ]
 
 
-def _check_found(predictor: Predictor, model: Model, free: list[Unknown]) -> None:
+def _check_found(predictor: Predictor, model: Model, free: list[FreeParameter]) -> None:
     """Both find the hidden friction, or they have not done the same work."""
     fit = fit_all(predictor, [model])[0]
     ours = next(p.values[0] for p in fit.model if p.name == EFFECTS[0])
     counts, _ = fitted(predictor.plant, predictor.traces, free)
     pairs = zip(free, counts, strict=True)
-    theirs = next(one.value(count) for one, count in pairs if one.effect == EFFECTS[0])
+    theirs = next(
+        one.value(count) for one, count in pairs if one.placed.name == EFFECTS[0]
+    )
     np.testing.assert_allclose([ours, theirs], HIDDEN_VALUE, rtol=ALIKE)

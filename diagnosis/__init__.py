@@ -15,8 +15,9 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from diagnosis.effects.effect import Effect, Parameter, PlacedEffect
-    from diagnosis.effects.library import EFFECTS, also_known, effect
+    from diagnosis.effects.effect import Effect
+    from diagnosis.effects.library import all_effects, also_known, effect
+    from diagnosis.effects.parts import Parameter, PlacedEffect
     from diagnosis.pipeline import Diagnosis, diagnose
     from diagnosis.plant.load import load_plant
     from diagnosis.plant.plant import Plant
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from diagnosis.verdict.verdict import Verdict
 
 __all__ = [
-    "EFFECTS",
     "Diagnosis",
     "Effect",
     "Hooks",
@@ -37,6 +37,7 @@ __all__ = [
     "Rules",
     "Trace",
     "Verdict",
+    "all_effects",
     "also_known",
     "diagnose",
     "effect",
@@ -46,8 +47,9 @@ __all__ = [
 ]
 
 _MODULES = {
-    "effects.effect": ("Effect", "Parameter", "PlacedEffect"),
-    "effects.library": ("EFFECTS", "also_known", "effect"),
+    "effects.effect": ("Effect",),
+    "effects.library": ("all_effects", "also_known", "effect"),
+    "effects.parts": ("Parameter", "PlacedEffect"),
     "pipeline": ("Diagnosis", "diagnose"),
     "plant.load": ("load_plant",),
     "plant.plant": ("Plant",),

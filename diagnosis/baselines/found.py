@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import norm
 
-from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import EffectAt, Estimate, Found
 

@@ -8,8 +8,8 @@ import numpy as np
 from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.baselines.sparse_columns import Column, torque_columns
 from diagnosis.baselines.sparse_torques import Torques
-from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict.verdict import Recordings, Verdict

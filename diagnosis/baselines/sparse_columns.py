@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnosis.baselines.sparse_torques import Torques, inverse_nm
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import effect
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import JointMotion, PlacedEffect
+from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import variants_of
 from diagnosis.traces.trace import Trace
@@ -18,13 +20,8 @@ from groundwalk.arrays import FloatArray
 if TYPE_CHECKING:
     import mujoco
 
-BODY_EFFECTS = ("payload_mass", "com_offset", "ground_slope")
-"""Effects that change the model's numbers, and so the torques of several joints."""
-
-_SPEED_RAD_S = 0.02
-_STRIBECK_RAD_S = 0.1
-_PLAY_RAD = 0.005
-_NUDGE_RAD = 1e-4
+NUDGE_RAD = 1e-4
+"""Change of an angle [rad] that inverse dynamics is differentiated by."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,23 +33,20 @@ class Column:
       place: of the effect.
       parameter: which of the effect's parameters its size is.
       values: (N,) weighted torque for a size of one.
-      stiffness: by which a size is divided to become the parameter.
+      damping_nm_s_rad: damping of the servo and back-EMF at the joint.
     """
 
     effect: str
     place: str
     parameter: int
     values: FloatArray
-    stiffness: float = 1.0
+    damping_nm_s_rad: float = 1.0
 
     def named(self, size: float, error: float) -> tuple[str, float, float]:
-        """Effect, value and standard error of its parameter, for a size."""
-        if self.effect == "servo_gain":  # kp (1 - factor) is missing
-            return self.effect, 1 - size, error
-        if self.effect == "viscous_friction" and size < 0 and self.stiffness > 0:
-            share = 1 / self.stiffness
-            return "servo_damping", 1 + size * share, error * share
-        return self.effect, size, error
+        """Name of the effect, value and standard error of its parameter, for a size."""
+        if not self.effect:
+            return "", size, error
+        return effect(self.effect).from_column(size, error, self.damping_nm_s_rad)
 
 
 def torque_columns(
@@ -62,83 +56,94 @@ def torque_columns(
 
     Args:
       plant: nominal.
-      traces: that the torques are of.
-      torques: what is to be explained.
+      traces: recordings that the torques are of.
+      torques: the missing torques that are to be explained.
     """
     columns = [
         column
         for joint in range(len(plant.joints))
         for column in _joint_columns(plant, torques, joint)
     ]
-    columns += _offset_columns(plant, torques)
-    late = torques.motion.kp_nm_rad * torques.motion.command_rate_rad_s
-    columns.append(Column("command_latency", "commands", 0, _weighted(torques, late)))
-    for name in BODY_EFFECTS:
-        for place in effect(name).places(plant, traces):
-            columns += _model_columns(plant, torques, name, place)
+    for kind in all_effects().values():
+        if kind.by_inverse_dynamics:
+            for place in kind.places(plant, traces):
+                columns += _changed_columns(plant, torques, kind, place)
+        elif kind.place_kind == "commands" and kind.places(plant, traces):
+            columns += _signal_columns(plant, torques, kind)
     return columns
 
 
 def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Column]:
-    """What happens at one joint alone."""
-    motion, place = torques.motion, plant.joints[joint]
-    q, v = motion.position_rad[:, joint], motion.velocity_rad_s[:, joint]
-    way = np.tanh(v / _SPEED_RAD_S)
-    error = motion.command_rad[:, joint] - q
-    pull = motion.kp_nm_rad[:, joint] * error
-    play = motion.kp_nm_rad[:, joint] * np.tanh(error / _PLAY_RAD) / 2
-    load = np.abs(torques.nominal_nm[:, joint])
-    damping = float(np.median(motion.damping_nm_s_rad[:, joint]))
-    slow = np.exp(-((v / _STRIBECK_RAD_S) ** 2))
-    parts = (
-        ("coulomb_friction", 0, way),
-        ("stribeck_friction", 1, slow * way),
-        ("load_friction", 0, load * way),
-        ("viscous_friction", 0, v),
-        ("armature", 0, motion.acceleration_rad_s2[:, joint]),
-        ("servo_gain", 0, pull),
-        ("servo_fade", 0, motion.since_s[:, 0] * pull),
-        ("backlash", 0, play),
-        ("joint_spring", 0, q),
-        ("", 0, np.ones_like(q)),
-    )
-    for name, parameter, values in parts:
-        whole = np.zeros_like(motion.position_rad)
+    """Columns of effects that act at one joint alone, and a constant torque there."""
+    motion, place = _motion_of(torques, joint), plant.joints[joint]
+    damping = float(np.median(torques.motion.damping_nm_s_rad[:, joint]))
+
+    def column(name: str, parameter: int, values: FloatArray) -> Column:
+        whole = np.zeros_like(torques.motion.position_rad)
         whole[:, joint] = values
-        yield Column(name, place, parameter, _weighted(torques, whole), damping)
+        return Column(name, place, parameter, _weighted(torques, whole), damping)
+
+    for kind in all_effects().values():
+        values = kind.torque_column(motion) if kind.place_kind == "joint" else None
+        if values is not None:
+            yield column(kind.name, kind.column_parameter, values)
+    yield column("", 0, np.ones_like(motion.position_rad))
 
 
-def _offset_columns(plant: Plant, torques: Torques) -> list[Column]:
-    """Encoders that are off: the true pose takes other torques than the measured."""
-    columns = []
-    for joint, place in enumerate(plant.joints):
-        pose = torques.motion.position_rad.copy()
-        pose[:, joint] -= _NUDGE_RAD
-        other = inverse_nm(plant, plant.model, pose, torques.motion)
-        change = (other - torques.nominal_nm) / _NUDGE_RAD
-        columns.append(Column("encoder_offset", place, 0, _weighted(torques, change)))
-    return columns
+def _signal_columns(plant: Plant, torques: Torques, kind: Effect) -> Iterator[Column]:
+    """The column of an effect on the commands of all joints, if it is linear."""
+    every = [
+        kind.torque_column(_motion_of(torques, joint))
+        for joint in range(len(plant.joints))
+    ]
+    values = [one for one in every if one is not None]
+    if values:
+        whole = np.stack(values, axis=1)
+        place, number = kind.place_kind, kind.column_parameter
+        yield Column(kind.name, place, number, _weighted(torques, whole))
 
 
-def _model_columns(
-    plant: Plant, torques: Torques, name: str, place: str
+def _motion_of(torques: Torques, joint: int) -> JointMotion:
+    """The motion of one joint, arrays (rows,)."""
+    motion = torques.motion
+    return JointMotion(
+        since_s=motion.since_s[:, 0],
+        position_rad=motion.position_rad[:, joint],
+        velocity_rad_s=motion.velocity_rad_s[:, joint],
+        acceleration_rad_s2=motion.acceleration_rad_s2[:, joint],
+        command_rad=motion.command_rad[:, joint],
+        command_rate_rad_s=motion.command_rate_rad_s[:, joint],
+        kp_nm_rad=motion.kp_nm_rad[:, joint],
+        torque_nm=torques.nominal_nm[:, joint],
+    )
+
+
+def _changed_columns(
+    plant: Plant, torques: Torques, kind: Effect, place: str
 ) -> Iterator[Column]:
-    """Effects that change the model: what the motion takes with a little of them."""
-    parameters = effect(name).parameters(plant, place)
+    """Columns of an effect that changes the model or the pose, by inverse dynamics."""
+    motion = torques.motion
+    parameters = kind.parameters(plant, place)
     for number, parameter in enumerate(parameters):
         size = parameter.typical or 0.1 * parameter.high
+        if kind.place_kind == "joint":
+            size = NUDGE_RAD
         values = tuple(size if i == number else 0.0 for i in range(len(parameters)))
-        model = _changed(plant, PlacedEffect(name, place, values))
-        other = inverse_nm(plant, model, torques.motion.position_rad, torques.motion)
+        variants = variants_of(plant, [(PlacedEffect(kind.name, place, values),)])
+        pose = motion.position_rad - variants.joints.offset_rad[0]
+        other = inverse_nm(plant, _model_of(plant, variants), pose, motion)
         change = (other - torques.nominal_nm) / size
-        yield Column(name, place, number, _weighted(torques, change))
+        yield Column(kind.name, place, number, _weighted(torques, change))
 
 
-def _changed(plant: Plant, placed: PlacedEffect) -> "mujoco.MjModel":
+def _model_of(plant: Plant, variants: Variants) -> "mujoco.MjModel":
+    """The plant's model with the fields of the first variant."""
     import mujoco
 
+    if not variants.fields:
+        return plant.model
     model = copy.copy(plant.model)
-    for field, values in variants_of(plant, [(placed,)]).fields.items():
+    for field, values in variants.fields.items():
         owner = model
         *parents, last = field.split(".")
         for parent in parents:

@@ -8,6 +8,7 @@ in sizes worth trying first, so that changes can be compared.
 import io
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +17,11 @@ from scipy.stats import norm
 
 from diagnosis.baselines.found import NORMAL_80, found_effect
 from diagnosis.baselines.sysid_models import (
+    FreeParameter,
     SysidModels,
-    Unknown,
+    free_parameters,
     sequence_of,
-    unknowns,
 )
-from diagnosis.effects.effect import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import WARM_UP_S
@@ -68,7 +68,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     """
     begun_s = time.monotonic()
     recordings = Recordings(fit=tuple(trace.name for trace in traces))
-    free = unknowns(plant, traces)
+    free = free_parameters(plant, traces)
     change, half = fitted(plant, _beginnings(plant, traces), free)
     moved = (np.abs(change) >= LEAST_CHANGE) & (np.abs(change) > half)
     size = np.where(moved, np.abs(change), 0.0)
@@ -78,7 +78,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         )
     best = int(np.argmax(size))
     one = free[best]
-    placed = PlacedEffect(one.effect, one.place, (one.value(change[best]),))
+    placed = replace(one.placed, values=(one.value(change[best]),))
     spread = half[best] * NORMAL_80 / _NORMAL_95
     span = (one.value(change[best] - spread), one.value(change[best] + spread))
     found = found_effect(plant, placed, [span], size[best] / size.sum())
@@ -88,7 +88,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 
 
 def fitted(
-    plant: Plant, traces: Sequence[Trace], free: Sequence[Unknown]
+    plant: Plant, traces: Sequence[Trace], free: Sequence[FreeParameter]
 ) -> tuple[FloatArray, FloatArray]:
     """(p,) changes of all parameters, and half of their 95 % intervals.
 
@@ -101,7 +101,7 @@ def fitted(
     models = SysidModels(plant, traces, free)
     parameters = sysid.ParameterDict()
     for one in free:
-        parameters.add(sysid.Parameter(one.key, 0.0, one.low, one.high))
+        parameters.add(sysid.Parameter(one.placed.key, 0.0, one.low, one.high))
     parameters.move_off_bounds(START)
     residual = sysid.build_residual_fn(
         models_sequences=[

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.effects.library import effect
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.drive import Held
@@ -21,62 +23,62 @@ if TYPE_CHECKING:
     import mujoco
 
 STEP_S = 0.002
-FREE = (
-    "armature",
-    "viscous_friction",
-    "coulomb_friction",
-    "servo_gain",
-    "servo_damping",
-    "payload_mass",
-)
 
 
 @dataclass(frozen=True)
-class Unknown:
-    """One parameter of an effect at a place, counted in typical sizes from neutral.
+class FreeParameter:
+    """The one parameter of an effect at a place, counted in typical sizes from neutral.
 
     Attributes:
-      effect: its name.
-      place: joint or body.
-      neutral: value that changes nothing.
-      size: worth trying first.
-      low: least count.
+      placed: effect and place, without values.
+      neutral: value of the parameter that changes nothing.
+      size: change of the parameter that counts as one.
+      low: smallest count.
       high: largest count.
     """
 
-    effect: str
-    place: str
+    placed: PlacedEffect
     neutral: float
     size: float
     low: float
     high: float
 
-    @property
-    def key(self) -> str:
-        """Effect and place."""
-        return f"{self.effect}@{self.place}"
-
     def value(self, count: float) -> float:
-        """In the parameter's unit."""
+        """The parameter in its own unit, for a count of sizes."""
         return self.neutral + self.size * float(count)
 
 
-def unknowns(plant: Plant, traces: Sequence[Trace]) -> list[Unknown]:
-    """All that is free: every effect of `FREE` wherever it may be.
+def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter]:
+    """All parameters that are free: those that users of mujoco.sysid free.
 
-    Sizes are those of a plant with the servos of the first trace.
+    These are the effects that MuJoCo has, that are one number of a joint or body, and
+    that act at any size: inertia, friction, stiffness, damping and mass. Sizes are
+    those of a plant with the servos of the first trace.
+
+    Args:
+      plant: nominal.
+      traces: recordings to be fitted.
     """
     plant = replace(plant, servo=traces[0].servo)
     free = []
-    for name in FREE:
-        for place in effect(name).places(plant, traces):
-            (parameter,) = effect(name).parameters(plant, place)
+    for name, kind in all_effects().items():
+        if (
+            not kind.native
+            or kind.threshold
+            or kind.place_kind not in ("joint", "body")
+        ):
+            continue
+        for place in kind.places(plant, traces):
+            parameter, *others = kind.parameters(plant, place)
+            if others:
+                break
             size = abs(parameter.typical - parameter.neutral)
             low, high = (
                 (bound - parameter.neutral) / size
                 for bound in (parameter.low, parameter.high)
             )
-            free.append(Unknown(name, place, parameter.neutral, size, low, high))
+            placed = PlacedEffect(name, place)
+            free.append(FreeParameter(placed, parameter.neutral, size, low, high))
     return free
 
 
@@ -84,7 +86,7 @@ class SysidModels:
     """Compiled models with parameters put in: compiling anew each time is too slow."""
 
     def __init__(
-        self, plant: Plant, traces: Sequence[Trace], free: Sequence[Unknown]
+        self, plant: Plant, traces: Sequence[Trace], free: Sequence[FreeParameter]
     ) -> None:
         """One model for each trace: each has its own servos."""
         self._plant, self._free = plant, free
@@ -98,9 +100,12 @@ class SysidModels:
         import mujoco
 
         nominal, servo = self._nominal[spec.modelname]
-        model = copy.copy(nominal)
+        variants = Variants(self._plant, 1)
         for one, count in zip(self._free, parameters.as_vector(), strict=True):
-            self._put(model, servo, one, one.value(count))
+            placed, value = one.placed, np.array([one.value(count)])
+            effect(placed.name).apply(variants, 0, placed.place, value)
+        model = copy.copy(nominal)
+        self._change(model, servo, variants)
         mujoco.mj_setConst(model, mujoco.MjData(model))
         return model
 
@@ -123,29 +128,20 @@ class SysidModels:
         model.dof_solref[:] = stops_in_a_step(damping, model.dof_M0, STEP_S)
         return model
 
-    def _put(
-        self, model: "mujoco.MjModel", servo: Servo, one: Unknown, value: float
+    def _change(
+        self, model: "mujoco.MjModel", servo: Servo, variants: Variants
     ) -> None:
-        plant = self._plant
-        if one.effect == "payload_mass":
-            model.body_mass[model.body(one.place).id] += value
-            return
-        column = plant.joints.index(one.place)
-        dof, actuator = plant.dofs[column], plant.actuators[column]
-        match one.effect:
-            case "armature":
-                model.dof_armature[dof] += value
-            case "viscous_friction":
-                model.dof_damping[dof] += value
-            case "coulomb_friction":
-                model.dof_frictionloss[dof] += value
-            case "servo_gain":
-                model.actuator_gainprm[actuator, 0] *= value
-                model.actuator_biasprm[actuator, 1] *= value
-            case "servo_damping":
-                model.actuator_biasprm[actuator, 2] *= value
-                emf = float(servo.back_emf_nm_s_rad[column])
-                model.dof_damping[dof] += (value - 1) * emf
+        """Put the only row of some variants into a model that has its servos."""
+        plant, joints = self._plant, variants.joints
+        for name, values in variants.fields.items():
+            getattr(model, name)[...] += values[0] - getattr(plant.model, name)
+        dofs, rows = plant.dofs, plant.actuators
+        model.dof_frictionloss[dofs] += joints.coulomb_nm[0]
+        model.actuator_gainprm[rows, 0] *= joints.kp_factor[0]
+        model.actuator_biasprm[rows, 1] *= joints.kp_factor[0]
+        model.actuator_biasprm[rows, 2] *= joints.damping_factor[0]
+        more = joints.damping_factor[0] - 1
+        model.dof_damping[dofs] += more * servo.back_emf_nm_s_rad
 
 
 def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> Any:

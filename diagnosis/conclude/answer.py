@@ -6,8 +6,8 @@ from dataclasses import replace
 from diagnosis.audit.result import Audit
 from diagnosis.conclude.confidence import confusable, gap, probability, twins
 from diagnosis.conclude.estimates import estimates
-from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
@@ -104,12 +104,7 @@ def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
 
 
 def _when(both: Predictor, placed: PlacedEffect) -> When:
-    first_s = min(trace.time_s[0] for trace in both.traces)
-    last_s = max(trace.time_s[-1] for trace in both.traces)
-    if placed.name == "servo_fade":
-        return When("drift", float(first_s), float(last_s))
-    if placed.name == "external_force":
-        start_s, duration_s = placed.values[3:]
-        if start_s > first_s or start_s + duration_s < last_s:
-            return When("burst", start_s, start_s + duration_s)
-    return When()
+    """When an effect acted, given the times of the recordings."""
+    first_s = min(float(trace.time_s[0]) for trace in both.traces)
+    last_s = max(float(trace.time_s[-1]) for trace in both.traces)
+    return effect(placed.name).acted(placed, first_s, last_s)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import grown_from
+from diagnosis.effects.library import effect, grown_from
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import EffectAt, VerdictKind
@@ -37,14 +37,9 @@ def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[EffectAt, ...
 
 
 def twins(plant: Plant, placed: PlacedEffect) -> tuple[EffectAt, ...]:
-    """Effects that nothing in any recording of this plant tells from one."""
-    if placed.name == "command_latency" and plant.base == "fixed":
-        return (EffectAt("sensor_delay", "encoders"),)
-    if placed.name == "viscous_friction" and placed.place in plant.joints:
-        column = plant.joints.index(placed.place)
-        if plant.servo.back_emf_nm_s_rad[column] > 0:
-            return (EffectAt("servo_damping", placed.place),)
-    return ()
+    """Effects that no recording of this robot can distinguish from the given one."""
+    others = effect(placed.name).twins(plant, placed.place)
+    return tuple(EffectAt(other.name, other.place) for other in others)
 
 
 def alternatives(

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import EFFECTS, grown_from
+from diagnosis.effects.library import all_effects, effect, grown_from
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
 
@@ -67,7 +67,7 @@ def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
 def _elsewhere(predictor: Predictor, main: PlacedEffect) -> list[PlacedEffect]:
     return [
         PlacedEffect(main.name, place, main.values)
-        for place in EFFECTS[main.name].places(predictor.plant, predictor.traces)
+        for place in effect(main.name).places(predictor.plant, predictor.traces)
         if place != main.place
     ]
 
@@ -90,7 +90,7 @@ def _by_lot(
             main.place,
             tuple(p.typical for p in kind.parameters(plant, main.place)),
         )
-        for name, kind in EFFECTS.items()
+        for name, kind in all_effects().items()
         if main.place in kind.places(plant, traces)
     ]
     barred = {main.key, *alike, *(one.key for one in rest)}

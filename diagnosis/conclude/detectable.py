@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diagnosis.effects.trial_values import THRESHOLDS
+from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import Coordinates
 from diagnosis.search.signatures import Signature
@@ -28,7 +28,7 @@ def smallest_detectable(
     for signature in found:
         placed = signature.placed
         power = 0.5 * float(signature.change @ signature.change)
-        if placed.name in THRESHOLDS or power <= 0:
+        if effect(placed.name).threshold or power <= 0:
             continue
         first = Coordinates(predictor.plant, (placed,)).parameters[0]
         if not np.isfinite(first.neutral):

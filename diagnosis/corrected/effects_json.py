@@ -5,10 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from diagnosis.effects._ground import has_ground_contact
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.ground_slope import GroundSlope
+from diagnosis.effects.ground import has_ground_contact
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.residuals.predictor import Model
 from diagnosis.verdict.verdict import Verdict
@@ -90,12 +89,9 @@ class Correction:
         return tuple(self._placed(plant, part) for part in parts)
 
     def _placed(self, plant: Plant, part: EffectValues) -> PlacedEffect:
-        floats = plant.base == "floating"
-        if part.name == GroundSlope.name and floats and self.base == "fixed":
-            raise BadModelError(
-                "ground_slope is how a fixed base was mounted: a floating robot "
-                "cannot have it"
-            )
+        obstacle = effect(part.name).obstacle(self.base, plant.base)
+        if obstacle:
+            raise BadModelError(obstacle)
         _check_place(plant, part)
         placed = PlacedEffect(part.name, part.place, tuple(part.parameters.values()))
         names = _parameters(plant, placed)

@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnosis.corrected.delays import LateCommands, LateEncoders
-from diagnosis.effects.ground_slope import GroundSlope, tilt_gravity
 from diagnosis.effects.library import effect
-from diagnosis.effects.uneven_ground import UnevenGround
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.load import described_plant
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.replay.laws import BatchLaws
 from diagnosis.residuals.predictor import Model
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadModelError
 from robots import Description
 from terrain import Heightfield
 from worlds import Observation, Truth, WorldOptions
@@ -55,17 +52,9 @@ def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
     """
     variants = Variants(plant, n)
     for placed in model:
-        if placed.name == UnevenGround.name:
-            raise BadModelError(
-                "uneven_ground says how high bumps are, not where: give the sim a "
-                "terrain with bumps instead"
-            )
         values = np.array(placed.values)
         for row in range(n):
-            if placed.name == GroundSlope.name:
-                tilt_gravity(variants, row, values)
-            else:
-                effect(placed.name).apply(variants, row, placed.place, values)
+            effect(placed.name).apply_to_sim(variants, row, placed.place, values)
     return variants
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from diagnosis.effects._places import BodyEffect
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import BodyEffect
+from diagnosis.effects.parts import EffectWords, Parameter
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -26,6 +26,15 @@ class ComOffset(BodyEffect):
 
     name = "com_offset"
     native = True
+    components = 3
+    by_inverse_dynamics = True
+    rarity_nats = 1.0
+    words = EffectWords(
+        "shifted centre of mass",
+        "the centre of mass of {body} is shifted from its place {usual} by {x} in x, "
+        "{y} in y and {z} in z",
+        "The mass is right, but sits elsewhere in the body.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """Bodies, less those that the compiler made simple; `simple="false"` helps.

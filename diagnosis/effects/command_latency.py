@@ -3,7 +3,14 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.parts import (
+    EffectWords,
+    JointMotion,
+    Parameter,
+    PlacedEffect,
+    PlaceKind,
+)
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -22,6 +29,11 @@ class CommandLatency(Effect):
     name = "command_latency"
     place_kind: ClassVar[PlaceKind] = "commands"
     native = True
+    words = EffectWords(
+        "late commands",
+        "commands take effect {delay} later than {usual}",
+        "The time from sending a command until the servos act on it.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """All joints at once, if a trace has commands of any kind."""
@@ -40,3 +52,12 @@ class CommandLatency(Effect):
     ) -> None:
         """Delays add."""
         variants.signals.command_delay_s[row] += values[0]
+
+    def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
+        """On a fixed base late encoders: no recording has another clock."""
+        late = PlacedEffect("sensor_delay", "encoders")
+        return (late,) if plant.base == "fixed" else ()
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The torque by which the servo's stiffness is ahead, for each second."""
+        return motion.kp_nm_rad * motion.command_rate_rad_s

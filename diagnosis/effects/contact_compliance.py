@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from diagnosis.effects._ground import foot_geoms, has_ground_contact
-from diagnosis.effects._sizes import mass_kg, weight_n
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.ground import foot_geoms, has_ground_contact
+from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
+from diagnosis.effects.scales import mass_kg, weight_n
 from groundwalk.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -47,6 +48,13 @@ class ContactCompliance(Effect):
     name = "contact_compliance"
     place_kind: ClassVar[PlaceKind] = "feet"
     native = True
+    main_parameters = ("stiffness",)
+    words = EffectWords(
+        "soft ground",
+        "the ground gives way under each foot with a stiffness of {stiffness} "
+        "{lacking}",
+        "Carpet, grass or rubber soles: the feet sink in and come back late.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """The feet, if they can touch a ground."""

@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from diagnosis.effects._ground import (
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.ground import (
     ground_geoms,
     has_ground_contact,
     sole_friction,
     sole_geoms,
 )
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -31,6 +32,12 @@ class ContactFriction(Effect):
     name = "contact_friction"
     place_kind: ClassVar[PlaceKind] = "feet"
     native = True
+    words = EffectWords(
+        "another grip of the ground",
+        "the friction coefficient between feet and ground is {coefficient}, unlike "
+        "{usual}",
+        "The feet slip earlier, or later, than they should.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """The feet, if they can touch a ground and have friction there."""

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from diagnosis.effects._places import BodyEffect
-from diagnosis.effects._sizes import weight_n
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import BodyEffect
+from diagnosis.effects.parts import EffectWords, Parameter
+from diagnosis.effects.scales import weight_n
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -22,6 +22,13 @@ class Drag(BodyEffect):
 
     name = "drag"
     native = False
+    at_tips = True
+    rarity_nats = 3.0
+    words = EffectWords(
+        "drag",
+        "{body} meets a drag of {coefficient} {lacking}",
+        "A force against the body's velocity, as of air, water or a trailing cable.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """Bodies that move, but for those on one slide.

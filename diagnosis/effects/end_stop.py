@@ -1,17 +1,26 @@
 """A hard stop inside of a joint's nominal range."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.effects._places import JointEffect
-from diagnosis.effects._sizes import range_rad
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import JointEffect
+from diagnosis.effects.parts import (
+    EffectWords,
+    Interval,
+    Parameter,
+    PlacedEffect,
+    Values,
+)
+from diagnosis.effects.scales import range_rad
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.variants import Variants
     from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
+    from diagnosis.traces.usage import Usage
 
 _FAR_RAD = 1e6
 _STIFF = (0.005, 1.0)
@@ -29,6 +38,14 @@ class EndStop(JointEffect):
 
     name = "end_stop"
     native = True
+    threshold = True
+    on_every_servo = False
+    main_parameters = ("angle",)
+    words = EffectWords(
+        "end stop",
+        "{joint} hits a stop at {angle} {lacking}",
+        "Something stops the joint before the end of its nominal range.",
+    )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """Angle and side; only the sign of the side counts."""
@@ -54,3 +71,33 @@ class EndStop(JointEffect):
         ranges[row, joint] = (low, angle) if side > 0 else (angle, high)
         limited[row, joint] = 1
         variants.field("jnt_solref")[row, joint] = _STIFF
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """Stops that cut 5 % and 20 % of the joint's recorded range off either end."""
+        column = plant.joints.index(place)
+        low, high = usage.low_rad[column], usage.high_rad[column]
+        span = high - low
+        return [
+            (end + side * -share * span, side)
+            for end, side in ((high, 1.0), (low, -1.0))
+            for share in (0.05, 0.2)
+        ]
+
+    def sizes_to_scan(
+        self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
+    ) -> list[PlacedEffect]:
+        """The guess alone: a multiple of an angle is no larger or smaller stop."""
+        return [placed]
+
+    def neutral_values(self, plant: "Plant", placed: PlacedEffect) -> Values:
+        """The end of the range on the stop's side."""
+        angle, side = self.parameters(plant, placed.place)
+        if placed.values and placed.values[1] < 0:
+            return angle.low, side.neutral
+        return angle.neutral, side.neutral

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effects._places import BodyEffect
-from diagnosis.effects._sizes import weight_n
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import BodyEffect
+from diagnosis.effects.parts import EffectWords, Parameter
+from diagnosis.effects.scales import weight_n
 from diagnosis.effects.variants import Push
 from groundwalk.arrays import FloatArray
 
@@ -26,6 +26,16 @@ class ExternalForce(BodyEffect):
 
     name = "external_force"
     native = False
+    components = 3
+    timed = True
+    at_tips = True
+    rarity_nats = 3.0
+    main_parameters = ("x", "y", "z")
+    words = EffectWords(
+        "push from outside",
+        "{body} was pushed with {x} in x, {y} in y and {z} in z",
+        "A hand, a cable or a collision pushes a body for some time.",
+    )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """Force, up to the robot's weight an axis, and when: 0.2 s are a shove."""

@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from diagnosis.effects._ground import ground_geoms
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.ground import ground_geoms
+from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.variants import Variants
-    from diagnosis.plant.plant import Plant
+    from diagnosis.plant.plant import Base, Plant
     from diagnosis.traces.trace import Trace
 
 
@@ -30,6 +31,14 @@ class GroundSlope(Effect):
     name = "ground_slope"
     place_kind: ClassVar[PlaceKind] = "world"
     native = True
+    components = 2
+    by_inverse_dynamics = True
+    words = EffectWords(
+        "tilt",
+        "the ground, or the mounting of the base, is tilted by {pitch} in pitch and "
+        "{roll} in roll",
+        "Gravity does not point where the model has it.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """The world, if there is a ground to turn or a base to tilt."""
@@ -49,7 +58,7 @@ class GroundSlope(Effect):
         if not np.any(values):
             return
         if variants.plant.base == "fixed":
-            tilt_gravity(variants, row, values)
+            self.apply_to_sim(variants, row, place, values)
             return
         tilt = _tilt(*values)
         places, turns = variants.field("geom_pos"), variants.field("geom_quat")
@@ -57,17 +66,21 @@ class GroundSlope(Effect):
             places[row, geom] = _turned(tilt, places[row, geom])
             turns[row, geom] = _product(tilt, turns[row, geom])
 
+    def apply_to_sim(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Turn gravity instead of the ground, so that a terrain stays where it is."""
+        gravity = variants.field("opt.gravity")
+        gravity[row] = _turned(_inverse(_tilt(*values)), gravity[row])
 
-def tilt_gravity(variants: "Variants", row: int, values: FloatArray) -> None:
-    """Turn gravity instead of what it acts on.
-
-    Args:
-      variants: of a plant.
-      row: which of them.
-      values: pitch and roll of the ground or the base.
-    """
-    gravity = variants.field("opt.gravity")
-    gravity[row] = _turned(_inverse(_tilt(*values)), gravity[row])
+    def obstacle(self, recorded: "Base", base: "Base") -> str:
+        """A tilted mount says nothing about the ground that a robot walks on."""
+        if recorded != "fixed" or base != "floating":
+            return ""
+        return (
+            "ground_slope is how a fixed base was mounted: a floating robot "
+            "cannot have it"
+        )
 
 
 def _tilt(pitch_rad: float, roll_rad: float) -> FloatArray:

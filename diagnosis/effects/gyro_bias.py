@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -22,6 +23,12 @@ class GyroBias(Effect):
     name = "gyro_bias"
     place_kind: ClassVar[PlaceKind] = "gyroscope"
     native = False
+    components = 3
+    words = EffectWords(
+        "gyroscope bias",
+        "the gyroscope is off by {x} about x, {y} about y and {z} about z",
+        "The gyroscope reports a turn rate even when nothing turns.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """The gyroscope, if a trace has one."""

@@ -1,17 +1,19 @@
 """A spring between motor and link."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.effects._places import JointEffect
-from diagnosis.effects._sizes import inertia_kg_m2, torque_nm
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import JointEffect
+from diagnosis.effects.parts import EffectWords, Interval, Parameter, Values
+from diagnosis.effects.scales import inertia_kg_m2, torque_nm
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.variants import Variants
     from diagnosis.plant.plant import Plant
+    from diagnosis.traces.usage import Usage
 
 
 class JointElasticity(JointEffect):
@@ -26,6 +28,17 @@ class JointElasticity(JointEffect):
 
     name = "joint_elasticity"
     native = False
+    stiff = True
+    joint_by_joint = False
+    on_every_servo = False
+    main_parameters = ("stiffness",)
+    words = EffectWords(
+        "elastic joint",
+        "{joint} is elastic between motor and link, with a stiffness of {stiffness} "
+        "and a damping of {damping}, {lacking}",
+        "A gear or shaft that winds up like a spring, so that the link lags behind its "
+        "motor and rings.",
+    )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """Stiffness k and damping d.
@@ -60,3 +73,14 @@ class JointElasticity(JointEffect):
         joints.spring_damping_nm_s_rad[at] *= (total / before) ** 2
         joints.spring_damping_nm_s_rad[at] += damping * (total / stiffness) ** 2
         joints.spring_nm_rad[at] = total
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """A soft and a stiff spring: the effect is not linear in its size."""
+        stiffness, damping = (one.typical for one in self.parameters(plant, place))
+        return [(stiffness * k, damping * k) for k in (1.0, 5.0)]

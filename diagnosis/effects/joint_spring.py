@@ -1,17 +1,25 @@
 """A cable or spring that pulls a joint towards some angle."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.effects._places import JointEffect
-from diagnosis.effects._sizes import range_rad, torque_nm
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import JointEffect
+from diagnosis.effects.parts import (
+    EffectWords,
+    Interval,
+    JointMotion,
+    Parameter,
+    Values,
+)
+from diagnosis.effects.scales import range_rad, torque_nm
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.variants import Variants
     from diagnosis.plant.plant import Plant
+    from diagnosis.traces.usage import Usage
 
 
 class JointSpring(JointEffect):
@@ -22,6 +30,12 @@ class JointSpring(JointEffect):
 
     name = "joint_spring"
     native = True
+    main_parameters = ("stiffness",)
+    words = EffectWords(
+        "spring at a joint",
+        "{joint} has a spring of {stiffness} that pulls to {rest}, {lacking}",
+        "A cable, a hose or a return spring pulls the joint to one angle.",
+    )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """Stiffness k and rest; tried first at rest in the reference pose."""
@@ -48,3 +62,20 @@ class JointSpring(JointEffect):
         total = stiffnesses[row, joint] + stiffness
         rests[row, qpos] += stiffness / total * (rest - rests[row, qpos])
         stiffnesses[row, joint] = total
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """Springs at rest in the middle and at both ends of where the joint was."""
+        column = plant.joints.index(place)
+        low, high = usage.low_rad[column], usage.high_rad[column]
+        stiffness = self.parameters(plant, place)[0].typical
+        return [(stiffness, rest) for rest in ((low + high) / 2, low, high)]
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The angle; a constant column beside it stands for the angle of rest."""
+        return motion.position_rad

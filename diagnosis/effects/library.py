@@ -1,109 +1,142 @@
-"""All effects that a diagnosis can name."""
+"""All effects that a diagnosis can name, and how to add effects of your own."""
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextvars import ContextVar
+from types import MappingProxyType
 
-from diagnosis.effects.armature import Armature
-from diagnosis.effects.backlash import Backlash
 from diagnosis.effects.com_offset import ComOffset
 from diagnosis.effects.command_latency import CommandLatency
 from diagnosis.effects.contact_compliance import ContactCompliance
 from diagnosis.effects.contact_friction import ContactFriction
-from diagnosis.effects.coulomb_friction import CoulombFriction
 from diagnosis.effects.drag import Drag
-from diagnosis.effects.effect import Effect, PlacedEffect
-from diagnosis.effects.encoder_offset import EncoderOffset
+from diagnosis.effects.effect import Effect
 from diagnosis.effects.end_stop import EndStop
 from diagnosis.effects.external_force import ExternalForce
 from diagnosis.effects.ground_slope import GroundSlope
 from diagnosis.effects.gyro_bias import GyroBias
 from diagnosis.effects.joint_elasticity import JointElasticity
+from diagnosis.effects.joint_numbers import (
+    Armature,
+    Backlash,
+    CoulombFriction,
+    EncoderOffset,
+    LoadFriction,
+    ViscousFriction,
+)
 from diagnosis.effects.joint_spring import JointSpring
-from diagnosis.effects.load_friction import LoadFriction
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.payload_mass import PayloadMass
 from diagnosis.effects.sensor_delay import SensorDelay
-from diagnosis.effects.servo_damping import ServoDamping
-from diagnosis.effects.servo_fade import ServoFade
-from diagnosis.effects.servo_gain import ServoGain
-from diagnosis.effects.speed_limit import SpeedLimit
+from diagnosis.effects.servo_numbers import (
+    ServoDamping,
+    ServoFade,
+    ServoGain,
+    SpeedLimit,
+    TorqueLimit,
+)
 from diagnosis.effects.stribeck_friction import StribeckFriction
-from diagnosis.effects.torque_limit import TorqueLimit
 from diagnosis.effects.uneven_ground import UnevenGround
-from diagnosis.effects.viscous_friction import ViscousFriction
 from groundwalk.errors import BadValueError, UnknownNameError
 
-EFFECTS: dict[str, Effect] = {
-    one.name: one
-    for one in (
-        ViscousFriction(),
-        CoulombFriction(),
-        StribeckFriction(),
-        LoadFriction(),
-        Backlash(),
-        JointElasticity(),
-        CommandLatency(),
-        SensorDelay(),
-        EncoderOffset(),
-        GyroBias(),
-        TorqueLimit(),
-        SpeedLimit(),
-        ServoGain(),
-        ServoDamping(),
-        Armature(),
-        PayloadMass(),
-        ComOffset(),
-        JointSpring(),
-        EndStop(),
-        ServoFade(),
-        ContactFriction(),
-        ContactCompliance(),
-        GroundSlope(),
-        UnevenGround(),
-        ExternalForce(),
-        Drag(),
-    )
-}
-"""By name; friction and gears, signals, servos, bodies, joints, ground, outside."""
+BUILT_IN: Mapping[str, Effect] = MappingProxyType(
+    {
+        one.name: one
+        for one in (
+            ViscousFriction(),
+            CoulombFriction(),
+            StribeckFriction(),
+            LoadFriction(),
+            Backlash(),
+            JointElasticity(),
+            CommandLatency(),
+            SensorDelay(),
+            EncoderOffset(),
+            GyroBias(),
+            TorqueLimit(),
+            SpeedLimit(),
+            ServoGain(),
+            ServoDamping(),
+            Armature(),
+            PayloadMass(),
+            ComOffset(),
+            JointSpring(),
+            EndStop(),
+            ServoFade(),
+            ContactFriction(),
+            ContactCompliance(),
+            GroundSlope(),
+            UnevenGround(),
+            ExternalForce(),
+            Drag(),
+        )
+    }
+)
+"""The effects of this project by name. Where two explain a recording equally well, the
+earlier one is named, so their order is part of every verdict."""
+
+_known: ContextVar[Mapping[str, Effect]] = ContextVar("effects", default=BUILT_IN)
+
+
+def all_effects() -> Mapping[str, Effect]:
+    """All effects by name that a diagnosis can name here: built in, or `also_known`.
+
+    Example:
+      >>> all_effects()["backlash"].words.label
+      'play (backlash)'
+    """
+    return _known.get()
 
 
 def effect(name: str) -> Effect:
     """The effect of a name.
 
+    Example:
+      >>> effect("backlash").native
+      False
+
     Raises:
       UnknownNameError: there is none.
     """
-    if name not in EFFECTS:
-        raise UnknownNameError("effect", name, EFFECTS)
-    return EFFECTS[name]
+    known = _known.get()
+    if name not in known:
+        raise UnknownNameError("effect", name, known)
+    return known[name]
 
 
 def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects at the same place that contain this one: where to begin with each."""
-    return tuple(one for kind in EFFECTS.values() for one in kind.grown_from(placed))
+    """Effects at the same place that contain this one, with values to begin with."""
+    return tuple(
+        grown for one in all_effects().values() for grown in one.grown_from(placed)
+    )
 
 
 @contextlib.contextmanager
 def also_known(*effects: Effect) -> Iterator[None]:
-    """Let diagnoses within this block name effects of your own, too.
+    """Let diagnoses within this block name effects of your own, as if built in.
 
-        with also_known(WaterDrag()):
-            found = diagnose(plant, traces, seed)
+    The block holds for the code that runs in it, including its reports: a verdict that
+    names such an effect needs it for its words. It does not hold in other threads and
+    processes that are running; a thread gets it by `contextvars.copy_context().run`, a
+    process by a block of its own.
 
-    They count for the whole process as long as the block lasts, and are told about
-    within it: a verdict that names them needs them for its words.
+    Example:
+      >>> with also_known(WaterDrag()):
+      ...     found = diagnose(plant, traces, seed)
 
     Args:
       *effects: objects of subclasses of `Effect`, or of a base in `diagnosis.effects`.
 
     Raises:
-      BadValueError: the name is another effect's.
+      BadValueError: a name is another effect's, or two of them have one name.
     """
+    known = dict(_known.get())
     for one in effects:
-        if one.name in EFFECTS:
+        if one.name in known:
             raise BadValueError(f"there is an effect {one.name!r}; choose another name")
-    EFFECTS.update({one.name: one for one in effects})
+        known[one.name] = one
+    token = _known.set(MappingProxyType(known))
     try:
         yield
     finally:
-        for one in effects:
-            EFFECTS.pop(one.name, None)
+        _known.reset(token)

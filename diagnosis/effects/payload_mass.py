@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from diagnosis.effects._places import BodyEffect
-from diagnosis.effects._sizes import mass_kg
-from diagnosis.effects.effect import Parameter
+from diagnosis.effects.bases import BodyEffect
+from diagnosis.effects.parts import EffectWords, Parameter
+from diagnosis.effects.scales import mass_kg
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -22,6 +22,12 @@ class PayloadMass(BodyEffect):
 
     name = "payload_mass"
     native = True
+    by_inverse_dynamics = True
+    words = EffectWords(
+        "extra mass",
+        "{body} carries {mass} {lacking}",
+        "A load, a battery or a cable that the model does not know of.",
+    )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """The mass, up to the body's own or a third of the robot's."""

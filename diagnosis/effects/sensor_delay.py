@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -22,6 +23,12 @@ class SensorDelay(Effect):
     name = "sensor_delay"
     place_kind: ClassVar[PlaceKind] = "encoders"
     native = False
+    rarity_nats = 1.0
+    words = EffectWords(
+        "late sensors",
+        "joint positions and velocities are {delay} older than their time stamps say",
+        "What the sensors report has already passed when it gets its time stamp.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """All joints at once, where something else than positions is measured.

@@ -1,17 +1,32 @@
 """Dry friction that is larger near standstill."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from diagnosis.effects._places import JointEffect
-from diagnosis.effects._sizes import torque_nm
-from diagnosis.effects.effect import Parameter, PlacedEffect
+import numpy as np
+
+from diagnosis.effects.bases import JointEffect
+from diagnosis.effects.parts import (
+    EffectWords,
+    Interval,
+    JointMotion,
+    Parameter,
+    PlacedEffect,
+    Values,
+)
+from diagnosis.effects.scales import torque_nm
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.variants import Variants
     from diagnosis.plant.plant import Plant
+    from diagnosis.traces.usage import Usage
 
 GROWN_SPEEDS_RAD_S = (0.02, 0.07, 0.25)
+"""Speeds of the peak that are tried once dry friction was found to help."""
+
+COLUMN_SPEED_RAD_S = 0.1
+"""Speed of the peak in sparse regression, which cannot fit it."""
 
 
 class StribeckFriction(JointEffect):
@@ -25,6 +40,15 @@ class StribeckFriction(JointEffect):
 
     name = "stribeck_friction"
     native = False
+    column_parameter = 1
+    main_parameters = ("coulomb_torque", "extra_torque")
+    words = EffectWords(
+        "dry friction that sticks (Stribeck)",
+        "{joint} has dry friction of {coulomb_torque}, and {extra_torque} more below "
+        "{speed}, {lacking}",
+        "Dry friction that is larger near standstill than in motion, so that slow "
+        "movements stick and slip.",
+    )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """Coulomb torque tau_c, extra torque tau_s and speed v_s."""
@@ -60,3 +84,25 @@ class StribeckFriction(JointEffect):
             )
             for speed_rad_s in GROWN_SPEEDS_RAD_S
         )
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """Two speeds [rad/s] of the peak: the effect is not linear in it."""
+        coulomb, extra, _ = (one.typical for one in self.parameters(plant, place))
+        return [(coulomb, extra, speed) for speed in (0.03, 0.2)]
+
+    def simpler(self, placed: PlacedEffect) -> PlacedEffect:
+        """Dry friction halfway between its value at speed and that at rest."""
+        coulomb_nm, extra_nm, _ = placed.values
+        mean_nm = coulomb_nm + extra_nm / 2
+        return PlacedEffect("coulomb_friction", placed.place, (mean_nm,))
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The peak near standstill, in the direction of the velocity."""
+        slow = np.exp(-((motion.velocity_rad_s / COLUMN_SPEED_RAD_S) ** 2))
+        return np.asarray(slow * motion.direction)

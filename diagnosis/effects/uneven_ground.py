@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
 
-from diagnosis.effects._ground import has_ground_contact
-from diagnosis.effects.effect import Effect, Parameter, PlaceKind
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.ground import has_ground_contact
+from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
 from groundwalk.arrays import FloatArray
+from groundwalk.errors import BadModelError
 
 if TYPE_CHECKING:
     from diagnosis.effects.variants import Variants
@@ -28,6 +30,13 @@ class UnevenGround(Effect):
     name = "uneven_ground"
     place_kind: ClassVar[PlaceKind] = "world"
     native = False
+    rarity_nats = 10.0
+    """Ground lies wherever a sole stood: as many hidden values as steps."""
+    words = EffectWords(
+        "uneven ground",
+        "the ground has bumps of {height} {lacking}",
+        "The feet meet the ground earlier or later than on a plane.",
+    )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
         """The world, if the plant walks on it."""
@@ -42,3 +51,16 @@ class UnevenGround(Effect):
     ) -> None:
         """Heights add."""
         variants.outside.bump_height_m[row] += values[0]
+
+    def apply_to_sim(
+        self, variants: "Variants", row: int, place: str, values: FloatArray
+    ) -> None:
+        """Refuse: the places of the bumps are not known.
+
+        Raises:
+          BadModelError: always.
+        """
+        raise BadModelError(
+            "uneven_ground says how high bumps are, not where: give the sim a "
+            "terrain with bumps instead"
+        )

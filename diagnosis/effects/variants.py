@@ -1,6 +1,6 @@
-"""n variants of a plant: what effects change, one row each."""
+"""Variants of a plant: everything that effects can change, one row a variant."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,18 +8,22 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
+    from diagnosis.effects.bases import TorqueEffect
     from diagnosis.plant.plant import Plant
 
 
 @dataclass(frozen=True)
 class Push:
-    """A force on a body for some time.
+    """A constant force on a body for some time.
+
+    Example:
+      >>> Push("torso", (5.0, 0.0, 0.0), start_s=2.0, duration_s=0.2)
 
     Attributes:
-      body: its name.
+      body: name of the body.
       force_n: (x, y, z) in the world frame, at the body's centre of mass.
-      start_s: in the trace's time.
-      duration_s: how long.
+      start_s: in the recording's time.
+      duration_s: how long the force acts.
     """
 
     body: str
@@ -30,22 +34,22 @@ class Push:
 
 @dataclass(eq=False)
 class Joints:
-    """What the servos and joints of n variants do, arrays (n, j); neutral at first.
+    """Numbers of servos and joints in n variants, arrays (n, j); neutral at first.
 
     Attributes:
-      kp_factor: of the servo's stiffness.
-      damping_factor: of the servo's damping and back-EMF.
-      fade_1_s: the stiffness loses this share of itself each second.
-      max_torque_nm: a limit besides the servo's own.
-      setpoint_speed_rad_s: the set-point moves no faster.
-      gap_rad: play between servo and joint; the servo does not feel errors within it.
-      offset_rad: measured less true position; the servo acts on what is measured.
-      coulomb_nm: friction torque.
-      stribeck_nm: more of it near standstill ...
-      stribeck_speed_rad_s: ... until about this speed.
-      load_share: friction torque as a share of the servo's, back-EMF included.
-      spring_nm_rad: stiffness between motor and joint; infinite if there is none.
-      spring_damping_nm_s_rad: its damping.
+      kp_factor: multiplies the servo's stiffness.
+      damping_factor: multiplies the servo's damping and the motor's back-EMF.
+      fade_1_s: share of the stiffness that is lost each second.
+      max_torque_nm: limit in addition to the servo's own.
+      setpoint_speed_rad_s: fastest speed of the servo's set-point.
+      gap_rad: play between servo and joint; no torque passes within it.
+      offset_rad: measured less true position; the servo acts on the measured one.
+      coulomb_nm: dry friction.
+      stribeck_nm: extra dry friction at standstill.
+      stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
+      load_share: dry friction as a share of the motor's torque, back-EMF included.
+      spring_nm_rad: stiffness between motor and joint; infinite where they are rigid.
+      spring_damping_nm_s_rad: damping between motor and joint.
     """
 
     kp_factor: FloatArray
@@ -64,34 +68,24 @@ class Joints:
 
     @classmethod
     def neutral(cls, n: int, j: int) -> "Joints":
-        """As the plant is."""
-
-        def full(value: float) -> FloatArray:
-            return np.full((n, j), value)
-
-        return cls(
-            kp_factor=full(1.0),
-            damping_factor=full(1.0),
-            fade_1_s=full(0.0),
-            max_torque_nm=full(np.inf),
-            setpoint_speed_rad_s=full(np.inf),
-            gap_rad=full(0.0),
-            offset_rad=full(0.0),
-            coulomb_nm=full(0.0),
-            stribeck_nm=full(0.0),
-            stribeck_speed_rad_s=full(0.1),
-            load_share=full(0.0),
-            spring_nm_rad=full(np.inf),
-            spring_damping_nm_s_rad=full(0.0),
-        )
+        """Numbers (n, j) that leave the plant as it is."""
+        values = {field.name: 0.0 for field in fields(cls)} | {
+            "kp_factor": 1.0,
+            "damping_factor": 1.0,
+            "max_torque_nm": np.inf,
+            "setpoint_speed_rad_s": np.inf,
+            "stribeck_speed_rad_s": 0.1,
+            "spring_nm_rad": np.inf,
+        }
+        return cls(**{name: np.full((n, j), value) for name, value in values.items()})
 
 
 @dataclass(eq=False)
 class Signals:
-    """What happens to signals between robot and computer, arrays (n, ...).
+    """Delays and errors of the signals between robot and computer, arrays (n, ...).
 
     Attributes:
-      command_delay_s: (n,) until a command takes effect.
+      command_delay_s: (n,) time until a command takes effect.
       sensor_delay_s: (n,) age of measured positions and velocities.
       gyro_bias_rad_s: (n, 3) added to the gyroscope.
     """
@@ -102,17 +96,17 @@ class Signals:
 
     @classmethod
     def neutral(cls, n: int) -> "Signals":
-        """As the plant is."""
+        """Signals of n variants without delays and errors."""
         return cls(np.zeros(n), np.zeros(n), np.zeros((n, 3)))
 
 
 @dataclass(eq=False)
 class Outside:
-    """What acts from outside on n variants.
+    """Forces and ground that act on n variants from outside.
 
     Attributes:
-      pushes: for each variant.
-      drag_n_s_m: (n, bodies) force against a body's velocity; MuJoCo's body order.
+      pushes: lists of pushes, one for each variant.
+      drag_n_s_m: (n, bodies) force against a body's velocity [N s/m]; MuJoCo's order.
       bump_height_m: (n,) amplitude of uneven ground.
     """
 
@@ -124,12 +118,23 @@ class Outside:
 class Variants:
     """n copies of a plant, each changed in its own way.
 
-    Besides `joints`, `signals` and `outside` any field of the MuJoCo model can be
-    changed: `field("dof_damping")[row, dof] += 0.1`.
+    Example:
+      >>> variants = Variants(plant, 2)
+      >>> variants.joints.gap_rad[1, variants.column("LKneePitch")] += 0.02
+      >>> variants.field("dof_damping")[1, variants.dof("LKneePitch")] += 0.1
+
+    Attributes:
+      plant: that is varied.
+      n: number of variants.
+      joints: numbers of servos and joints.
+      signals: delays and errors of signals.
+      outside: forces and ground.
+      fields: fields of MuJoCo's model that some variant changes, arrays (n, ...).
+      torques: values (n, j, p) of effects that compute a torque themselves.
     """
 
     def __init__(self, plant: "Plant", n: int) -> None:
-        """N rows that are the plant itself."""
+        """Make n variants that are the plant itself."""
         self.plant = plant
         self.n = n
         self.joints = Joints.neutral(n, len(plant.joints))
@@ -138,9 +143,10 @@ class Variants:
             [[] for _ in range(n)], np.zeros((n, plant.model.nbody)), np.zeros(n)
         )
         self.fields: dict[str, FloatArray] = {}
+        self.torques: dict[TorqueEffect, FloatArray] = {}
 
     def field(self, name: str) -> FloatArray:
-        """(n, ...) values of a field of the MuJoCo model, to be changed in place.
+        """(n, ...) values of a field of MuJoCo's model, to be changed in place.
 
         Args:
           name: as `mujoco.batch.MODEL_FIELDS` has it, for example "opt.gravity".
@@ -153,12 +159,22 @@ class Variants:
             self.fields[name] = np.repeat(nominal[None], self.n, axis=0)
         return self.fields[name]
 
+    def torque_values(self, effect: "TorqueEffect", parameters: int) -> FloatArray:
+        """(n, j, parameters) values of an effect's own torque, to be changed in place.
+
+        Args:
+          effect: that computes the torque.
+          parameters: number of its values.
+        """
+        shape = self.n, len(self.plant.joints), parameters
+        return self.torques.setdefault(effect, np.zeros(shape))
+
     def column(self, joint: str) -> int:
         """Column of a joint in arrays (n, j)."""
         return self.plant.joints.index(joint)
 
     def dof(self, joint: str) -> int:
-        """Degree of freedom of a joint."""
+        """MuJoCo's number of a joint's degree of freedom."""
         return self.plant.dofs[self.column(joint)]
 
     def body(self, name: str) -> int:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from diagnosis.effects._ground import foot_geoms, ground_geoms
+from diagnosis.effects.ground import foot_geoms, ground_geoms
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
@@ -29,9 +29,6 @@ Model = tuple[PlacedEffect, ...]
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
 """Of replays, by the plant's base; the shorter ones where the longest is too wrong."""
-
-STIFF = frozenset({"joint_elasticity"})
-"""Springs: effects that need shorter steps than all others; stiffness comes first."""
 
 WARM_UP_S = 0.4
 """Not scored: the start state is known to the sensors' noise only."""
@@ -201,7 +198,7 @@ class Predictor:
         Models with a spring between motor and link take half the step: what it stores
         and gives back is lost in a step that its motor swings in.
         """
-        stiff = [any(placed.name in STIFF for placed in one) for one in models]
+        stiff = [any(effect(placed.name).stiff for placed in one) for one in models]
         predicted = np.empty((len(models), *self._correction.shape))
         for is_stiff, step_s, correction in (
             (False, self.step_s, self._correction),

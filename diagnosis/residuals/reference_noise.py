@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.traces.windows import FLOATING_WINDOW_S, Run
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError

@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
@@ -135,7 +136,7 @@ def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
     winner = result.winner
     if winner is None:
         return result
-    start = tuple(_without_peak(placed) for placed in winner.model)
+    start = tuple(effect(placed.name).simpler(placed) for placed in winner.model)
     if start == winner.model:
         return result
     (judged,) = fitted_exactly(judge, [judge.judged([start])[0].model])
@@ -217,14 +218,3 @@ def _gains(predictor: Predictor, less: Model, more: Model) -> FloatArray:
     gains = 0.5 * (residuals[0] ** 2 - residuals[1] ** 2)
     every = np.bincount(predictor.block, gains)
     return np.asarray(np.sign(every) * np.sqrt(2 * np.abs(every)))
-
-
-def _without_peak(placed: PlacedEffect) -> PlacedEffect:
-    """Stribeck friction as dry friction of the mean of its values at rest and moving.
-
-    Other effects are returned unchanged.
-    """
-    if placed.name != "stribeck_friction":
-        return placed
-    coulomb_nm, extra_nm, _ = placed.values
-    return PlacedEffect("coulomb_friction", placed.place, (coulomb_nm + extra_nm / 2,))

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import EFFECTS
+from diagnosis.effects.library import all_effects
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import Nudges, fit_all
 from diagnosis.search.judging import Judge
@@ -20,15 +20,6 @@ from diagnosis.search.screening import Guess, Screen
 from diagnosis.search.signatures import signatures
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import BoolArray
-
-KINDS = tuple(
-    name
-    for name, kind in EFFECTS.items()
-    if kind.place_kind in ("joint", "commands", "encoders")
-    and name not in ("joint_elasticity", "end_stop", "servo_fade")
-)
-"""Effects that every servo of a robot may have. End stops and fading servos are faults
-of single joints."""
 
 MOST_KINDS = 6
 """Most kinds of effects in a model."""
@@ -84,11 +75,12 @@ def _grown(judge: Judge, result: SearchResult) -> Judged | None:
     model: Model = ()
     residual, energy = judge.fit.residuals([()])[0], result.nothing_fit + result.nothing
     floor = result.floor_fit + result.floor
+    kinds = servo_effects()
     waited = 0
     usage = Usage.of(judge.fit.plant, judge.fit.traces)
     for number in range(MOST_KINDS):
         judge.hooks.stage(f"all joints, round {number + 1}", REPLAYS)
-        signs = signatures(judge.fit, model, usage, (), KINDS)
+        signs = signatures(judge.fit, model, usage, (), kinds)
         guesses = Screen(judge.fit, signs).singles(residual)
         added = kinds_to_add(guesses, judge.least_gain, model)
         tried = _best(judge, [(*model, *more) for more in added])
@@ -102,6 +94,15 @@ def _grown(judge: Judge, result: SearchResult) -> Judged | None:
         if waited == PATIENCE:
             break
     return best
+
+
+def servo_effects() -> tuple[str, ...]:
+    """Names of the effects that an incomplete robot model may lack at every servo."""
+    return tuple(
+        name
+        for name, kind in all_effects().items()
+        if kind.on_every_servo and kind.place_kind in ("joint", "commands", "encoders")
+    )
 
 
 def _best(judge: Judge, starts: Sequence[Model]) -> Judged | None:

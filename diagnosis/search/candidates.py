@@ -1,34 +1,20 @@
 """Models that are worth a fit, each with values to begin with."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import EFFECTS, grown_from
-from diagnosis.residuals.predictor import STIFF, Model, Predictor
+from diagnosis.effects.library import all_effects, effect, grown_from
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.result import Judged, keys_of
 from diagnosis.search.rules import Rules
-from diagnosis.search.screening import Guess, Screen, stretched
+from diagnosis.search.screening import Guess, Screen
 from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray
 
 FEW_JOINTS = 6
 """Of robots with no more all effects are fitted, each where it looks best."""
-
-STRETCHES = (0.4, 1.0, 2.5)
-"""Of a guess, tried before it is fitted."""
-
-LIMITS = frozenset({"torque_limit", "speed_limit"})
-LIMITED = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
-"""Likewise of limits: who is weaker than his load drops it, which no slope tells."""
-
-WEAKER = (0.65, 0.8, 0.9, 0.96)
-"""Parts of a servo's own limit that are tried, too."""
-
-STIFFER = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
-"""Likewise of springs: between two resonances no slope leads to either."""
 
 
 class Candidates:
@@ -96,28 +82,14 @@ class Candidates:
         ]
 
     def _sizes(self, placed: PlacedEffect) -> list[PlacedEffect]:
-        """An effect in several sizes. What limits may do so far off its guess."""
-        if placed.name in LIMITS:
-            limits = [k * placed.values[0] for k in LIMITED]
-            if placed.name == "torque_limit":
-                limits += self._weaker(placed.place)
-            return [replace(placed, values=(limit,)) for limit in limits]
-        if placed.name in STIFF:
-            stiffness, *rest = placed.values
-            return [replace(placed, values=(k * stiffness, *rest)) for k in STIFFER]
-        return [stretched(self._fit.plant, placed, k) for k in STRETCHES]
-
-    def _weaker(self, joint: str) -> list[float]:
-        """Limits below the servo's own, which only jumps may reach."""
-        column = self._fit.plant.joints.index(joint)
-        servos = [trace.servo.max_torque_nm[column] for trace in self._fit.traces]
-        most = float(max(servos))
-        return [share * most for share in WEAKER if np.isfinite(most)]
+        """An effect in several sizes around a guess."""
+        kind = effect(placed.name)
+        return kind.sizes_to_scan(self._fit.plant, placed, self._fit.traces)
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
         """The best guesses, and the best place of each effect that comes close."""
         few = len(self._fit.plant.joints) <= FEW_JOINTS
-        most = len(EFFECTS) if few else self._rules.single_effects
+        most = len(all_effects()) if few else self._rules.single_effects
         short = [
             guess.model
             for guess in ranked[
@@ -227,8 +199,8 @@ class Candidates:
                 for other in judged.model
             )
             for placed in judged.model
-            if EFFECTS[placed.name].place_kind == "body"
-            for place in EFFECTS[placed.name].places(plant, traces)
+            if effect(placed.name).place_kind == "body"
+            for place in effect(placed.name).places(plant, traces)
             if place in plant.neighbours(placed.place)
         ]
 

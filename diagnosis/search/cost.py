@@ -3,8 +3,8 @@
 import time
 from collections.abc import Sequence
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import EFFECTS
+from diagnosis.effects.library import all_effects
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import affordable
@@ -39,7 +39,7 @@ def expected_seconds(
     fit = affordable(plant, split(traces)).fit
     predictor = Predictor(plant, fit, channels, threads=threads)
     models: list[Model] = []
-    for name, kind in EFFECTS.items():
+    for name, kind in all_effects().items():
         for place in kind.places(plant, predictor.traces)[:1]:
             values = tuple(one.typical for one in kind.parameters(plant, place))
             models.append((PlacedEffect(name, place, values),))

@@ -6,8 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from diagnosis.effects.effect import Parameter, PlacedEffect
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from diagnosis.audit.audit import audit
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Predictor

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
 from diagnosis.search.fitting import FittedModel
 
@@ -93,18 +94,6 @@ def keys_of(model: Model) -> frozenset[str]:
     return frozenset(placed.key for placed in model)
 
 
-RARE_NATS = {
-    "drag": 3.0,
-    "servo_damping": 2.0,
-    "sensor_delay": 1.0,
-    "servo_fade": 1.0,
-    "com_offset": 1.0,
-    "external_force": 3.0,
-    "uneven_ground": 10.0,
-}
-"""Extra log-likelihood [nats] that a rare effect needs (a prior). Uneven ground has a
-value for each footstep, hence its large number."""
-
 VALUE_NATS = 2.0
 """Penalty for each value of a model [nats]."""
 
@@ -120,7 +109,7 @@ def plausibility(judged: Judged, scale: float) -> float:
         model is exact, residuals exceed the noise and differences count less.
     """
     return judged.evidence / scale + sum(
-        RARE_NATS.get(placed.name, 0.0) + VALUE_NATS * len(placed.values)
+        effect(placed.name).rarity_nats + VALUE_NATS * len(placed.values)
         for placed in judged.model
     )
 

@@ -9,11 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.trial_values import THRESHOLDS, VECTORS
-from diagnosis.plant.plant import Plant
+from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.fitting import Coordinates
 from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray, IntArray
 
@@ -164,8 +162,9 @@ class Screen:
         alone = []
         for row, signature in enumerate(self._found):
             placed = signature.placed
-            if placed.name in VECTORS:
-                rest = placed.values[VECTORS[placed.name] :]
+            components = effect(placed.name).components
+            if components > 1:
+                rest = placed.values[components:]
                 vectors.setdefault((placed.key, rest), []).append(row)
             elif self._products[row, row] > 0:
                 alone.append([row])
@@ -205,27 +204,10 @@ class Screen:
 
     def _placed(self, group: list[int], stretch: FloatArray) -> PlacedEffect:
         first = self._found[group[0]].placed
-        if first.name not in VECTORS:
-            return stretched(self._predictor.plant, first, float(stretch[0]))
-        parts = VECTORS[first.name]
+        kind = effect(first.name)
+        parts = kind.components
+        if parts == 1:
+            return kind.stretched(self._predictor.plant, first, float(stretch[0]))
         every = np.array([self._found[row].placed.values[:parts] for row in group])
         values = (*map(float, stretch @ every), *first.values[parts:])
-        return PlacedEffect(first.name, first.place, values)
-
-
-def stretched(plant: Plant, placed: PlacedEffect, stretch: float) -> PlacedEffect:
-    """The effect that many times as large: its first value, or its components.
-
-    What acts above a threshold only is left as it is.
-    """
-    parameters = Coordinates(plant, (placed,)).parameters
-    if placed.name in THRESHOLDS:
-        return placed
-    values = list(placed.values)
-    for i in range(VECTORS.get(placed.name, 1)):
-        one = parameters[i]
-        value = one.neutral + stretch * (values[i] - one.neutral)
-        if not np.isfinite(one.neutral):
-            value = values[i] / max(stretch, 1e-3)
-        values[i] = min(max(value, one.low), one.high)
-    return PlacedEffect(placed.name, placed.place, tuple(values))
+        return replace(first, values=values)

@@ -8,6 +8,7 @@ effect is believed. `accept.py` tests the result further.
 
 from collections.abc import Sequence
 
+from diagnosis.effects.library import all_effects
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.predictor import Model
 from diagnosis.search.candidates import Candidates, grown
@@ -15,8 +16,6 @@ from diagnosis.search.judging import Judge, distinct
 from diagnosis.search.result import Judged, SearchResult
 from diagnosis.search.signatures import Signature, signatures
 from diagnosis.traces.usage import Usage
-
-PUSH = "external_force"
 
 
 class Search:
@@ -90,7 +89,8 @@ class Search:
         _, *bursts = push_intervals(self._fit, left)
         pushes: list[Signature] = []
         if bursts:
-            pushes = signatures(self._fit, leader.model, self._usage, bursts, (PUSH,))
+            timed = [name for name, kind in all_effects().items() if kind.timed]
+            pushes = signatures(self._fit, leader.model, self._usage, bursts, timed)
         return Candidates(self._fit, [*self.signatures, *pushes], self._rules)
 
     def _larger(self, starts: Candidates, best: Sequence[Judged]) -> list[Model]:

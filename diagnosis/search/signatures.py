@@ -10,20 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.effect import Effect, PlacedEffect
-from diagnosis.effects.library import EFFECTS
-from diagnosis.effects.trial_values import Interval, trial_values
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import Interval, PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import Coordinates
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray, IntArray
-
-ALONE = frozenset({"joint_elasticity", "encoder_offset"})
-"""Effects that may show at the neighbours more than at their own joint."""
-
-AT_TIPS = frozenset({"external_force", "drag"})
-"""Effects that are first tried at the outermost bodies only: there they show most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +52,7 @@ def signatures(
       intervals: when something may have pushed.
       names: of the effects; all where empty.
     """
-    trials = _trials(predictor, usage, intervals, names or tuple(EFFECTS))
+    trials = _trials(predictor, usage, intervals, names or tuple(all_effects()))
     models = [base, *(base + added for added, _ in trials)]
     residuals = predictor.residuals(models)
     found = []
@@ -85,16 +78,17 @@ def _trials(
     """Models to try: an effect at all joints at once, or at one other place."""
     trials: list[tuple[Model, bool]] = []
     for name in names:
-        kind = EFFECTS[name]
+        kind = effect(name)
         places = kind.places(predictor.plant, predictor.traces)
-        if name in AT_TIPS:
+        if kind.at_tips:
             places = tuple(p for p in places if p in tips(predictor.plant)) or places
         options = {
-            place: _values(predictor, kind, place, usage, intervals) for place in places
+            place: kind.first_tries(predictor.plant, place, usage, intervals)
+            for place in places
         }
         if not any(options.values()):
             continue
-        if kind.place_kind == "joint" and name not in ALONE:
+        if kind.place_kind == "joint" and kind.joint_by_joint:
             for level in range(max(map(len, options.values()))):
                 model = tuple(
                     PlacedEffect(name, place, values[level])
@@ -116,19 +110,6 @@ def tips(plant: Plant) -> frozenset[str]:
     carrying = {int(parent) for parent in model.body_parentid[1:]}
     every = range(1, model.nbody)
     return frozenset(model.body(i).name for i in every if i not in carrying)
-
-
-def _values(
-    predictor: Predictor,
-    kind: Effect,
-    place: str,
-    usage: Usage,
-    intervals: Sequence[Interval],
-) -> list[tuple[float, ...]]:
-    plant = predictor.plant
-    column = plant.joints.index(place) if kind.place_kind == "joint" else None
-    parameters = kind.parameters(plant, place)
-    return trial_values(kind.name, parameters, column, usage, intervals)
 
 
 def _two_sided(predictor: Predictor, placed: PlacedEffect) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.reference_noise import ReferenceNoise

@@ -6,10 +6,10 @@ from itertools import groupby, pairwise
 
 import numpy as np
 
+from diagnosis.effects import effect as kind_of
 from diagnosis.verdict.verdict import Found, Pulse
 from experiments.diagnosis_report.numbers import estimate_text, percent
 from experiments.diagnosis_report.place_words import place_words
-from experiments.diagnosis_report.words import effect_words
 
 MANY = 3
 """An effect found at this many places or more is summed up in one clause."""
@@ -70,7 +70,7 @@ def at_many(alike: Sequence[Found]) -> str:
         return f"about {alone} at {place_words(effect.place)}"
 
     return (
-        f"{effect_words(alike[0].name).label} at {len(alike)} places, "
+        f"{kind_of(alike[0].name).words.label} at {len(alike)} places, "
         f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
     )
 
@@ -82,7 +82,7 @@ def finding(effect: Found, changed: bool = False) -> str:
       effect: to be told.
       changed: whether the question was what has changed since the reference.
     """
-    words = effect_words(effect.name)
+    words = kind_of(effect.name).words
     numbers = {
         name: f"about {estimate_text(one)}"
         for name, one in effect.parameters.items()

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
+from diagnosis.effects import effect as kind_of
 from diagnosis.residuals.channels import (
     LEAST_NOISE_M,
     LEAST_NOISE_RAD,
@@ -31,7 +32,6 @@ from experiments.diagnosis_report.numbers import (
 )
 from experiments.diagnosis_report.place_words import place_words
 from experiments.diagnosis_report.text import answer, badge, doubts, next_step, question
-from experiments.diagnosis_report.words import effect_words
 from experiments.reports.html import render
 from groundwalk.files import write_text
 
@@ -198,13 +198,13 @@ def _effect_row(effect: Found) -> dict[str, Any]:
         "parameters": parameter_rows(effect),
         "sure": percent(effect.probability),
         "when": times,
-        "meaning": effect_words(effect.name).meaning,
+        "meaning": kind_of(effect.name).words.meaning,
         "native": effect.native,
     }
 
 
 def _label_and_place(name: str, place: str) -> dict[str, str]:
-    words = effect_words(name)
+    words = kind_of(name).words
     return {"label": words.label, "place": place_words(place, words.place_kind)}
 
 

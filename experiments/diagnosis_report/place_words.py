@@ -3,8 +3,8 @@
 import re
 from collections.abc import Sequence
 
+from diagnosis.effects import effect as kind_of
 from diagnosis.verdict.verdict import EffectAt, Found
-from experiments.diagnosis_report.words import effect_words
 from worlds.recordings.columns import JOINT_QUANTITIES
 
 _SIDED = re.compile(r"([LR])([A-Z][a-z]+(?:[A-Z][a-z]+)*)")
@@ -31,7 +31,7 @@ def place_words(place: str, kind: str = "joint") -> str:
 
 def at_words(effect: EffectAt | Found) -> str:
     """An effect with its place: "dry friction at the left knee (LKneePitch)"."""
-    words = effect_words(effect.name)
+    words = kind_of(effect.name).words
     if not words.place_kind:
         return words.label
     return f"{words.label} at {place_words(effect.place, words.place_kind)}"

@@ -16,15 +16,12 @@ class Published:
       parameter: of the effect.
       value: in SI units, with the sign that the effect gives it.
       text: what it is, for a page.
-      at: of a force: position at which a spring found in its stead is read; a value so
-        read has no interval, and must be right to a fifth.
     """
 
     effect: str
     parameter: str
     value: float
     text: str
-    at: float | None = None
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from experiments.diagnosis_report.numbers import estimate_text
 from experiments.real_robot_study.cases import Published, RealRobot
 from experiments.transfer.claims import Claim
 
-TWICE, FIFTH = 2.0, 0.2
+TWICE = 2.0
 
 
 def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
@@ -34,28 +34,11 @@ def _published(robot: RealRobot, verdict: Verdict) -> Iterator[Claim]:
     for known in robot.published:
         found = _estimate(verdict, known)
         text = f"{known.text}: the 80 % interval holds the published {known.value:g}"
-        if found is None and known.at is not None:
-            yield _read_from_a_spring(known, known.at, verdict)
-        elif found is None:
+        if found is None:
             yield Claim(text, False, "not found")
         else:
             holds = found.low <= known.value <= found.high
             yield Claim(text, holds, estimate_text(found))
-
-
-def _read_from_a_spring(known: Published, at: float, verdict: Verdict) -> Claim:
-    """A constant force may have been found as that of a soft spring."""
-    text = f"{known.text}: the published {known.value:g} is found to a fifth"
-    for effect in verdict.effects:
-        if effect.name == "joint_spring":
-            stiffness, rest = (
-                effect.parameters[k].value for k in ("stiffness", "rest")
-            )
-            force = stiffness * (rest - at)
-            holds = abs(force - known.value) <= FIFTH * known.value
-            found = f"as a spring, whose force is {force:.2f} at {at:g} m"
-            return Claim(text, holds, found)
-    return Claim(text, False, "not found")
 
 
 def _estimate(verdict: Verdict, known: Published) -> Estimate | None:

@@ -7,7 +7,7 @@ from joint_rigs import smooth_command, ticks
 
 import robots
 from diagnosis.corrected.sim import CorrectedSim
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from robots import biped
 from walk_engine import WalkEngine, gaits
 from worlds import WorldOptions

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import replay

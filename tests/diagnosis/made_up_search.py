@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.search.fitting import Coordinates, FittedModel
 from diagnosis.search.result import Judged, SearchResult
 

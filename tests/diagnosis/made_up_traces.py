@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from joint_rigs import ARM, plant_of, run_from, ticks, trace_of
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
 

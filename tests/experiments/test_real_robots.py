@@ -3,11 +3,11 @@ from dataclasses import replace
 import pytest
 from made_up_diagnoses import KINDS
 
+from diagnosis.effects import all_effects
 from diagnosis.verdict.verdict import Estimate, Found, Pulse, Recordings
 from experiments import real_robots
 from experiments.diagnosis_report.console import console_lines
 from experiments.diagnosis_report.text import answer
-from experiments.diagnosis_report.words import WORDS
 from experiments.real_robot_study.cases import ROBOTS, Published, RealRobot, Sane
 from experiments.real_robot_study.claims import claims_of
 from experiments.real_robot_study.page import write_real_page
@@ -42,21 +42,6 @@ def test_published_values_are_looked_for_in_the_intervals(found, holds):
     (claim,) = claims_of(ROBOT, verdict(effects=(found,)))
     assert claim.holds is holds
     (claim,) = claims_of(ROBOT, verdict())
-    assert (claim.holds, claim.found) == (False, "not found")
-
-
-@pytest.mark.parametrize(("rest", "holds"), [(2.0, True), (1.0, False)])
-def test_a_force_may_be_that_of_a_spring(rest, holds):
-    force = Published("external_force", "x", 3.2, "pull", at=0.1)
-    robot = replace(ROBOT, published=(force,))
-    values = {
-        "stiffness": Estimate(1.8, 1.0, 2.5, "N m/rad"),
-        "rest": Estimate(rest, 0.5, 2.5, "rad"),
-    }
-    spring = Found("joint_spring", "slide", values, 0.9)
-    (claim,) = claims_of(robot, verdict(effects=(spring,)))
-    assert claim.holds is holds  # 1.8 * 1.9 is 3.42
-    (claim,) = claims_of(robot, verdict())
     assert (claim.holds, claim.found) == (False, "not found")
 
 
@@ -166,7 +151,7 @@ def test_the_console_stays_short():
     alike = tuple(oil(k, k + 1.0) for k in range(20))
     told = [text for label, text in console_lines(verdict(effects=alike), []) if label]
     assert sum("viscous friction at 20 places" in text for text in told) == 1
-    names = [*WORDS][:20]
+    names = [*all_effects()][:20]
     many = tuple(
         replace(one, name=name) for one, name in zip(alike, names, strict=True)
     )

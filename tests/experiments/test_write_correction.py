@@ -9,7 +9,7 @@ import pytest
 import robots
 import terrain
 from diagnosis.corrected.sim import CorrectedSim
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
 from experiments.diagnose import write_correction
 from experiments.runs.folder import RunFolder

@@ -1,27 +1,17 @@
 """Compares the answer to one concealed case with its truth."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from diagnosis.corrected.effects_json import EffectValues
+from diagnosis.effects.library import all_effects
 from diagnosis.verdict.verdict import Found, Verdict
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase
 
 NAMED_KINDS = ("single", "pair", "triple")
 """Kinds of cases in which effects that the diagnosis knows are hidden and excited."""
-
-MAIN: Mapping[str, tuple[str, ...]] = {
-    "stribeck_friction": ("coulomb_torque", "extra_torque"),
-    "joint_elasticity": ("stiffness",),
-    "joint_spring": ("stiffness",),
-    "end_stop": ("angle",),
-    "external_force": ("x", "y", "z"),
-    "contact_compliance": ("stiffness",),
-}
-"""By effect, the parameters that say how large it is; effects that are not listed have
-no other parameters."""
 
 _BOUND = 1.0
 """Shares of closed error are kept within plus and minus this, so that one bad answer
@@ -146,7 +136,8 @@ def _considered(verdict: Verdict) -> set[str]:
 
 
 def _main(found: Found, true: EffectValues) -> list[str]:
-    names = MAIN.get(true.name, tuple(true.parameters))
+    known = all_effects().get(true.name)
+    names = (known and known.main_parameters) or tuple(true.parameters)
     return [name for name in names if name in true.parameters]
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.conclude.oracle import fit_structure
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import EFFECTS, effect
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import Found
 from experiments.concealed.reading import read_case
@@ -90,7 +90,7 @@ def consult(
         tuple(
             _placed(plant, each.name, each.place, _values(each))
             for each in found
-            if each.name in EFFECTS
+            if each.name in all_effects()
             and each.place in effect(each.name).places(plant, traces)
         )
         for found in answers.values()
@@ -126,10 +126,10 @@ def _placed(
 
 def _neutral(plant: Plant, placed: PlacedEffect) -> dict[str, float | None]:
     """Values at which the effect does nothing, by parameter; None where infinite."""
-    parameters = effect(placed.name).parameters(plant, placed.place)
-    values = {
-        p.name: float(p.neutral) if np.isfinite(p.neutral) else None for p in parameters
+    kind = effect(placed.name)
+    names = [one.name for one in kind.parameters(plant, placed.place)]
+    values = kind.neutral_values(plant, placed)
+    return {
+        name: float(value) if np.isfinite(value) else None
+        for name, value in zip(names, values, strict=True)
     }
-    if placed.name == "end_stop" and placed.values[1] < 0:
-        values["angle"] = parameters[0].low  # of the other side
-    return values

@@ -13,7 +13,7 @@ import pytest
 from diagnosis.baselines import BASELINES, bic, sparse, sysid
 from diagnosis.baselines.found import found_effect
 from diagnosis.baselines.sparse import sequential_threshold
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all

@@ -5,7 +5,7 @@ import pytest
 from made_up_traces import arm, recorded
 
 from diagnosis.conclude.controls import Controls
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, 4e-4))

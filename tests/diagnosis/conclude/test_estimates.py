@@ -8,7 +8,7 @@ from made_up_traces import arm
 from scipy.stats import binom
 
 from diagnosis.conclude.estimates import Z_80, estimates, standard_errors
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.search.fitting import Coordinates, FittedModel
 
 BLOCKS, ROWS = 60, 25

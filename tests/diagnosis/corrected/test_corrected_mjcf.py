@@ -8,7 +8,7 @@ import pytest
 from joint_rigs import run_from, smooth_command, ticks, trace_of
 
 from diagnosis.corrected.mjcf import corrected_mjcf
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import replay

@@ -2,9 +2,8 @@
 
 import pytest
 
-from diagnosis.effects.library import EFFECTS, also_known, effect
-from diagnosis.effects.viscous_friction import ViscousFriction
-from experiments.diagnosis_report.words import effect_words
+from diagnosis.effects import all_effects, also_known, effect
+from diagnosis.effects.joint_numbers import ViscousFriction
 from groundwalk.errors import BadValueError, UnknownNameError
 
 
@@ -18,22 +17,22 @@ class Molasses(ViscousFriction):
 
 
 def test_an_effect_is_known_within_the_block_alone():
-    before = dict(EFFECTS)
+    before = dict(all_effects())
     with also_known(Molasses()):
         assert isinstance(effect("thick_molasses"), Molasses)
-        words = effect_words("thick_molasses")
+        words = effect("thick_molasses").words
         assert words.label == "thick molasses"
         assert words.finding == "{joint} has thick molasses {lacking}"
         assert words.meaning == "Thick and sweet."
-    assert before == EFFECTS
+    assert before == all_effects()
     with pytest.raises(UnknownNameError, match="thick_molasses"):
-        effect_words("thick_molasses")
+        effect("thick_molasses")
 
 
 def test_an_error_within_the_block_leaves_nothing_behind():
     with pytest.raises(ZeroDivisionError), also_known(Molasses()):
         raise ZeroDivisionError
-    assert "thick_molasses" not in EFFECTS
+    assert "thick_molasses" not in all_effects()
 
 
 def test_no_effect_takes_anothers_name():
@@ -43,4 +42,4 @@ def test_no_effect_takes_anothers_name():
     ):
         pass
     assert isinstance(effect("viscous_friction"), ViscousFriction)
-    assert "thick_molasses" not in EFFECTS
+    assert "thick_molasses" not in all_effects()

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from diagnosis.effects.library import EFFECTS, effect
+from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
@@ -104,7 +104,7 @@ def test_the_library_is_as_specified():
         name: " ".join(
             p.name for p in one.parameters(plant, one.places(plant, EVERYTHING)[0])
         )
-        for name, one in EFFECTS.items()
+        for name, one in all_effects().items()
     }
     assert names == PARAMETERS
     assert list(names) == list(PARAMETERS)
@@ -153,8 +153,10 @@ def test_sizes_lie_within_bounds(name, base):
 
 def test_where_effects_may_be():
     plant = walker()
-    places = {name: one.places(plant, EVERYTHING) for name, one in EFFECTS.items()}
-    kinds = {name: one.place_kind for name, one in EFFECTS.items()}
+    places = {
+        name: one.places(plant, EVERYTHING) for name, one in all_effects().items()
+    }
+    kinds = {name: one.place_kind for name, one in all_effects().items()}
     for name, kind in kinds.items():
         if kind in ("commands", "encoders", "gyroscope", "feet", "world"):
             assert places[name] == (kind,)

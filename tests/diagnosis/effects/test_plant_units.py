@@ -3,7 +3,7 @@
 import pytest
 from joint_rigs import ARM, SLED, plant_of
 
-from diagnosis.effects.library import EFFECTS
+from diagnosis.effects.library import all_effects
 from diagnosis.residuals.channels import channel_unit
 
 SLIDING = {"m", "m/s", "N", "N/m", "N s/m", "kg"}
@@ -29,10 +29,10 @@ def test_channels_know_what_slides():
     assert channel_unit(sled, "base.roll") == "rad"
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("name", all_effects())
 def test_no_effect_speaks_of_turning_where_a_joint_slides(name):
     """Every unit of an effect at a joint has its counterpart."""
-    plant, kind = plant_of(SLED, kp=1.0, kd=1.0), EFFECTS[name]
+    plant, kind = plant_of(SLED, kp=1.0, kd=1.0), all_effects()[name]
     if kind.place_kind != "joint":
         return
     for parameter in kind.parameters(plant, "slide"):

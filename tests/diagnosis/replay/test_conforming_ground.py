@@ -8,7 +8,7 @@ import pytest
 from joint_rigs import servo_of
 from swinger_rig import KD, KP, swinger
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of

@@ -27,7 +27,7 @@ from wheel_rig import (
     wheel,
 )
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import variants_of
 

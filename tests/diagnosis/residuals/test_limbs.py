@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from joint_rigs import ARM, plant_of, smooth_command, ticks, trace_of
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.channels import stacked
 from diagnosis.residuals.limbs import limbs_of

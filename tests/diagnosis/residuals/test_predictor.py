@@ -7,7 +7,8 @@ import pytest
 from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.joint_elasticity import JointElasticity
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import WARM_UP_S, WORST, Channels, Predictor
 
 NOISE_RAD = 4e-4
@@ -93,7 +94,7 @@ def test_a_stiff_spring_takes_shorter_steps(monkeypatch):
         return float(np.sqrt(np.mean((found[20:] / NOISE_RAD) ** 2)))
 
     assert wrong() < 0.15
-    monkeypatch.setattr("diagnosis.residuals.predictor.STIFF", frozenset())
+    monkeypatch.setattr(JointElasticity, "stiff", False)
     assert wrong() > 0.4
 
 

@@ -5,7 +5,7 @@ from known_arms import CHANNELS, LEAN
 from made_up_search import found
 from made_up_traces import arm, recorded
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.accept import CLOSE_NATS, compared_exactly, recombined
 from diagnosis.search.judging import Judge

@@ -2,7 +2,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.search.accept import without_idle_effects, without_idle_values
 from diagnosis.search.result import Judged, SearchResult
 

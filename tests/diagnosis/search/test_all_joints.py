@@ -5,7 +5,7 @@ from known_arms import CHANNELS, LEAN, measured
 from made_up_traces import arm
 
 from diagnosis.conclude.confidence import probability
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.all_joints import all_joints, kinds_to_add
 from diagnosis.search.judging import Judge

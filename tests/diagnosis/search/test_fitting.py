@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.library import EFFECTS, effect
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.search.fitting import Coordinates, fit_all
 
@@ -154,11 +154,11 @@ def test_a_start_at_a_bound_takes_a_known_jacobian():
     assert again.energy < fit.energy
 
 
-@pytest.mark.parametrize("name", sorted(EFFECTS))
+@pytest.mark.parametrize("name", sorted(all_effects()))
 def test_coordinates_there_and_back(name):
     """Steps of a coordinate are small and leave no value out."""
     plant = arm()
-    for place in EFFECTS[name].places(plant, [recorded(plant, duration_s=0.5)]):
+    for place in all_effects()[name].places(plant, [recorded(plant, duration_s=0.5)]):
         parameters = effect(name).parameters(plant, place)
         values = tuple(
             0.5 * (max(p.low, -1e3) + min(p.high, 1e3))

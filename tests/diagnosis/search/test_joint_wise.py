@@ -3,7 +3,7 @@ import pytest
 from known_arms import CHANNELS, measured
 from made_up_traces import arm
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.all_joints import joint_wise
 from diagnosis.search.fitting import fit_all

@@ -9,7 +9,7 @@ from known_arms import LEAN, measured
 from made_up_traces import arm
 from swinger_rig import moved, swinger, with_speeds
 
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.pipeline import diagnose
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.effects.effect import PlacedEffect
-from diagnosis.effects.trial_values import trial_values
+from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.search.screening import Screen
 from diagnosis.search.signatures import Signature, signatures
@@ -249,10 +249,10 @@ def test_trial_values_follow_usage():
     assert usage.torque_nm[elbow] < 0.5 * np.abs(asked).max()
     for share, (limit,) in zip(
         (0.9, 0.7, 0.45),
-        trial_values("torque_limit", (), elbow, usage, []),
+        effect("torque_limit").first_tries(plant, "elbow", usage, []),
         strict=True,
     ):
         assert limit == pytest.approx(share * usage.torque_nm[elbow])
-    for angle, side in trial_values("end_stop", (), elbow, usage, []):
+    for angle, side in effect("end_stop").first_tries(plant, "elbow", usage, []):
         assert usage.low_rad[elbow] < angle < usage.high_rad[elbow]
         assert abs(side) == 1

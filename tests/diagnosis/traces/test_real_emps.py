@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from diagnosis.conclude.estimates import estimates
-from diagnosis.effects.effect import PlacedEffect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.effects.library import EFFECTS
+from diagnosis.effects.library import all_effects
 from diagnosis.plant.load import load_plant
 from diagnosis.traces.read import trace_of
 from experiments.concealed.case import REFERENCES
@@ -85,10 +85,10 @@ def test_every_drawn_truth_is_one_that_the_diagnosis_can_say(drawn, searched):
         plant, traces = searched[sort.plant]
         for effect in hidden.effects:
             if KINDS[effect.name].outside:
-                assert effect.name not in EFFECTS
+                assert effect.name not in all_effects()
                 continue
             names.add(effect.name)
-            known = EFFECTS[effect.name]
+            known = all_effects()[effect.name]
             assert effect.place in known.places(plant, traces)
             parameters = known.parameters(plant, effect.place)
             units = KINDS[effect.name].parameters

@@ -5,6 +5,7 @@ from string import Formatter
 import numpy as np
 import pytest
 
+from diagnosis.effects import all_effects, effect
 from diagnosis.verdict.verdict import (
     Amount,
     EffectAt,
@@ -26,7 +27,6 @@ from experiments.diagnosis_report.place_words import (
     channel_words,
     place_words,
 )
-from experiments.diagnosis_report.words import WORDS, effect_words
 from groundwalk.errors import UnknownNameError
 
 # Effects with their parameters, as the diagnosis' file format has them.
@@ -67,16 +67,17 @@ UNSAID = {"end_stop": {"side"}, "external_force": {"start", "duration"}}
 
 
 def test_every_effect_has_words_and_no_other():
-    assert WORDS.keys() == PARAMETERS.keys()
-    assert len(WORDS) == 26
-    for words in WORDS.values():
+    assert all_effects().keys() == PARAMETERS.keys()
+    assert len(PARAMETERS) == 26
+    for words in (one.words for one in all_effects().values()):
         assert re.fullmatch(r"[A-Z].*\.", words.meaning)
         assert len(words.label) < 40
 
 
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_findings_tell_the_place_and_every_parameter(name):
-    told = {field for _, field, _, _ in Formatter().parse(WORDS[name].finding) if field}
+    finding = effect(name).words.finding
+    told = {field for _, field, _, _ in Formatter().parse(finding) if field}
     place = set() if name in ELSEWHERE else {"body" if name in BODIES else "joint"}
     wanted = {*PARAMETERS[name], *place} - UNSAID.get(name, set())
     assert told - {"lacking", "usual"} == wanted
@@ -95,9 +96,9 @@ def test_findings_leave_nothing_open(name, changed):
 
 
 def test_unknown_effects_have_no_words():
-    assert effect_words("backlash").label == "play (backlash)"
+    assert effect("backlash").words.label == "play (backlash)"
     with pytest.raises(UnknownNameError, match="did you mean 'backlash'"):
-        effect_words("backlsh")
+        effect("backlsh")
 
 
 @pytest.mark.parametrize(

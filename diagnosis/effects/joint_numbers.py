@@ -1,0 +1,214 @@
+"""Effects that change one number of a joint: friction, rotor inertia, gap, encoder."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.effects.bases import JointNumber, ServoNumber
+from diagnosis.effects.parts import (
+    EffectWords,
+    Interval,
+    JointMotion,
+    Parameter,
+    PlacedEffect,
+    Values,
+)
+from diagnosis.effects.scales import brisk_rad_s, inertia_kg_m2, torque_nm
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.usage import Usage
+
+PLAY_RAD = 0.005
+"""Servo error [rad] at which a gear's gap counts as crossed in `torque_column`."""
+
+
+class ViscousFriction(JointNumber):
+    """Torque -b v against a joint's speed v, as of an oil film.
+
+    Source: the linear part of the static friction map in Armstrong-Helouvry, Dupont
+    and Canudas de Wit 1994, "A survey of models, analysis tools and compensation
+    methods for the control of machines with friction". In MuJoCo `dof_damping`.
+    """
+
+    name = "viscous_friction"
+    native = True
+    array = "dof_damping"
+    words = EffectWords(
+        "viscous friction",
+        "{joint} has viscous friction of {coefficient} {lacking}",
+        "A torque against the motion that grows with speed, as in thick grease.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The coefficient b; a typical one takes 10 % of the torque at brisk speed."""
+        scale = torque_nm(plant, place) / brisk_rad_s(plant, place)
+        return (Parameter("coefficient", "N m s/rad", 0.0, scale, 0.0, 0.1 * scale),)
+
+    def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
+        """More back-EMF of a motor that has some: the same torque."""
+        if place not in plant.joints:
+            return ()
+        has_emf = plant.servo.back_emf_nm_s_rad[plant.joints.index(place)] > 0
+        return (PlacedEffect("servo_damping", place),) if has_emf else ()
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The velocity."""
+        return motion.velocity_rad_s
+
+    def from_column(
+        self, size: float, error: float, damping_nm_s_rad: float
+    ) -> tuple[str, float, float]:
+        """A negative coefficient is a weaker servo damping."""
+        if size >= 0 or damping_nm_s_rad <= 0:
+            return self.name, size, error
+        share = 1 / damping_nm_s_rad
+        return "servo_damping", 1 + size * share, error * share
+
+
+class CoulombFriction(JointNumber):
+    """Torque -tau sign(v), and up to tau against whatever drives a joint at rest.
+
+    Source: dry friction after Coulomb 1785 as in Olsson, Astrom, Canudas de Wit,
+    Gafvert and Lischinsky 1998, "Friction models and friction compensation",
+    section 2. In MuJoCo `dof_frictionloss`.
+    """
+
+    name = "coulomb_friction"
+    native = True
+    array = "coulomb_nm"
+    words = EffectWords(
+        "dry friction",
+        "{joint} has dry friction of {torque} {lacking}",
+        "A torque against the motion that is the same at all speeds; at rest it holds "
+        "the joint until something stronger pulls.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The torque tau, up to half of the joint's torque range."""
+        scale = torque_nm(plant, place)
+        return (Parameter("torque", "N m", 0.0, 0.5 * scale, 0.0, 0.05 * scale),)
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The sign of the velocity."""
+        return motion.direction
+
+
+class LoadFriction(JointNumber):
+    """Torque -s |tau| sign(v), with tau the servo's torque, its back-EMF included.
+
+    Source: Dohring, Lee and Newman 1993, "A load-dependent transmission friction
+    model"; the same form as in Duclusaud, Passault, Padois and Ly 2024, "Extended
+    friction models for the physics simulation of servo actuators".
+    """
+
+    name = "load_friction"
+    native = False
+    array = "load_share"
+    words = EffectWords(
+        "friction that grows with load",
+        "{joint} has friction of {share} times its servo's torque {lacking}",
+        "Gears and bearings rub harder the more torque passes through them.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The share s; with a share above 1 no motor could turn its gear."""
+        return (Parameter("share", "1", 0.0, 0.8, 0.0, 0.1),)
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The torque's size, in the direction of the velocity."""
+        return np.abs(motion.torque_nm) * motion.direction
+
+
+class Armature(JointNumber):
+    """Torque -J a against a joint's acceleration a; J = (gear ratio)^2 rotor inertia.
+
+    Source: gears in Featherstone 2008, "Rigid body dynamics algorithms", section 9.6.
+    In MuJoCo `dof_armature`.
+    """
+
+    name = "armature"
+    native = True
+    array = "dof_armature"
+    words = EffectWords(
+        "rotor inertia",
+        "{joint} has {inertia} of rotor inertia {lacking}",
+        "The motor's rotor, geared up, resists acceleration as a flywheel does.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The inertia J, in addition to what the plant has already."""
+        scale = inertia_kg_m2(plant, place)
+        return (Parameter("inertia", "kg m^2", 0.0, 10 * scale, 0.0, 0.5 * scale),)
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The acceleration."""
+        return motion.acceleration_rad_s2
+
+
+class Backlash(ServoNumber):
+    """No torque reaches the joint while motor and joint are within the gap.
+
+    The servo closes its loop on the motor's side; the encoder that is recorded sits at
+    the joint. Within the gap the motor follows its command alone, braked by its
+    damping; at the gap's edges it pushes the joint. Gap is the total play. The motion
+    is that of `diagnosis.replay.gaps`.
+
+    Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
+    survey", the dead-zone model.
+    """
+
+    name = "backlash"
+    native = False
+    array = "gap_rad"
+    words = EffectWords(
+        "play (backlash)",
+        "{joint} has play of {gap} {lacking}",
+        "Gears with a gap between their teeth: after each reversal the motor turns "
+        "before the joint follows.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The gap: cheap gears have some hundredths of a radian."""
+        return (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """A small and a large gap [rad]: the effect is not linear in its size."""
+        return [(0.01,), (0.03,)]
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """Half of the servo's stiffness, in the direction of its error."""
+        error = motion.command_rad - motion.position_rad
+        return np.asarray(motion.kp_nm_rad * np.tanh(error / PLAY_RAD) / 2)
+
+
+class EncoderOffset(JointNumber):
+    """Measured = true + offset, and the servo acts on what is measured.
+
+    Source: joint offset of kinematic calibration, Hollerbach, Khalil and Gautier
+    2016, "Model identification", Springer Handbook of Robotics.
+    """
+
+    name = "encoder_offset"
+    native = False
+    array = "offset_rad"
+    joint_by_joint = False
+    by_inverse_dynamics = True
+    words = EffectWords(
+        "encoder offset",
+        "the encoder of {joint} is off by {offset}",
+        "Measured angle less true angle, as after mounting a servo horn one tooth "
+        "aside; the servo acts on the wrong angle, too.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The offset."""
+        return (Parameter("offset", "rad", -0.3, 0.3, 0.0, 0.03),)

@@ -1,0 +1,219 @@
+"""Effects that change one number of a servo: stiffness, damping, fading and limits."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from diagnosis.effects.bases import JointNumber, ServoNumber, joints_where
+from diagnosis.effects.effect import LIMITS
+from diagnosis.effects.parts import (
+    EffectWords,
+    Interval,
+    JointMotion,
+    Parameter,
+    PlacedEffect,
+    Values,
+)
+from diagnosis.effects.scales import speed_rad_s, torque_nm
+from diagnosis.verdict.verdict import When
+from groundwalk.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from diagnosis.plant.plant import Plant
+    from diagnosis.traces.trace import Trace
+    from diagnosis.traces.usage import Usage
+
+WEAKER = (0.65, 0.8, 0.9, 0.96)
+"""Shares of a servo's own torque limit that are tried as well: a sudden change of the
+command may be all that reaches the limit."""
+
+
+class ServoGain(ServoNumber):
+    """Torque = factor kp (command - q) - ...
+
+    Source: proportional part of a position loop, Spong, Hutchinson and Vidyasagar
+    2006, "Robot modeling and control", chapter 6. In MuJoCo `actuator_gainprm` and
+    `actuator_biasprm`.
+    """
+
+    name = "servo_gain"
+    native = True
+    array = "kp_factor"
+    combined = np.multiply
+    words = EffectWords(
+        "servo stiffness",
+        "the servo of {joint} has {factor} times its stiffness {usual}",
+        "The torque that the servo gives for each radian of error is another one.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The factor."""
+        return (Parameter("factor", "1", 0.1, 5.0, 1.0, 0.8, logarithmic=True),)
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The torque of the nominal stiffness, of which 1 - factor is missing."""
+        return motion.pull_nm
+
+    def from_column(
+        self, size: float, error: float, damping_nm_s_rad: float
+    ) -> tuple[str, float, float]:
+        """The factor is 1 less the missing share."""
+        return self.name, 1 - size, error
+
+
+class ServoDamping(JointNumber):
+    """Torque = ... - factor (kd + back-EMF) v.
+
+    Source: derivative part of a position loop and the motor's induced voltage, Spong,
+    Hutchinson and Vidyasagar 2006, "Robot modeling and control", chapter 6. In
+    MuJoCo `actuator_biasprm` and `dof_damping`.
+    """
+
+    name = "servo_damping"
+    native = True
+    array = "damping_factor"
+    combined = np.multiply
+    rarity_nats = 2.0
+    words = EffectWords(
+        "servo damping",
+        "the servo of {joint} has {factor} times its damping {usual}",
+        "The torque with which servo and motor brake, for each rad/s, is another one.",
+    )
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """Joints whose servo has damping that a factor can change, in any trace."""
+        servos = [trace.servo for trace in traces] or [plant.servo]
+        damping = [one.kd_nm_s_rad + one.back_emf_nm_s_rad for one in servos]
+        return joints_where(plant, [values > 0 for values in damping])
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The factor."""
+        return (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
+
+
+class ServoFade(ServoNumber):
+    """Stiffness kp (1 - rate t), with t since the start of the trace.
+
+    Source: to first order what a falling supply voltage or a warming winding and
+    magnet do to a motor's constant, Hughes and Drury 2019, "Electric motors and
+    drives", chapter 3.
+    """
+
+    name = "servo_fade"
+    native = False
+    array = "fade_1_s"
+    on_every_servo = False
+    rarity_nats = 1.0
+    words = EffectWords(
+        "servo that weakens",
+        "the servo of {joint} loses {rate} of its stiffness, unlike {usual}",
+        "A motor that gets hot, or a battery that runs down, pulls less and less.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The rate: 3 to 30 % over a run of 10 to 60 s."""
+        return (Parameter("rate", "1/s", 0.0, 0.05, 0.0, 0.005),)
+
+    def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
+        """All the time, and more and more."""
+        return When("drift", first_s, last_s)
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """The torque of the nominal stiffness, times the time since the start."""
+        return motion.since_s * motion.pull_nm
+
+
+class TorqueLimit(JointNumber):
+    """Torque = clip(demand, -limit, limit), besides the servo's own limit.
+
+    Source: actuator saturation, Spong, Hutchinson and Vidyasagar 2006, "Robot modeling
+    and control", chapter 6. In MuJoCo `actuator_forcerange`.
+    """
+
+    name = "torque_limit"
+    native = True
+    array = "max_torque_nm"
+    combined = np.minimum
+    threshold = True
+    words = EffectWords(
+        "torque limit",
+        "the motor of {joint} gives no more than {torque}, less than {usual}",
+        "A motor that is weaker than the data sheet says, or a current limit.",
+    )
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The limit; where the servo has one, larger limits do nothing."""
+        scale = torque_nm(plant, place)
+        own = float(plant.servo.max_torque_nm[plant.joints.index(place)])
+        high = scale if np.isfinite(own) else 5 * scale
+        return (
+            Parameter("torque", "N m", 0.02 * scale, high, np.inf, 0.6 * scale, True),
+        )
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """Shares of the torque that the servo should have given."""
+        torque = usage.torque_nm[plant.joints.index(place)]
+        return [(share * torque,) for share in (0.9, 0.7, 0.45)]
+
+    def sizes_to_scan(
+        self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
+    ) -> list[PlacedEffect]:
+        """Multiples of the guess, and shares of the servo's own limit."""
+        column = plant.joints.index(placed.place)
+        most = float(max(trace.servo.max_torque_nm[column] for trace in traces))
+        limits = [k * placed.values[0] for k in LIMITS]
+        limits += [share * most for share in WEAKER if np.isfinite(most)]
+        return [replace(placed, values=(limit,)) for limit in limits]
+
+
+class SpeedLimit(ServoNumber):
+    """The set-point follows the command with |speed| <= limit.
+
+    Source: rate limiter, Astrom and Hagglund 2006, "Advanced PID control";
+    hobby and smart servos have it as their "moving speed".
+    """
+
+    name = "speed_limit"
+    native = False
+    array = "setpoint_speed_rad_s"
+    combined = np.minimum
+    threshold = True
+    words = EffectWords(
+        "speed limit",
+        "the servo of {joint} moves its target no faster than {speed}, unlike {usual}",
+        "A setting in the servo's firmware that slows its target down.",
+    )
+
+    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+        """Joints with a servo, if a trace has position commands."""
+        if all(trace.command_rad is None for trace in traces):
+            return ()
+        return super().places(plant, traces)
+
+    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+        """The limit."""
+        scale = speed_rad_s(plant, place)
+        return (
+            Parameter(
+                "speed", "rad/s", 0.01 * scale, 4 * scale, np.inf, 0.4 * scale, True
+            ),
+        )
+
+    def first_tries(
+        self,
+        plant: "Plant",
+        place: str,
+        usage: "Usage",
+        intervals: Sequence[Interval],
+    ) -> list[Values]:
+        """Shares of the speed at which the commands moved."""
+        speed = usage.command_speed_rad_s[plant.joints.index(place)]
+        return [(share * speed,) for share in (0.8, 0.5, 0.25)]
