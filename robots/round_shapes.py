@@ -9,59 +9,72 @@ from robots.description import Capsule
 from robots.posed_tree import PosedTree
 
 DENSITY_KG_M3 = 1000.0
-"""Of water, and about that of robots."""
+"""Assumed mean density [kg/m^3]: that of water, and about that of robots."""
 
 _THINNEST, _THICKEST = 0.02, 0.09
-"""Radii in units of the robot's height over its soles."""
+"""Bounds of radii, as shares of the robot's height above its soles; chosen by eye."""
 
 _SHORTEST_M = 0.01
-_BALL = 0.005
-"""An end of the tree is drawn as a ball if it has this part of the robot's mass."""
+"""Shorter bones [m] are not drawn."""
+
+_END = 0.005
+"""A link with nothing on it is drawn if it has this share of the robot's mass."""
 
 
 def round_shapes(posed: PosedTree, joint: str, height_m: float) -> tuple[Capsule, ...]:
-    """What moves with a joint as capsules, in its frame.
+    """All links that move with a joint as capsules, in the joint's frame.
 
-    There is a capsule from each of the file's joints to those that hang on it, and a
-    ball where nothing hangs on a link with mass. The capsules of a link share its
-    volume.
+    There is a capsule from each link's joint to every joint that hangs on it; the
+    capsules of a link share its volume. A link with mass and nothing on it is a ball
+    around its centre of mass, joined to what carries it by a thin neck.
 
     Args:
       posed: the robot.
-      joint: the joint, "" for the root.
-      height_m: of the root over the soles; bounds the radii.
+      joint: the joint's name, "" for the root.
+      height_m: of the root above the soles [m]; bounds the radii.
     """
-    most_m = _THICKEST * height_m
-    ball_kg = _BALL * posed.hanging("").mass_kg
+    origin_m = posed.origin_m(joint)
+    least_m, most_m = _THINNEST * height_m, _THICKEST * height_m
     shapes: list[Capsule] = []
     for link in posed.carried(joint):
-        mass = 0.0 if link.inertial is None else link.inertial.mass_kg
+        mass_kg = 0.0 if link.inertial is None else link.inertial.mass_kg
         bones = _bones_m(posed, link.name)
         total_m = sum(float(np.linalg.norm(end - start)) for start, end in bones)
         if bones:
-            thick_m = math.sqrt(mass / (DENSITY_KG_M3 * math.pi * total_m))
-            radius_m = min(max(thick_m, _THINNEST * height_m), most_m)
-        elif link.inertial is not None and mass > ball_kg:
-            centre = posed.placed[link.name].points(link.inertial.com_m)
-            bones = [(centre, centre)]
-            thick_m = (3 * mass / (4 * math.pi * DENSITY_KG_M3)) ** (1 / 3)
+            thick_m = math.sqrt(mass_kg / (DENSITY_KG_M3 * math.pi * total_m))
+            radius_m = min(max(thick_m, least_m), most_m)
+        elif link.inertial is not None and mass_kg > _END * posed.hanging("").mass_kg:
+            centre_m = posed.placed[link.name].points(link.inertial.com_m)
+            thick_m = (3 * mass_kg / (4 * math.pi * DENSITY_KG_M3)) ** (1 / 3)
             radius_m = min(thick_m, most_m)
-        origin_m = posed.origin_m(joint)
+            start_m = _carrier_m(posed, link.name)
+            if np.linalg.norm(centre_m - start_m) > radius_m:
+                neck = _capsule(start_m - origin_m, centre_m - origin_m, least_m)
+                shapes.append(neck)
+            bones = [(centre_m, centre_m)]
         shapes += [
             _capsule(start - origin_m, end - origin_m, radius_m) for start, end in bones
         ]
     return tuple(shapes)
 
 
+def _carrier_m(posed: PosedTree, link: str) -> FloatArray:
+    """(3,) where a link begins: at its joint or, if that is held, at the link above."""
+    above = posed.tree.above.get(link)
+    if above is not None and posed.carriers[above.parent] == posed.carriers[link]:
+        return posed.placed[above.parent].position_m
+    return posed.placed[link].position_m
+
+
 def _bones_m(posed: PosedTree, link: str) -> list[tuple[FloatArray, FloatArray]]:
-    """From a link's joint to those that it carries, in the root's frame."""
+    """From a link's joint to each joint that it carries, in the root's frame [m]."""
     start = posed.placed[link].position_m
     ends = _ends(posed, link)
     return [(start, end) for end in ends if np.linalg.norm(end - start) > _SHORTEST_M]
 
 
 def _ends(posed: PosedTree, link: str) -> list[FloatArray]:
-    """Where the joints of a link are that carry any mass."""
+    """Places of those joints of a link that carry any mass, in the root's frame [m]."""
     return [
         posed.placed[joint.child].position_m
         for joint in posed.tree.joints.values()

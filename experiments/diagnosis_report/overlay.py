@@ -3,8 +3,11 @@
 | entity | what |
 |---|---|
 | `real`, `sim`, `corrected` | the three robots, as in the first recording |
-| `held_out/<recording>/<channel>/course` | lines: real, sim, corrected |
-| `held_out/<recording>/<channel>/error` | lines: sim and corrected, less real |
+| `held_out/<recording>/<channel>/course` | lines: real, sim, corrected; SI units |
+| `held_out/<recording>/<channel>/error` | lines: sim - real, corrected - real |
+
+An error is in the unit that its plot's title names, such as mrad. Times count from the
+start of each held-out part: the part of a recording may begin seconds after its start.
 """
 
 import hashlib
@@ -19,6 +22,7 @@ from diagnosis.conclude.held_out_series import (
     by_error,
 )
 from diagnosis.verdict.verdict import Fit
+from experiments.diagnosis_report.numbers import error_unit, unit_text
 from experiments.seeing.scenes import scene_names
 from robots.description import Description
 from worlds import Recording, RecordingMetadata
@@ -29,8 +33,9 @@ from worlds.scenes.curves import Curve, Trace
 from worlds.scenes.scene import Scene
 
 COLOURS = {name: accent(index) for index, name in enumerate(ChannelSeries._fields)}
-"""Those of the three robots."""
+"""Colours of the robots and lines, by version: real, sim, corrected."""
 CHANNELS_PER_PAGE = 4
+"""Channels on one tab, each with its course and its error: what fits on a screen."""
 _POSE = (*vector_columns("base.position"), *vector_columns("base.orientation"))
 
 
@@ -40,43 +45,64 @@ def write_overlay(
     fit: Fit | None = None,
     description: Description | None = None,
 ) -> None:
-    """Write the file at once; the worst channels stand on the first pages.
+    """Write the file at once: a tab for each recording and quantity, the worst first.
 
     Args:
       path: the `.rrd` file.
       series: held-out recordings; at least one.
-      fit: of the verdict, to say which channels are worst.
-      description: of the robot, if its three versions shall stand side by side; they
-        move as the first recording has it. A base that it lacks stays at the origin.
+      fit: the verdict's held-out errors, which say which channels are worst, and
+        each channel's unit.
+      description: the robot model; None to show curves only. Its three versions then
+        stand side by side and move as in the first recording. A base that was not
+        recorded stays at the origin.
 
     Raises:
       BadValueError: there are no series.
     """
     pages: dict[str, Sequence[Curve]] = {}
     for one, name in zip(series, scene_names(one.name for one in series), strict=True):
-        channels = by_error(one, fit)
-        for start in range(0, len(channels), CHANNELS_PER_PAGE):
-            some = channels[start : start + CHANNELS_PER_PAGE]
-            page = f"{name} {start // CHANNELS_PER_PAGE + 1}"
-            pages[page] = _curves(one, f"held_out/{name}", some)
+        for kind, channels in _by_kind(by_error(one, fit)).items():
+            for start in range(0, len(channels), CHANNELS_PER_PAGE):
+                some = channels[start : start + CHANNELS_PER_PAGE]
+                page = f"{one.name}: {kind} {start + 1} to {start + len(some)}"
+                pages[page] = _curves(one, f"held_out/{name}", some, fit)
     scenes = _scenes(series[0], description) if series and description else []
     write_rrd(path, scenes, _identity(series), pages)
 
 
-def _curves(series: HeldOutSeries, at: str, channels: Sequence[str]) -> list[Curve]:
+def _by_kind(channels: Sequence[str]) -> dict[str, list[str]]:
+    """Channels by what they measure, such as "position", in the order given."""
+    groups: dict[str, list[str]] = {}
+    for channel in channels:
+        groups.setdefault(channel.partition(".")[0], []).append(channel)
+    return groups
+
+
+def _curves(
+    series: HeldOutSeries, at: str, channels: Sequence[str], fit: Fit | None
+) -> list[Curve]:
     """Course and error of each channel."""
     curves: list[Curve] = []
     for name, part in zip(channels, scene_names(channels), strict=True):
         real, sim, corrected = series.channels[name]
-        for what, lines in (
-            ("course", {"real": real, "sim": sim, "corrected": corrected}),
-            ("error", {"sim": sim - real, "corrected": corrected - real}),
+        errors = np.stack([sim - real, corrected - real], axis=1)
+        known = fit.channels.get(name) if fit else None
+        unit = known.unit if known else ""
+        factor, small = error_unit(unit, float(np.nanmax(np.abs(errors), initial=0.0)))
+        courses = np.stack([real, sim, corrected], axis=1)
+        for what, lines, values, title in (
+            ("course", COLOURS, courses, f"{name}{_in(unit_text(unit))}"),
+            ("error", list(COLOURS)[1:], factor * errors, f"error{_in(small)}"),
         ):
             colours = [COLOURS[line] for line in lines]
-            values = np.stack([*lines.values()], axis=1)
             trace = Trace(f"{at}/{part}/{what}", [*lines], values, colours)
-            curves.append((series.time_s, trace))
+            curves.append(Curve(title, series.time_s - series.time_s[0], trace))
     return curves
+
+
+def _in(unit: str) -> str:
+    """A unit as it stands behind a title."""
+    return f" [{unit}]" if unit else ""
 
 
 def _scenes(series: HeldOutSeries, description: Description) -> list[Scene]:
@@ -92,7 +118,7 @@ def _scenes(series: HeldOutSeries, description: Description) -> list[Scene]:
     scenes = []
     for version in ChannelSeries._fields:
         columns = {name: getattr(series.channels[name], version) for name in names}
-        columns["time"] = series.time_s
+        columns["time"] = series.time_s - series.time_s[0]
         # What drove the joints is shown nowhere, but a recording has to say it.
         drive = names[0].replace("position", "torque", 1)
         columns[drive] = np.full(series.time_s.size, np.nan)

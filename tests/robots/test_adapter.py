@@ -1,6 +1,8 @@
 """URDFs of other robots as descriptions."""
 
+import math
 from itertools import permutations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +11,8 @@ from made_up_urdf import ANKLE_M, HIP_Y_M, SHIN_M, THIGH_M, two_legged
 import robots
 from groundwalk.errors import BadModelError, GroundwalkError, UnknownNameError
 from robots import biped
+from robots.adaptation import Adaptation
+from robots.adapter import adapted
 from robots.scale import NAO_CENTRE_M, NAO_HIP_M, NAO_KG, Scale
 
 HUMANOIDS = ("g1", "icub", "romeo", "simple_humanoid", "talos")
@@ -190,3 +194,16 @@ def test_meshes_are_found():
     meshes = [mesh for joint in description.links for mesh in joint.link.meshes]
     assert len(meshes) > 20
     assert all(mesh.path.is_file() for mesh in meshes)
+
+
+def test_no_ball_hovers_beside_the_robot():
+    """This robot's trunk is fixed above its pelvis, and nothing hangs on it."""
+    legs = Adaptation(urdf="alexander_v1.lowerBodyOnly")
+    shapes = adapted("legs", legs, Path()).root.shapes
+    balls = [one for one in shapes if one.start_m == one.end_m]
+    ends = [
+        end for one in shapes if one not in balls for end in (one.start_m, one.end_m)
+    ]
+    assert balls
+    for ball in balls:
+        assert min(math.dist(ball.start_m, end) for end in ends) <= ball.radius_m

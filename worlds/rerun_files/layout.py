@@ -3,6 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from groundwalk.arrays import FloatArray
 from worlds.recordings.columns import SUPPORT
 from worlds.scenes.balance import loaded_feet
 from worlds.scenes.curves import MEASURED_SUPPORT, Curve, Plot, plots
@@ -15,6 +18,8 @@ MOST_ABREAST = 2
 """As many scenes stand side by side with all their curves; of more, tabs hold these."""
 
 _ON_GROUND = ("below", "pressure", "zmp", "polygon")
+_MARGIN = 0.05
+"""Free space above and below a curve, as a share of its range."""
 _PAGE_COLUMNS = 2
 _ROBOT_COLUMNS = 4
 
@@ -49,18 +54,43 @@ def blueprint(
 
 
 def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
-    """Curves side by side; what the colours mean is said in the first row."""
+    """Plots side by side; those in the first row have a legend.
+
+    Each plot shows all of its curve from the start. Left to itself, the viewer scales a
+    plot by what is near the time cursor when the file opens, often nothing.
+    """
     import rerun.blueprint as rrb
 
     views = [
         rrb.TimeSeriesView(
-            name="/".join(trace.path.split("/")[-2:]),
-            origin=f"/{trace.path}",
+            name=curve.title,
+            origin=f"/{curve.trace.path}",
+            axis_x=_whole(curve.time_s),
+            axis_y=rrb.ScalarAxis(range=_reach(curve.trace.values)),
             plot_legend=rrb.PlotLegend(visible=index < _PAGE_COLUMNS),
         )
-        for index, (_, trace) in enumerate(curves)
+        for index, curve in enumerate(curves)
     ]
     return rrb.Grid(*views, grid_columns=_PAGE_COLUMNS, name=name)
+
+
+def _whole(time_s: FloatArray) -> "rrb.TimeAxis":
+    """A time axis from the first moment to the last one."""
+    import rerun as rr
+    import rerun.blueprint as rrb
+
+    start, end = (
+        rrb.TimeRangeBoundary.absolute(seconds=float(time_s[row])) for row in (0, -1)
+    )
+    return rrb.TimeAxis(view_range=rr.TimeRange(start, end))
+
+
+def _reach(values: FloatArray) -> tuple[float, float]:
+    """A range that holds all values that are not NaN, and a little more."""
+    known = values[np.isfinite(values)]
+    low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)
+    margin = _MARGIN * (high - low) or max(abs(high), 1.0) * _MARGIN
+    return float(low - margin), float(high + margin)
 
 
 def _robot_view(scene: Scene) -> "rrb.Spatial3DView":

@@ -79,8 +79,8 @@ def write_rrd(
     stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     for index, scene in enumerate(scenes):
         _SceneLog(stream, scene, colours.accent(index)).write()
-    for time_s, trace in (curve for page in pages.values() for curve in page):
-        ColumnLog(stream, "", time_s).trace(trace)
+    for curve in (curve for page in pages.values() for curve in page):
+        ColumnLog(stream, "", curve.time_s).trace(curve.trace)
     write_bytes(path, file.drain_as_bytes())
 
 

@@ -1,9 +1,14 @@
-"""Pictures of round shapes on ground, computed by NumPy: no display, no driver.
+"""Draws round shapes on uneven ground by tracing rays in NumPy.
 
 Every pixel is a ray from the eye. Where a ray meets a capsule is the root of a
-quadratic equation, so that what is round is round at any size; the ground is met by
+quadratic equation, so that round shapes are round at any size; the ground is met by
 a few steps of a fixed-point iteration, which suits ground that is nearly level. Light
 comes from one sun, with shadows, and from the sky.
+
+Neither engine's renderer takes this file's place. PyBullet's ER_TINY_RENDERER (3.2.7)
+puts whole fields of a heightfield into wrong shadow, has one colour for all of the
+ground, and shows capsules with corners; `mujoco.Renderer` needs a graphics driver.
+These pictures need none, and are the same bytes on each run.
 """
 
 from dataclasses import dataclass
@@ -14,24 +19,28 @@ import numpy.typing as npt
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from terrain import Heightfield
-from worlds.scenes.camera_rounds import Rounds, axis_part, distances
-from worlds.scenes.camera_shadow import SUN, in_sun
 from worlds.scenes.colours import SKY
+from worlds.scenes.rays import SUN, Rounds, axis_part, distances, in_sun
 from worlds.scenes.shapes import chessboard
 
 Image = npt.NDArray[np.uint8]
-"""(height, width, 3) red, green, blue."""
+"""(height, width, 3) red, green, blue from 0 to 255."""
 
 SHADE, SUNLIGHT = 0.62, 0.50
-"""How bright is what only the sky lights, and what the sun adds to it."""
+"""Brightness in the sky's light alone, and how much full sun adds; chosen by eye."""
 
 SHINE, SHINE_POWER = 50.0, 40
+"""Blinn-Phong highlight: its brightness (0 to 255) and its exponent; chosen by eye."""
+
 HAZE_M = (1.6, 5.0)
-"""How far behind its target the camera sees the ground begin to fade, and end."""
+"""Distances behind the camera's target at which the ground begins to fade into the sky
+and at which it is gone [m]."""
 
 _GROUND_STEPS = 3
+"""Iterations to meet uneven ground; more do not change a picture visibly."""
+
 _SEEN_THROUGH = 1e-3
-"""Marks count as nearer by this factor than they are."""
+"""Factor on the distance of marks that glow: nothing stands before them."""
 
 _PER_PIXEL = 2
 """Rays along each side of a pixel: edges are smooth."""
@@ -42,9 +51,10 @@ class Camera:
     """Where a picture is taken from, and how large it is.
 
     Attributes:
-      eye_m, target_m: where the camera is, and the middle of what it looks at.
-      size_px: width and height.
-      view_rad: from the lower to the upper edge of the picture.
+      eye_m: where the camera is [m], world frame.
+      target_m: the point in the middle of the picture [m].
+      size_px: width and height [pixels].
+      view_rad: angle of view from the lower to the upper edge of the picture [rad].
     """
 
     eye_m: tuple[float, float, float]
@@ -71,17 +81,17 @@ class Camera:
         return np.stack([right, np.cross(ahead, right), ahead])
 
     def picture(self, rounds: Rounds, ground: Heightfield | None) -> Image:
-        """What the camera sees; where there is nothing, it is the sky.
+        """Draw what the camera sees, before the sky.
 
         Args:
           rounds: capsules and spheres.
-          ground: what they stand on, if anything.
+          ground: the ground below them; None to draw none.
         """
         return _Picture(self, rounds, ground).image()
 
 
 class _Picture:
-    """One picture while it is computed: for every ray what it meets first."""
+    """One picture while it is computed: for each ray, the first shape that it meets."""
 
     def __init__(
         self, camera: Camera, rounds: Rounds, ground: Heightfield | None
@@ -115,7 +125,7 @@ class _Picture:
         return np.asarray(np.clip(mean, 0, 255), np.uint8)
 
     def _meet(self, i: int) -> None:
-        """Note the rays that meet a shape before any other so far."""
+        """Note the rays that meet shape `i` nearer than every shape before it."""
         start, end = self._rounds.start_m[i], self._rounds.end_m[i]
         radius = float(self._rounds.radius_m[i])
         window = self._window(np.stack([start, end]), radius)
@@ -131,7 +141,7 @@ class _Picture:
     def _window(
         self, ends_m: FloatArray, radius_m: float
     ) -> tuple[slice, slice] | None:
-        """The part of the picture in which a shape can be."""
+        """Rows and columns of pixels in which a shape can be; None if it is behind."""
         x, y, ahead = self._axes @ (ends_m - self._eye).T
         nearest_m = ahead.min() - radius_m
         if not nearest_m > 0.01:  # behind the camera, or not known at this tick
@@ -169,7 +179,7 @@ class _Picture:
         self._owner[rows, columns] = -1
 
     def _paint_rounds(self, image: FloatArray) -> None:
-        """Light what is round, as it was met."""
+        """Colour the pixels whose rays meet a round shape first."""
         rows, columns = np.nonzero(self._owner >= 0)
         owner = self._owner[rows, columns]
         rays = self._rays[rows, columns]

@@ -30,8 +30,18 @@ class Trace(NamedTuple):
     """One for each line; None for any colour."""
 
 
-Curve = tuple[FloatArray, Trace]
-"""Times (ticks,) [s], and lines over them at a path of the file."""
+class Curve(NamedTuple):
+    """Lines over times of their own, shown in a plot of their own.
+
+    Attributes:
+      title: of the plot, with the unit.
+      time_s: (ticks,) [s].
+      trace: the lines; its path is one of the file, not of a scene.
+    """
+
+    title: str
+    time_s: FloatArray
+    trace: Trace
 
 
 class Plot(NamedTuple):

@@ -1,34 +1,44 @@
 """Scenes as pictures: the robot, its ground and its balance, seen by a camera."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from groundwalk.arrays import FloatArray
+from robots.description import Foot
 from worlds.scenes import colours
 from worlds.scenes.balance import Balance, balance
 from worlds.scenes.camera import Camera, Image
-from worlds.scenes.camera_rounds import Rounds
+from worlds.scenes.rays import Rounds
 from worlds.scenes.scene import SIDES, Scene
-from worlds.scenes.shapes import shape_colours, sole_rim
+from worlds.scenes.shapes import shape_colours
 
 _EYE_M = (1.25, -1.55, 0.62)
-"""From the point that is looked at: ahead of the robot, on its right, and above."""
+"""The camera as seen from its target [m, for a NAO]: ahead, on the right, and above."""
 
 _MIDDLE_M = 0.27
-"""Height of that point over the lowest sole of a NAO that walks."""
+"""Height of the camera's target above the lowest sole [m, for a NAO]."""
 
 _VIEW_RAD = 0.34
+"""Angle of view [rad]: a NAO with both arms stretched out fits in."""
+
 _STEADY_S = 0.3
-"""The camera goes as smoothly as the mean over this time."""
+"""Standard deviation of the bell curve that smooths the camera's way [s]."""
 
 _SOLE_M, _LINE_M, _POINT_M, _ARROW_M = 0.006, 0.0025, 0.009, 0.005
+"""Radii of the sole's edge (for a NAO), and of lines, points and arrows [m]."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Parts:
-    """Capsules that a link carries, in its own frame."""
+class LinkCapsules(NamedTuple):
+    """Capsules that a link carries, in its own frame.
+
+    Attributes:
+      link: its name.
+      start_m, end_m: (n, 3) ends of their axes [m].
+      radius_m: (n,) [m].
+      colour: (n, 3) red, green, blue from 0 to 255.
+    """
 
     link: str
     start_m: FloatArray
@@ -38,7 +48,11 @@ class _Parts:
 
 
 class SceneCamera:
-    """A camera that goes beside a scene's robot, and sees it as large as any other."""
+    """A camera that follows a scene's robot, and shows every robot equally large.
+
+    Attributes:
+      parts: the robot's shapes, by link.
+    """
 
     def __init__(
         self,
@@ -47,18 +61,18 @@ class SceneCamera:
         size_px: tuple[int, int],
         with_balance: bool = False,
     ) -> None:
-        """Choose where to look from at every tick.
+        """Choose where to look from at each tick.
 
         Args:
           scene: whose recording has all joints.
           accent: the colour of this robot.
           size_px: width and height of the pictures.
-          with_balance: draw the forces at the feet, the support polygon, the ZMP, the
-            centre of mass and its way, too.
+          with_balance: also draw the forces at the feet, the support polygon, the
+            ZMP, the centre of mass and its way.
         """
         self._scene, self._size_px = scene, size_px
         self._poses = scene.link_poses()
-        self._parts = _parts(scene, accent)
+        self.parts = _parts(scene, accent)
         found = balance(scene)
         self._balance = found if with_balance else None
         self._size = scene.description.scale.length
@@ -66,11 +80,11 @@ class SceneCamera:
         self._target_m = _steadied(middle_m, scene.recording.time_s)
 
     def picture(self, tick: int) -> Image:
-        """What is seen at a tick; a robot of which a value is missing is left out."""
+        """The picture at a tick; links whose pose is not known then are left out."""
         target_m = self._target_m[tick]
         eye_m = target_m + np.array(_EYE_M) * self._size
         camera = Camera(tuple(eye_m), tuple(target_m), self._size_px, _VIEW_RAD)
-        groups = [self._placed(part, tick) for part in self._parts]
+        groups = [self._placed(part, tick) for part in self.parts]
         if self._balance is not None:
             groups += self._marks(self._balance, tick)
         rounds = Rounds(
@@ -78,14 +92,14 @@ class SceneCamera:
         )
         return camera.picture(rounds, self._scene.ground)
 
-    def _placed(self, part: _Parts, tick: int) -> Rounds:
+    def _placed(self, part: LinkCapsules, tick: int) -> Rounds:
         pose = self._poses[part.link].at(tick)
         start_m, end_m = (pose.points(ends)[0] for ends in (part.start_m, part.end_m))
         dull = np.zeros(len(start_m), bool)
         return Rounds(start_m, end_m, part.radius_m, part.colour, dull)
 
     def _marks(self, found: Balance, tick: int) -> list[Rounds]:
-        """Forces, and what lies on the ground, in colours that glow."""
+        """Forces, and marks on the ground, in colours that no light changes."""
         way_m = found.centre_of_mass_m[: tick + 1 : 3]
         marks = [_line(way_m, _LINE_M, colours.MASS)]
         points = (
@@ -122,11 +136,11 @@ class SceneCamera:
         return [_glowing(start_m, end_m, _ARROW_M, colours.FORCE)]
 
 
-def _parts(scene: Scene, accent: colours.Colour) -> list[_Parts]:
-    """The shapes of all links, and the rims of the soles."""
+def _parts(scene: Scene, accent: colours.Colour) -> list[LinkCapsules]:
+    """The shapes of all links, and the soles."""
     robot = scene.description
     parts = [
-        _Parts(
+        LinkCapsules(
             link.name,
             np.array([shape.start_m for shape in link.shapes]),
             np.array([shape.end_m for shape in link.shapes]),
@@ -137,15 +151,38 @@ def _parts(scene: Scene, accent: colours.Colour) -> list[_Parts]:
         if link.shapes
     ]
     for foot in robot.feet:
-        rim_m = sole_rim(foot) + np.array([0.0, 0.0, _SOLE_M])
-        # Once around, and from side to side.
-        start_m = np.vstack([rim_m[:-1], rim_m[1:]])
-        end_m = np.vstack([rim_m[1:], rim_m[-2::-1]])
-        colour = np.tile(np.array(accent, float), (len(start_m), 1))
-        radius_m = np.full(len(start_m), _SOLE_M)
         name = robot.links[foot.joint].link.name
-        parts.append(_Parts(name, start_m, end_m, radius_m, colour))
+        parts.append(_sole(name, foot, _SOLE_M * robot.scale.length, accent))
     return parts
+
+
+def _sole(
+    link: str, foot: Foot, radius_m: float, colour: colours.Colour
+) -> LinkCapsules:
+    """A sole as a plate: capsules around its rim, and side by side across it."""
+    outline_m = foot.outline_m
+    low_m, high_m = outline_m[:, 0].min(), outline_m[:, 0].max()
+    bars = max(int((high_m - low_m) / (1.5 * radius_m)), 1)
+    x_m = np.linspace(low_m, high_m, bars + 2)[1:-1, np.newaxis]
+    (x0, y0), (x1, y1) = outline_m.T, np.roll(outline_m, -1, axis=0).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = (x_m - x0) / (x1 - x0)
+    # Where each bar's line meets an edge of the outline, which is convex.
+    y_m = np.where((part >= 0) & (part <= 1), y0 + part * (y1 - y0), np.nan)
+    sides = [
+        np.hstack([x_m, pick(y_m, axis=1)[:, np.newaxis]])
+        for pick in (np.nanmin, np.nanmax)
+    ]
+    start_m = np.vstack([outline_m, sides[0]])
+    end_m = np.vstack([np.roll(outline_m, -1, axis=0), sides[1]])
+    height_m = np.full((len(start_m), 1), foot.sole_height_m + radius_m)
+    return LinkCapsules(
+        link,
+        np.hstack([start_m, height_m]),
+        np.hstack([end_m, height_m]),
+        np.full(len(start_m), radius_m),
+        np.tile(np.array(colour, float), (len(start_m), 1)),
+    )
 
 
 def _glowing(
@@ -162,7 +199,7 @@ def _line(points_m: FloatArray, radius_m: float, colour: colours.Colour) -> Roun
 
 
 def _steadied(place_m: FloatArray, time_s: FloatArray) -> FloatArray:
-    """(ticks, 3) places without what is faster than the camera; gaps are bridged."""
+    """(ticks, 3) smoothed places [m]; missing ones are interpolated."""
     known = np.flatnonzero(np.isfinite(place_m).all(axis=1))
     if not known.size:
         return np.zeros_like(place_m)

@@ -61,11 +61,43 @@ def test_courses_and_errors_are_as_given(file):
     course = numbers(file, f"{KNEE}/course").reshape(-1, 3)
     np.testing.assert_array_equal(course, np.stack([real, sim, corrected], axis=1))
     error = numbers(file, f"{KNEE}/error").reshape(-1, 2)
-    np.testing.assert_array_equal(error, np.stack([sim - real, corrected - real], 1))
+    in_mrad = 1e3 * np.stack([sim - real, corrected - real], 1)
+    np.testing.assert_array_equal(error, in_mrad)
     names = column(file, f"{KNEE}/error", "SeriesLines:names").flatten().to_pylist()
     assert names == ["sim", "corrected"]
     times_ns = column(file, f"{KNEE}/error", "sim_time").cast("int64").to_numpy()
     np.testing.assert_array_equal(times_ns, np.rint(SHORT.time_s * 1e9))
+
+
+def labels(path, name):
+    """Texts of one kind in the layout, such as names of tabs or of plots."""
+    (layout,) = RrdReader(path).blueprints()
+    batches = [
+        chunk.to_record_batch()
+        for chunk in RrdReader(path).stream(store=layout).to_chunks()
+    ]
+    found = [batch.column(name) for batch in batches if name in batch.schema.names]
+    return [text for cells in found for text in cells.flatten().to_pylist()]
+
+
+def test_tabs_name_recording_and_quantity_and_plots_their_unit(file):
+    tabs = labels(file, "ContainerBlueprint:display_name")
+    for recording in ("air_multisine_1", "air steps[1-2 s]"):
+        assert f"{recording}: position 1 to 4" in tabs
+        assert f"{recording}: position 13 to 15" in tabs
+    plots = labels(file, "ViewBlueprint:display_name")
+    assert f"{made_up.WORST} [rad]" in plots
+    assert "error [mrad]" in plots
+
+
+def test_times_count_from_the_start_of_the_held_out_part(tmp_path):
+    """The time cursor opens at 0, where there would be nothing to see."""
+    path = tmp_path / "late.rrd"
+    late = dataclasses.replace(SHORT, time_s=SHORT.time_s + 7.65)
+    write_overlay(path, [late], made_up.EFFECTS.fit, robots.get("nao"))
+    for entity in (f"{KNEE}/error", "/real/joints/LKneePitch/position"):
+        times_ns = column(path, entity, "sim_time").cast("int64").to_numpy()
+        assert times_ns[0] == 0
 
 
 def test_every_channel_of_every_recording_is_there(file):

@@ -4,9 +4,8 @@ import pytest
 from groundwalk.errors import BadValueError
 from terrain import Heightfield
 from worlds.scenes.camera import Camera
-from worlds.scenes.camera_rounds import Rounds, distances
-from worlds.scenes.camera_shadow import SUN, in_sun
 from worlds.scenes.colours import GRASS, SKY
+from worlds.scenes.rays import SUN, Rounds, distances, in_sun
 
 RED, BLUE = (220.0, 20.0, 20.0), (20.0, 20.0, 220.0)
 FLAT = Heightfield(np.zeros((3, 3)), (-1.0, -1.0), 1.0)

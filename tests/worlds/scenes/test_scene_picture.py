@@ -5,6 +5,7 @@ from rrd_files import scene, walk_columns
 from terrain import make
 from worlds.scenes import colours
 from worlds.scenes.picture import SceneCamera
+from worlds.scenes.rays import axis_part
 
 BLUE = (20, 60, 230)
 SIZE_PX = (90, 80)
@@ -62,3 +63,28 @@ def test_of_a_tick_with_a_missing_value_the_rest_is_drawn():
     part, whole = (blueish(camera.picture(tick)).sum() for tick in (5, 6))
     assert 0 < part < whole
     assert (camera.picture(9) == colours.SKY).all()
+
+
+def test_a_sole_is_a_plate_without_holes():
+    """Seen from above, every point of the outline is covered in the robot's colour."""
+    columns = walk_columns()
+    robot = scene(columns=columns)
+    camera = SceneCamera(robot, BLUE, SIZE_PX)
+    for foot in robot.description.feet:
+        link = robot.description.links[foot.joint].link.name
+        bars = [
+            (start, end, radius)
+            for part in camera.parts
+            if part.link == link
+            for start, end, radius, colour in zip(*part[1:], strict=True)
+            if tuple(colour) == BLUE
+        ]
+        start, end, radius = (np.array(column) for column in zip(*bars, strict=True))
+        middle = foot.outline_m.mean(axis=0)
+        for share in (0.0, 0.3, 0.6, 0.9):
+            places = middle + share * (foot.outline_m - middle)
+            for place in places:
+                spot = np.tile(place, (len(start), 1))
+                along = axis_part(spot, start[:, :2], end[:, :2])
+                axis = start[:, :2] + along * (end - start)[:, :2]
+                assert (np.linalg.norm(spot - axis, axis=1) <= radius).any()
