@@ -72,7 +72,7 @@ def main(config: Evaluate) -> None:
     for world in config.worlds:
         if world in result:
             continue
-        seed = np.random.SeedSequence([config.seed, sorted(worlds.WORLDS).index(world)])
+        seed = np.random.SeedSequence([config.seed, worlds.kind(world).seed_key])
         outcomes = evaluate(config.study(world), robots.get(config.robot), gaits, seed)
         result[world] = keep(folder, world, outcomes)
         folder.write_json(RESULT, result)

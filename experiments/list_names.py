@@ -1,4 +1,4 @@
-"""`groundwalk list`: the robots, terrains and gaits that there are."""
+"""`groundwalk list`: the robots, terrains, gaits and hidden effects that there are."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ from terrain.bounds import Parameter
 from terrain.catalog import FAMILIES
 from terrain.ground import Ground
 from walk_engine import PARAMETERS, gaits
+from worlds.hidden import KINDS
 
 UNITS = {"_rad": "rad", "_per_m2": "1/m2", "_m": "m"}
 """By the ends of parameter names."""
@@ -67,18 +68,37 @@ def gait_table() -> Table:
     return ["parameter", "unit", *named, "from", "to", "what it does"], rows
 
 
-TABLES = {"robots": robot_table, "terrains": terrain_table, "gaits": gait_table}
+def effect_table() -> Table:
+    """Every kind of hidden effect, where it may be, and its parameters."""
+    rows = []
+    for name, kind in KINDS.items():
+        rows.append([name, f"@{kind.place}", "", "", _summary(type(kind))])
+        for quantity in kind.quantities:
+            optional = "" if quantity.default is None else "optional"
+            values = [quantity.name, quantity.unit, quantity.range_text]
+            rows.append(["", *values, optional])
+    return ["effect", "where, with", "unit", "values", "what it is"], rows
+
+
+TABLES = {
+    "robots": robot_table,
+    "terrains": terrain_table,
+    "gaits": gait_table,
+    "effects": effect_table,
+}
 
 
 @dataclass(frozen=True)
 class List:
-    """Say what robots, terrains or gaits there are, and their parameters.
+    """Say what robots, terrains, gaits or hidden effects there are.
 
     A terrain is given as its name, or with parameters as in
-    lumps:amplitude_m=0.012,x_range_m=-1:8; a gait as its name or as a JSON file.
+    lumps:amplitude_m=0.012,x_range_m=-1:8; a gait as its name or as a JSON file; a
+    hidden effect with the name of a joint or body and all its parameters, as in
+    backlash@LKneePitch:gap=0.02. Places other than joint and body need not be given.
 
     Attributes:
-      kind: robots, terrains or gaits.
+      kind: robots, terrains, gaits or effects.
     """
 
     kind: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="KIND")]

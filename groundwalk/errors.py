@@ -8,6 +8,10 @@ was misspelt, the nearest one that exists. The command line turns every
 import difflib
 from collections.abc import Iterable
 
+_LEAST_LIKENESS = 0.5
+"""Share of equal letters (`difflib`'s ratio) from which on a name is suggested. Typing
+errors give more than 0.8; insensitive between 0.4 and 0.6."""
+
 
 class GroundwalkError(Exception):
     """Something that the caller gave cannot be used; the message says what."""
@@ -25,13 +29,38 @@ class UnknownNameError(GroundwalkError):
           known: every name that would have been right.
         """
         names = sorted(known)
-        close = difflib.get_close_matches(str(name).lower(), names, n=1, cutoff=0.5)
-        nearest = f"did you mean {close[0]!r}? " if close else ""
+        close = nearest_name(str(name), names)
+        nearest = "" if close is None else f"did you mean {close!r}? "
         super().__init__(
             f"unknown {kind} {name!r}: {nearest}known are {', '.join(names)}"
         )
         self.name = name
         self.known = names
+
+
+def nearest_name(name: str, known: Iterable[str]) -> str | None:
+    """The known name that resembles a name most; None if none is like it.
+
+    Capital letters do not count, unless two names resemble it alike.
+
+    Args:
+      name: as it was given.
+      known: names that exist.
+
+    Example:
+      >>> nearest_name("LKnePitch", ["RKneePitch", "LKneePitch"])
+      'LKneePitch'
+    """
+
+    def likeness(other: str) -> tuple[float, float]:
+        pairs = ((name.lower(), other.lower()), (name, other))
+        loose, exact = (difflib.SequenceMatcher(None, *pair).ratio() for pair in pairs)
+        return loose, exact
+
+    close = max(known, key=likeness, default=None)
+    if close is None or likeness(close)[0] < _LEAST_LIKENESS:
+        return None
+    return close
 
 
 class BadValueError(GroundwalkError):

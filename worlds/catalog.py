@@ -20,17 +20,29 @@ REAL_LATENCY_S = 0.036
 
 @dataclass(frozen=True)
 class WorldKind:
-    """A world's class, and how it is set up by default."""
+    """A world's class, and how it is set up by default.
+
+    Attributes:
+      world: the class.
+      options: how it computes by default.
+      terrain: name of the terrain that its robots stand on by default.
+      seed_key: what an evaluation's seed is combined with, so that worlds draw
+        different random numbers. It is the world's own and never changes.
+    """
 
     world: type[RolloutWorld]
     options: WorldOptions
     terrain: str
+    seed_key: int
 
 
 WORLDS = {
-    "sim": WorldKind(SimWorld, WorldOptions(), "flat"),
+    "sim": WorldKind(SimWorld, WorldOptions(), "flat", seed_key=1),
     "real": WorldKind(
-        RealWorld, WorldOptions(latency_s=REAL_LATENCY_S, noise=SensorNoise()), "lumps"
+        RealWorld,
+        WorldOptions(latency_s=REAL_LATENCY_S, noise=SensorNoise()),
+        "lumps",
+        seed_key=0,
     ),
 }
 

@@ -6,6 +6,7 @@ import pytest
 import terrain
 from experiments.list_names import TABLES, List, main
 from groundwalk.errors import UnknownNameError
+from worlds.hidden import KINDS, Hidden
 
 
 def rows_of(kind):
@@ -51,6 +52,34 @@ def test_defaults_can_be_typed_as_they_are_shown():
             terrain.parse(f"{family}:{row['parameter']}={row['default']}")
             tried += 1
     assert tried == 3 + 2 + 2 + 3 + 3 + 5
+
+
+def test_every_hidden_effect_is_there_with_its_place_and_its_parameters():
+    rows = rows_of("effects")
+    names = [row["effect"] for row in rows if row["effect"]]
+    assert names == list(KINDS)
+    start = names.index("backlash")
+    first = next(i for i, row in enumerate(rows) if row["effect"] == names[start])
+    assert rows[first]["where, with"] == "@joint"
+    assert "Play" in rows[first]["what it is"]
+    gap = rows[first + 1]
+    assert gap["where, with"] == "gap"
+    assert (gap["unit"], gap["values"]) == ("rad", "0 to 0.5")
+
+
+def test_a_hidden_effect_can_be_typed_as_the_list_says():
+    typed: dict[str, list[str]] = {}
+    for row in rows_of("effects"):
+        where = row["where, with"]
+        if row["effect"]:
+            name = f"{row['effect']}{where}"
+            typed[name] = []
+        else:
+            low = row["values"].split()[0].replace("any", "0")
+            typed[name].append(f"{where}={low}")
+    for name, values in typed.items():
+        text = f"{name}:{','.join(values)}"
+        assert Hidden.parse(text).to_text() == text
 
 
 def test_gaits():

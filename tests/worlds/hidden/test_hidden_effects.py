@@ -36,6 +36,31 @@ def test_a_wrong_name_brings_the_right_one():
         Hidden.parse("backlsh@knee:gap=1")
 
 
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("backlash@LKneePitch:gap=3", r"gap is 3 rad; sensible values are 0 to 0\.5"),
+        ("viscous_friction@LKneePitch:coefficient=-1", "0 or more"),
+        ("servo_gain@LKneePitch:factor=80", "0 to 10"),
+    ],
+)
+def test_sizes_that_make_no_sense_are_refused_with_those_that_do(text, message):
+    with pytest.raises(BadValueError, match=message):
+        Hidden.parse(text)
+
+
+def test_the_order_from_which_cases_are_drawn_is_fixed():
+    """Another order would draw other cases from the same seed."""
+    ranks = [kind.rank for kind in KINDS.values()]
+    assert ranks[:30] == list(range(1, 31))
+    assert list(KINDS)[:3] == [
+        "viscous_friction",
+        "coulomb_friction",
+        "stribeck_friction",
+    ]
+    assert list(KINDS)[29] == "periodic_torque"
+
+
 def test_every_effect_of_the_library_is_there_and_some_that_are_not():
     inside = [name for name, kind in KINDS.items() if not kind.outside]
     assert len(inside) == 26

@@ -99,7 +99,7 @@ class StribeckFriction(HiddenKind):
     quantities = (
         Quantity("coulomb_torque", "N m", 0.0),
         Quantity("extra_torque", "N m", 0.0),
-        Quantity("speed", "rad/s", 0.0),
+        Quantity("speed", "rad/s", 1e-6),
     )
     needs_motion = True
 

@@ -71,8 +71,8 @@ class GroundSlope(HiddenKind):
     rank = 23
     place = "world"
     quantities = (
-        Quantity("pitch", "rad", -math.pi, math.pi),
-        Quantity("roll", "rad", -math.pi, math.pi),
+        Quantity("pitch", "rad", -1.5, 1.5),
+        Quantity("roll", "rad", -1.5, 1.5),
     )
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:

@@ -50,7 +50,7 @@ class JointSpring(HiddenKind):
     rank = 18
     quantities = (
         Quantity("stiffness", "N m/rad", 0.0),
-        Quantity("rest", "rad", -2 * math.pi, 2 * math.pi),
+        Quantity("rest", "rad", -6.3, 6.3),
     )
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:

@@ -54,12 +54,12 @@ class Quantity:
 
     @property
     def range_text(self) -> str:
-        """The sensible range in words, such as "from 0 to 0.5 rad"."""
-        if math.isinf(self.low) and math.isinf(self.high):
-            return "any number"
+        """The sensible range in words, such as "0 to 0.5"."""
+        if math.isinf(self.low):
+            return "any"
         if math.isinf(self.high):
-            return f"at least {self.low:g} {self.unit}"
-        return f"from {self.low:g} to {self.high:g} {self.unit}"
+            return f"{self.low:g} or more"
+        return f"{self.low:g} to {self.high:g}"
 
 
 @dataclass(frozen=True)

@@ -47,8 +47,8 @@ class LugreHysteresis(HiddenKind):
     name = "lugre_hysteresis"
     rank = 27
     quantities = (
-        Quantity("torque", "N m", 1e-9),
-        Quantity("stiffness", "N m/rad", 1e-9),
+        Quantity("torque", "N m", 1e-6),
+        Quantity("stiffness", "N m/rad", 1e-6),
     )
     outside = True
 

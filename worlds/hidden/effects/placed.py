@@ -75,8 +75,8 @@ class Hidden:
         quantity = self.kind.parameters[name]
         if not quantity.low <= value <= quantity.high:
             raise BadValueError(
-                f"{self.name}: {name} is {value:g} {quantity.unit}; it must be "
-                f"{quantity.range_text}"
+                f"{self.name}: {name} is {value:g} {quantity.unit}; sensible values "
+                f"are {quantity.range_text}"
             )
 
     @property
