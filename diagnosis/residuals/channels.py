@@ -1,4 +1,4 @@
-"""The measured quantities that predictions are held against."""
+"""The measured quantities (channels) that predictions are compared with."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,33 +13,39 @@ from diagnosis.traces.windows import continuous
 from groundwalk.arrays import FloatArray
 
 LEAST_NOISE_RAD = 3e-4
-"""What encoders and clocks spoil at least; below it is the sims' own business."""
+"""Noise floor for positions and angles [rad]: encoders and clocks are not better, and
+smaller differences are errors of the simulator."""
 
-LEAST_RATE_RAD_S, LEAST_NOISE_M = 1e-3, 2e-4
+LEAST_RATE_RAD_S = 1e-3
+"""Noise floor for the gyroscope [rad/s]."""
+
+LEAST_NOISE_M = 2e-4
+"""Noise floor for the position of a floating base [m]."""
 
 LEAST_TORQUE = 0.02
-"""Of the torques that are measured: so well are a motor's constants known."""
+"""Noise floor for measured torques, as a share of their rms: the accuracy to which the
+constants of a motor are known."""
 
 
 @dataclass(frozen=True, eq=False)
 class Channels:
-    """The measured quantities that predictions are held against, c of them.
+    """The measured quantities that predictions are compared with, c of them.
 
     Attributes:
-      names: such as "position.LKneePitch".
-      noise: (c,) standard deviation, in the channel's unit.
+      names: for example "position.LKneePitch".
+      noise: (c,) standard deviation of the noise in each channel's unit.
     """
 
     names: tuple[str, ...]
     noise: FloatArray
 
     def of_joint(self, joint: str) -> list[int]:
-        """Indices of a joint's own channels."""
+        """Indices of the channels that belong to a joint."""
         return [i for i, name in enumerate(self.names) if name.endswith(f".{joint}")]
 
 
 def channel_unit(plant: Plant, name: str) -> str:
-    """The unit of a channel, SI and radians."""
+    """The unit of a channel: "rad", "rad/s", "N m", or "m" and "N" where it slides."""
     if name.startswith("base.position"):
         return "m"
     kind, _, joint = name.partition(".")
@@ -48,7 +54,12 @@ def channel_unit(plant: Plant, name: str) -> str:
 
 
 def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
-    """All that the traces measured and replays predict."""
+    """The channels that all recordings measured and replays can predict.
+
+    Args:
+      plant: nominal robot model.
+      traces: recordings; their noise is estimated, with a floor for each kind of sensor.
+    """
     names = [f"position.{joint}" for joint in plant.joints]
     least = [LEAST_NOISE_RAD] * len(names)
     if all(trace.torque_nm is not None and not trace.unheld for trace in traces):
@@ -68,18 +79,19 @@ def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
 
 
 def _torques(traces: Sequence[Trace]) -> FloatArray:
-    """(j,) rms of the measured torques."""
+    """(j,) rms of the measured torques [N m]."""
     every = np.concatenate([t.torque_nm for t in traces if t.torque_nm is not None])
     return np.asarray(np.sqrt(np.nanmean(every**2, axis=0)))
 
 
 def _noise(trace: Trace, channels: Channels) -> FloatArray:
+    """(c,) standard deviation of the noise in each channel of a recording."""
     measured = measured_of(trace, channels)
     return np.array([noise_of(trace.time_s, column).total for column in measured.T])
 
 
 def measured_of(trace: Trace, channels: Channels) -> FloatArray:
-    """(T, c) what a trace measured."""
+    """(T, c) the values of the channels that a recording measured."""
     parts = [trace.position_rad]
     if any(name.startswith("torque.") for name in channels.names):
         assert trace.torque_nm is not None
@@ -95,7 +107,7 @@ def measured_of(trace: Trace, channels: Channels) -> FloatArray:
 
 
 def stacked(result: Replayed, channels: Channels) -> FloatArray:
-    """(n, rows, c) what a replay predicts."""
+    """(n, rows, c) the values of the channels that a replay predicts."""
     parts = [result.position_rad]
     if any(name.startswith("torque.") for name in channels.names):
         parts.append(result.servo_nm)
@@ -108,7 +120,11 @@ def stacked(result: Replayed, channels: Channels) -> FloatArray:
 
 
 def angles_rad(quaternion: FloatArray) -> FloatArray:
-    """(..., 3) roll, pitch and yaw of (..., 4) rotations: z, then y, then x."""
+    """(..., 3) roll, pitch and yaw [rad] of (..., 4) quaternions (w, x, y, z).
+
+    The rotation is yaw about z, then pitch about the new y, then roll about the new x.
+    Not SciPy's `Rotation.as_euler`, whose last digits differ.
+    """
     w, x, y, z = np.moveaxis(quaternion, -1, 0)
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1, 1))

@@ -1,4 +1,4 @@
-"""The data of one diagnosis: what is fitted to, selected by, and kept for the end."""
+"""The data of one diagnosis: fitting, selection and held-out data."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,32 +14,33 @@ from diagnosis.verdict.verdict import Recordings
 from groundwalk.errors import BadRecordingError
 
 TOO_SHORT = (
-    "the recordings are too short: a part for fitting, selecting or testing ends "
-    "before its start state is forgotten"
+    "the recordings are too short: a part for fitting, selecting or testing is shorter "
+    "than the time in which the influence of its start state fades"
 )
 
 FIT_S, SELECT_S, TEST_S = 40.0, 20.0, 40.0
-"""So much of the recordings is replayed."""
+"""Most seconds of fitting, selection and held-out data: more would hardly improve the
+answer, but replays would take longer."""
 
 FLOATING_S = 3.0, 3.0, 6.0
-"""Likewise of a robot on its feet, where contacts take their time."""
+"""The same limits [s] for a floating base, whose contacts take long to simulate."""
 
 
 MOST_WRONG = 0.25
-"""Rms [noise] that replays may be wrong by, besides what their calibration takes out:
-more of it would show up as physics."""
+"""Largest rms [noise] of the integration error that calibration leaves; a larger error
+would be mistaken for missing physics."""
 
 
 @dataclass(frozen=True, eq=False)
 class DataSets:
-    """Predictors of the parts of some recordings, calibrated at the plant alone.
+    """Predictors of the parts of recordings, calibrated at the nominal model.
 
     Attributes:
-      parts: of the recordings.
-      fit: of the data that values are fitted to.
-      select: of those that decide between models.
-      learned: of both.
-      test: of those that are looked at once, at the end.
+      parts: the parts of the recordings.
+      fit: predictor of the data that values are fitted to.
+      select: predictor of the data that decide between models.
+      learned: predictor of fitting and selection data together.
+      test: predictor of the held-out data, which are used once, at the end.
     """
 
     parts: Split
@@ -59,15 +60,15 @@ class DataSets:
         threads: int,
         on_replay: Callable[[int], None] | None = None,
     ) -> "DataSets":
-        """Split traces, and calibrate.
+        """Split recordings, shorten the parts and calibrate their predictors.
 
         Args:
-          plant: nominal.
-          traces: of the robot.
-          channels: with their noise.
+          plant: nominal robot model.
+          traces: recordings of the robot.
+          channels: the quantities to compare, with their noise.
           noise: model errors known from reference recordings; none where None.
-          threads: of the replays.
-          on_replay: see `Predictor`.
+          threads: processor threads of the replays.
+          on_replay: called after each batch; see `Predictor`.
 
         Raises:
           BadRecordingError: the traces are too short.
@@ -98,19 +99,19 @@ class DataSets:
         return evidence
 
     def calibrated(self, model: Model) -> tuple[Predictor, Predictor]:
-        """Predictors of the data learned from and of the test data, for a model."""
+        """Predictors of the learned and of the held-out data, calibrated at a model."""
         whole = _exact(self._whole, model) if model else self._whole
         last = len(self.learned.traces)
         return whole.part(0, last), whole.part(last, len(whole.traces))
 
     def recordings(self) -> Recordings:
-        """Which recordings were used for what."""
+        """Names of the recordings that were fitted, selected by and held out."""
         parts = self.parts
         return Recordings(_names(parts.fit), _names(parts.select), _names(parts.test))
 
 
 def _exact(whole: Predictor, model: Model = ()) -> Predictor:
-    """Calibrated at a model, with shorter steps if these are too wrong."""
+    """A predictor calibrated at a model, with the longest time step that is accurate."""
     for step_s in STEPS_S[whole.plant.base]:
         if step_s < whole.step_s:
             whole = whole.stepped(step_s)
@@ -120,7 +121,12 @@ def _exact(whole: Predictor, model: Model = ()) -> Predictor:
 
 
 def affordable(plant: Plant, parts: Split) -> Split:
-    """The parts, cut down to what the search can replay some hundred times."""
+    """The parts of recordings, shortened so that a search can replay them often.
+
+    Args:
+      plant: nominal robot model; with a floating base the limits are lower.
+      parts: of any length.
+    """
     floats = plant.base == "floating"
     longest_s = FLOATING_S if floats else (FIT_S, SELECT_S, TEST_S)
     least_s = LEAST_FLOATING_S if floats else LEAST_S

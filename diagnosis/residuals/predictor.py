@@ -1,4 +1,4 @@
-"""What models of a plant predict, and how far that is from what was measured."""
+"""Replays models of a robot on recordings, and returns their residuals."""
 
 from collections.abc import Callable, Sequence
 
@@ -25,29 +25,45 @@ from diagnosis.traces.windows import is_left_over, runs_of, window_s
 from groundwalk.arrays import BoolArray, FloatArray
 
 Model = tuple[PlacedEffect, ...]
-"""The plant with these effects; empty for the plant as it is."""
+"""The nominal robot model plus these effects; an empty tuple adds nothing."""
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
-"""Of replays, by the plant's base; the shorter ones where the longest is too wrong."""
+"""Time steps of replays [s] by the kind of base, from the longest to the shortest; a
+shorter one is used where the integration error of the longer one is too large."""
 
 WARM_UP_S = 0.4
-"""Not scored: the start state is known to the sensors' noise only."""
+"""The first seconds of a recording that are not scored, because its start state is only
+known up to sensor noise."""
 
 BLOCK_S = 0.5
-"""Errors within a block may be alike, those of different blocks are not."""
+"""Length [s] of the time blocks between which errors count as independent; within a
+block they may be correlated."""
 
 MOST_ROWS = 192
-"""Simulations in one batch."""
+"""Most simulations in one batch. More would need more memory and save no time."""
 
 WORST = 1e4
+"""Largest residual [noise]; a replay that diverges gets it in every row."""
 
 
 class Predictor:
-    """Replays models on traces, with the integrator's error taken out.
+    """Replays models on traces and corrects the integration error of the replays.
 
-    Replays at a coarse step are wrong by something smooth that hardly depends on the
-    model. Its size is found once, with finer steps and Richardson's extrapolation
-    (first order: twice the finer less the coarser), and added to every replay since.
+    The integration error of a coarse time step is smooth and hardly depends on the
+    model. `calibrate` measures it once with finer steps and Richardson extrapolation
+    (first order: twice the finer result minus the coarser one); it is then added to
+    every replay.
+
+    Attributes:
+      plant: nominal robot model.
+      traces: the recordings that are replayed.
+      channels: the quantities that are compared, c of them, with their noise.
+      step_s: time step of the replays [s].
+      blocks: rows of all traces in blocks of 0.3 s, as reference noise uses them.
+      channel: (N,) index of the channel of each entry of a residual.
+      trace: (N,) index of the trace of each entry.
+      block: (N,) number of the time block of each entry, for standard errors.
+      scored: (N,) whether the entry counts; others are always 0.
     """
 
     def __init__(
@@ -60,14 +76,15 @@ class Predictor:
         noise: ReferenceNoise | None = None,
         on_replay: Callable[[int], None] | None = None,
     ) -> None:
-        """Find the states that the traces start from.
+        """Estimate the states that the traces start from.
 
         Args:
-          plant: nominal.
-          traces: to be predicted, all with the same channels.
-          channels: with their noise; measured on the traces where None.
-          step_s: of the coarse replays; the longest of `STEPS_S` where None.
-          threads: of every batch.
+          plant: nominal robot model.
+          traces: recordings to replay, all with the same channels.
+          channels: the quantities to compare with their noise; estimated from the
+            traces where None.
+          step_s: time step [s] of the replays; the longest of `STEPS_S` where None.
+          threads: processor threads of each batch.
           noise: model errors known from reference recordings; none where None.
           on_replay: called after each batch with the number of its replays, counted as
             replays of all traces at the step `step_s`.
@@ -104,7 +121,7 @@ class Predictor:
         self.block = block
 
     def part(self, first: int, last: int) -> "Predictor":
-        """Of traces `first` to `last - 1` only, as well calibrated."""
+        """A predictor of traces `first` to `last - 1`, with the same calibration."""
         some = Predictor(
             self.plant,
             self.traces[first:last],
@@ -124,7 +141,7 @@ class Predictor:
         return some
 
     def stepped(self, step_s: float) -> "Predictor":
-        """Of the same traces in steps of another length; not calibrated."""
+        """A predictor of the same traces with another time step [s], not calibrated."""
         return Predictor(
             self.plant,
             self.traces,
@@ -136,9 +153,14 @@ class Predictor:
         )
 
     def calibrate(self, model: Model = ()) -> float:
-        """Measure the integrator's error at a model; the rms [noise] that is left.
+        """Measure the integration error and the effect of wrong start states at a model.
 
-        So is what wrong starts change. What blows up is as wrong as anything can be.
+        Args:
+          model: effects with values; a replay that diverges counts with the largest
+            error, `WORST`.
+
+        Returns:
+          Rms [noise] of the integration error that the correction leaves.
         """
         coarse, fine, finer = (
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
@@ -146,13 +168,14 @@ class Predictor:
         self._correction = 2 * finer - fine - coarse
         self._fine_correction = 2 * (finer - fine)
         self._doubt = self._start_doubt(model)
-        # of the first order, twice the finer less the fine is left with the second
+        # what remains after the extrapolation is the error of second order
         left = (finer - fine) - (fine - coarse) / 2
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
         return float(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2)))
 
     def _start_doubt(self, model: Model) -> StartUncertainty | None:
-        # a window's wrong start is in what the windows of the reference get wrong
+        """How wrong start states change the replays; None where noise includes it."""
+        # with a floating base the reference noise contains the errors of wrong starts
         if self._noise is not None and self.plant.base == "floating":
             return None
         runs, models = nudged(self._runs), [self._given(model)]
@@ -175,11 +198,11 @@ class Predictor:
         return StartUncertainty(changes, ends.tolist())
 
     def _given(self, model: Model) -> Model:
-        """With what is wrong when all is well."""
+        """The model together with the effects that the reference shows."""
         return (*self._noise.model, *model) if self._noise else model
 
     def _warming(self) -> BoolArray:
-        """Rows that are not scored: of whole traces a while, of windows their first."""
+        """(rows,) rows that are not scored: the first seconds, or a window's first row."""
         flags = []
         for run in self._runs:
             since_s = run.trace.time_s - run.trace.time_s[0]
@@ -189,14 +212,17 @@ class Predictor:
         return np.concatenate(flags)
 
     def measured(self, index: int) -> FloatArray:
-        """(T, c) what a trace measured."""
+        """(T, c) measured values of the trace with this index."""
         return measured_of(self.traces[index], self.channels)
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c), the traces' rows one after another.
+        """(n, rows, c) predicted values, the rows of all traces one after another.
 
-        Models with a spring between motor and link take half the step: what it stores
-        and gives back is lost in a step that its motor swings in.
+        Models with a spring between motor and link are replayed with half the time step:
+        their motor oscillates too fast for the full one.
+
+        Args:
+          models: n models.
         """
         stiff = [any(effect(placed.name).stiff for placed in one) for one in models]
         predicted = np.empty((len(models), *self._correction.shape))
@@ -211,22 +237,27 @@ class Predictor:
         return predicted
 
     def exact(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c), each with the integrator's error as it is at that model.
+        """(n, rows, c) predictions, each with the integration error of its own model.
 
-        For six times the work of `predict`: what is implicit in one model, such as a
-        damping, may be explicit in the next, and their errors differ.
+        Takes six times as long as `predict`. It matters where models of the same
+        physics are integrated differently, such as a damping that MuJoCo treats
+        implicitly and an equal force that it treats explicitly.
+
+        Args:
+          models: n models.
         """
         fine, finer = (self._replayed(models, self.step_s / part) for part in (2, 4))
         return 2 * finer - fine
 
     def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
-        """(n, N) measured less predicted, in units of noise; 0 where not scored.
+        """(n, N) measured minus predicted values in units of noise; 0 where not scored.
 
-        What blew up is as wrong as anything can be.
+        Wrong start states and reference noise are taken out. A replay that diverges
+        gets the largest residual, `WORST`.
 
         Args:
-          models: the effects.
-          exactly: as `exact` predicts them, and not as `predict` does.
+          models: n models.
+          exactly: predict with `exact` instead of `predict`.
         """
         predicted = self.exact(models) if exactly else self.predict(models)
         wrong = (self._measured - predicted) / self.channels.noise
@@ -239,6 +270,7 @@ class Predictor:
         return wrong.reshape(len(models), -1)
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
+        """(n, rows, c) replays without corrections, each limb simulated by itself."""
         shape = len(models), len(self._measured), len(self.channels.names)
         predicted = np.empty(shape)
         for limb in self._limbs:
@@ -254,7 +286,7 @@ class Predictor:
     def _replayed_limb(
         self, limb: Limb, models: Sequence[Model], step_s: float, own: Channels
     ) -> FloatArray:
-        """(n, rows, channels of the limb)."""
+        """(n, rows, channels of the limb) replays of one limb, in batches."""
         runs = [limb.run(run) for run in self._runs]
         most = max(1, MOST_ROWS // len(runs))
         parts = []
@@ -267,7 +299,12 @@ class Predictor:
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
-    """A row for each model."""
+    """Model fields, servos and forces for a batch, with one row for each model.
+
+    Args:
+      plant: nominal robot model.
+      models: the models of the rows.
+    """
     variants = Variants(plant, len(models))
     for row, model in enumerate(models):
         for placed in model:

@@ -1,8 +1,9 @@
-"""What is not known of the states that runs start from, taken out of residuals.
+"""Removes the influence of uncertain start states from residuals.
 
-A position is known at the start to the sensors' noise, a velocity worse. What a wrong
-start changes dies away within moments on damped servos and lasts for seconds on others.
-Its signature is measured once, and what looks like it is not held against a model.
+At the start of a window positions are known up to sensor noise, velocities less well.
+The influence of a wrong start fades within moments on well damped servos and lasts for
+seconds on others. Its shape (signature) is measured once, and the part of a residual
+that has this shape is removed.
 """
 
 import itertools
@@ -16,14 +17,17 @@ from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
 
 POSITION_STEP_RAD, VELOCITY_STEP_RAD_S = 1e-3, 0.03
+"""Changes of the start state with which the signatures are measured."""
+
 POSITION_SPREAD_RAD, VELOCITY_SPREAD_RAD_S = 2e-3, 0.3
-"""How wrong a smoothed start may be."""
+"""Standard deviations of the errors of a smoothed start state."""
 
 
 def nudged(runs: Sequence[Run]) -> list[Run]:
-    """Every run as it is, from other positions, and with other velocities.
+    """All windows unchanged, then with changed positions, then with changed velocities.
 
-    All joints at once: servos are stiff, so that each moves mostly itself.
+    All joints are changed at once: servos are stiff, so that each one hardly moves the
+    others.
     """
     positions = [
         replace(run, position_rad=run.position_rad + POSITION_STEP_RAD) for run in runs
@@ -36,15 +40,16 @@ def nudged(runs: Sequence[Run]) -> list[Run]:
 
 
 class StartUncertainty:
-    """Signatures of wrong starts, for each run and channel its own two."""
+    """Two signatures of wrong starts, position and velocity, for each window and channel."""
 
     def __init__(self, changes: Sequence[FloatArray], ends: Sequence[int]) -> None:
-        """Work out what takes them out of residuals.
+        """Prepare the projection that removes the signatures.
 
         Args:
-          changes: (rows, c) each, in units of noise and zero where not scored: what a
-            start that is off by one spread changes; of positions, and of velocities.
-          ends: one past the last row of each run.
+          changes: two arrays (rows, c) in units of noise, 0 where not scored: the change
+            of the replays when positions, or velocities, start off by one standard
+            deviation.
+          ends: one past the last row of each window.
         """
         signatures = np.stack(changes)
         self._runs = [
@@ -53,13 +58,13 @@ class StartUncertainty:
         ]
 
     def part(self, first: int, last: int) -> "StartUncertainty":
-        """Of runs `first` to `last - 1` only."""
+        """The signatures of windows `first` to `last - 1`."""
         some = object.__new__(StartUncertainty)
         some._runs = self._runs[first:last]
         return some
 
     def without(self, residual: FloatArray) -> FloatArray:
-        """(n, rows, c) residuals less what wrong starts explain of them."""
+        """(n, rows, c) residuals minus the part that wrong starts explain."""
         ends = np.cumsum([run.own.shape[1] for run in self._runs])
         parts = np.split(residual, ends[:-1], axis=1)
         cleaned = [
@@ -70,14 +75,14 @@ class StartUncertainty:
 
 @dataclass(frozen=True, eq=False)
 class _RunUncertainty:
-    """Of one run: (2, rows, c) signatures, and the inverse of their products."""
+    """One window: (2, rows, c) signatures, (c, 2, 2) inverse of their products."""
 
     own: FloatArray
     inverse: FloatArray
 
     @classmethod
     def of(cls, own: FloatArray) -> Self:
-        # one on the diagonal: a start that is off by more than its spread is unlikely
+        # 1 on the diagonal is the prior: a standard normal error of the start
         gram = np.einsum("krc,lrc->ckl", own, own) + np.eye(len(own))
         return cls(own, np.linalg.inv(gram))
 
