@@ -1,1 +1,1 @@
-"""From the outcome of a search to a verdict: intervals, doubts, controls."""
+"""From the result of a search to a verdict: intervals, probabilities and controls."""

@@ -1,4 +1,4 @@
-"""What a search's outcome means: the kind of verdict, and the effects believed."""
+"""The kind of verdict that a search result means, and the effects it reports."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,25 +15,28 @@ from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import EffectAt, Found, VerdictKind, When
 
 LEAST_CLOSED = 0.95
-"""A model that takes away less of the energy above the noise is not all there is ..."""
+"""Share of the energy above the noise that a model must remove; with less, something
+else is missing, too, and the verdict is `unknown`."""
 
 MOST_LEFT = 0.5
-"""... unless what it leaves is below so large a part of the noise's own energy."""
+"""Relative excess over the noise energy up to which the share does not matter: what
+is left is then hardly more than noise."""
 
 
 UNSURE_NATS, WEAK = 15.0, 4.0
-"""With a smaller gap to models without it an effect may as well be another; so many
-times the least gain of a search is a weak reason to believe it all the same."""
+"""An effect is unsure if models without it are worse by less than `UNSURE_NATS`. Then
+it is kept only if it gains more than `WEAK` times the least gain of the search."""
 
 
 def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
-    """What a search came to, less an effect that is unsure and hardly needed.
+    """Remove the last effect if it is neither certain nor clearly useful.
 
-    Where two sims of the same physics differ a little, some effect always explains it.
+    Two simulators of the same physics always differ a little, and some effect always
+    explains a part of the difference.
 
     Args:
-      searched: that is to be believed.
-      least_gain: that the search asked of an effect [nats].
+      searched: a search result.
+      least_gain: gain [nats] that the search required of an effect.
     """
     winner = searched.winner
     if winner is None or searched.chosen == 1:
@@ -50,9 +53,9 @@ def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> Verdic
     """The kind of verdict.
 
     Args:
-      searched: what the search came to.
-      plant: nominal.
-      audited: says which joints moved.
+      searched: the result of the search.
+      plant: nominal robot model.
+      audited: audit of the recordings, which says which joints moved.
     """
     selected, fitted = searched.nothing, searched.nothing_fit
     if searched.winner:
@@ -72,12 +75,12 @@ def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> Verdic
 def believed_effects(
     both: Predictor, searched: SearchResult, refitted: FittedModel | None
 ) -> tuple[Found, ...]:
-    """The effects believed, the surest first.
+    """The effects of a verdict with estimates and probabilities, the surest first.
 
     Args:
-      both: predicts the data learned from.
-      searched: what the search came to.
-      refitted: its model, fitted to all of these data; None for no effect.
+      both: predictor of fitting and selection data.
+      searched: the result of the search.
+      refitted: the winning model fitted to these data; None for no effect.
     """
     if refitted is None or searched.winner is None:
         return ()
@@ -100,6 +103,7 @@ def believed_effects(
 
 
 def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
+    """Effects without repetitions, in their order."""
     return tuple(dict.fromkeys(effects))
 
 

@@ -1,4 +1,4 @@
-"""How sure a search's answer is, and what else it may be."""
+"""How probable each effect of a search result is, and which others may be the truth."""
 
 import numpy as np
 
@@ -9,21 +9,27 @@ from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import EffectAt, VerdictKind
 
 TIED_NATS = 10.0
-"""What is less plausible by no more than that may be the truth as well: residuals are
-alike from row to row, so that they tell less than their number."""
+"""Models that are less plausible by at most this [nats] may be the truth as well. The
+margin is wide because residuals of neighbouring rows are correlated."""
 
 SLOPE, EVEN_NATS = 1.0, 3.0
-"""Of the log odds that an effect is right, over the logarithm of the gap to the next
-other effect, which hardly counts up to so many nats; even odds where there is no gap.
-From 39 answers to concealed cases (seed 777, 38 of them right; without cases that were
-not excited): slopes of 0.8 to 1.5 explain these about as well."""
+"""Calibration: the log odds that an effect is right are SLOPE ln(1 + gap / EVEN_NATS),
+where the gap is the distance [nats] to the best model without the effect. From 39
+answers to concealed cases (seed 777, 38 of them right; cases without excitation left
+out); slopes of 0.8 to 1.5 describe these about as well."""
 
 MOST = 0.98
-"""However large the gap: what no effect of the library is can look like one."""
+"""Largest probability that is stated: physics that the library lacks can look like one
+of its effects."""
 
 
 def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[EffectAt, ...]:
-    """Effects that would do as well in the stead of one of the winner's."""
+    """Effects that explain the recordings as well in place of one of the winner's.
+
+    Args:
+      found: the result of a search.
+      placed: an effect of its winner.
+    """
     winner = found.winner
     assert winner is not None
     rest = winner.keys - {placed.key}
@@ -45,9 +51,11 @@ def twins(plant: Plant, placed: PlacedEffect) -> tuple[EffectAt, ...]:
 def alternatives(
     found: SearchResult, kind: VerdictKind
 ) -> tuple[tuple[EffectAt, ...], ...]:
-    """Whole other answers of the chosen size that do as well.
+    """Other models with as many effects that explain the recordings as well.
 
-    Where the data cannot tell, the one that does best is but one of them.
+    Args:
+      found: the result of a search.
+      kind: kind of the verdict; for "not_identifiable" the winner is included.
     """
     winner = found.winner
     if winner is None:
@@ -62,9 +70,10 @@ def alternatives(
 
 
 def gap(found: SearchResult, placed: PlacedEffect) -> float:
-    """How much worse the best model without an effect of the winner is [nats].
+    """How much less plausible the best model without an effect of the winner is [nats].
 
-    Infinite if none was tried.
+    Returns:
+      At least 0; infinite if no model without the effect was tried.
     """
     same = {placed.key, *(grown.key for grown in grown_from(placed))}
     without = [
@@ -77,6 +86,6 @@ def gap(found: SearchResult, placed: PlacedEffect) -> float:
 
 
 def probability(found: SearchResult, placed: PlacedEffect) -> float:
-    """That an effect of the winner is right, from the gap to models without it."""
+    """Probability that an effect of the winner is right, from `gap`."""
     odds = SLOPE * np.log1p(gap(found, placed) / EVEN_NATS)
     return float(MOST / (1 + np.exp(-odds)))

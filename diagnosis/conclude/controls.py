@@ -1,4 +1,4 @@
-"""Two controls: the right physics elsewhere, and other physics at the right place."""
+"""Controls of a diagnosis: the effect elsewhere, another effect at the same place."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -11,19 +11,23 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
 
 MOST = 4
+"""Most candidates of a control that are fitted; the others look worse unfitted."""
+
 STEPS = 4
+"""Most steps of their fits, enough for a comparison."""
 
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """What a model would be without its main effect, and with another in its stead.
+    """Models that differ from the believed one in its main effect.
+
+    A diagnosis is convincing if all of them predict held-out recordings worse.
 
     Attributes:
-      without: the other effects, refitted.
-      wrong_place: with the same effect at the other place that does best; None where it
-        has no other.
-      wrong_effect: with another effect at the same place, drawn by lot; None where no
-        other can be there.
+      without: the other effects alone, fitted again.
+      wrong_place: the main effect moved to the best other place; None if there is none.
+      wrong_effect: the main effect replaced by another one at the same place, chosen at
+        random; None if no other can be there.
     """
 
     without: Model
@@ -38,13 +42,14 @@ class Controls:
         alike: Collection[str],
         rng: np.random.Generator,
     ) -> "Controls":
-        """FittedModel all of them.
+        """Fit the controls of a model.
 
         Args:
           predictor: of the data to fit to.
-          model: that is believed, of one effect at least.
-          alike: "effect@place" of what explains the same; that is no control.
-          rng: draws the lot.
+          model: the believed model, with at least one effect.
+          alike: keys "effect@place" of effects that may be the truth as well and
+            therefore are no controls.
+          rng: chooses the wrong effect.
         """
         main, rest = _main(predictor, model)
         return cls(
@@ -55,7 +60,7 @@ class Controls:
 
 
 def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
-    """The effect without which most is left, and the others without it."""
+    """The effect whose removal increases the error most, and the refitted others."""
     if len(model) == 1:
         return model[0], ()
     rests = [tuple(one for one in model if one is not main) for main in model]
@@ -65,6 +70,7 @@ def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
 
 
 def _elsewhere(predictor: Predictor, main: PlacedEffect) -> list[PlacedEffect]:
+    """The main effect at all its other places."""
     return [
         PlacedEffect(main.name, place, main.values)
         for place in effect(main.name).places(predictor.plant, predictor.traces)
@@ -79,9 +85,9 @@ def _by_lot(
     alike: Collection[str],
     rng: np.random.Generator,
 ) -> list[PlacedEffect]:
-    """One of the effects that can be there, of typical size; none if there is none.
+    """A random other effect of typical size at the main one's place, or none.
 
-    With as many values as the main one, if there are such.
+    Effects with as many values as the main one are preferred.
     """
     plant, traces = predictor.plant, predictor.traces
     others = [
@@ -111,7 +117,7 @@ def _contains(one: PlacedEffect, other: PlacedEffect) -> bool:
 def _best(
     predictor: Predictor, rest: Model, options: list[PlacedEffect]
 ) -> Model | None:
-    """With the option that fits best, of those that first look best."""
+    """The other effects with the option that fits best; None without options."""
     taken = {placed.key for placed in rest}
     models = [(*rest, one) for one in options if one.key not in taken]
     if not models:

@@ -1,4 +1,4 @@
-"""The smallest effects that some data could have shown."""
+"""The smallest effects that the recordings could have shown."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,15 +14,18 @@ from diagnosis.verdict.verdict import Amount
 def smallest_detectable(
     predictor: Predictor, found: Sequence[Signature], gain: float
 ) -> Mapping[str, Amount]:
-    """By "effect@place" the size whose gain would just be believed.
+    """The size of each effect whose gain would just be enough to be reported.
 
-    A signature is linear in the effect's size, so its gain is quadratic in it. Effects
-    that act above a threshold only have no such size.
+    A signature is proportional to the size of its effect, hence the gain grows with the
+    square of the size. Effects that act only above a threshold have no such size.
 
     Args:
       predictor: of the data.
       found: signatures of the effects.
-      gain: that is asked for.
+      gain: gain [nats] that an effect needs to be reported.
+
+    Returns:
+      Sizes with units by key "effect@place".
     """
     sizes: dict[str, Amount] = {}
     for signature in found:

@@ -1,7 +1,8 @@
-"""How far a flexible regression without physics gets: the ceiling of any model.
+"""A flexible regression without physics: how much of the error is predictable at all.
 
-It alarms, it does not explain: what it finds beyond a named effect is structure that no
-effect of the library has (Kennedy and O'Hagan 2001 on model discrepancy).
+It does not explain anything, but it raises an alarm: if it removes more of the error
+than the named effects do, there is structure that no effect of the library has (model
+discrepancy, Kennedy and O'Hagan 2001).
 """
 
 import numpy as np
@@ -11,31 +12,35 @@ from diagnosis.traces.trace import filled
 from groundwalk.arrays import FloatArray
 
 FEATURES = 150
+"""Number of random cosines."""
+
 FINE = 3.0
-"""Of the waves of one input: standard deviation of their rates, inputs scaled."""
+"""Standard deviation of the rates of cosines of a single input, which is scaled to a
+standard deviation of 1."""
 
 LAGS = (0, 1, 3, 6, 12)
-"""Rows before now that the regression sees of each input."""
+"""Delays [rows] at which the regression sees each input."""
 
 FEWEST = 200
-"""Rows that a regression needs."""
+"""Fewest rows from which a regression is learned."""
 
 PENALTIES = (1.0, 10.0, 100.0, 1000.0)
+"""Ridge penalties that are tried."""
 
 
 def flexible_regression_errors(
     learn: Predictor, judge: Predictor, seed: np.random.SeedSequence
 ) -> FloatArray:
-    """(c,) rms [noise] of what is left of the plant's own error on data to be judged.
+    """(c,) rms [noise] of the nominal sim's error that the regression leaves.
 
-    Ridge regression on random Fourier features (Rahimi and Recht 2007) of what the
-    nominal sim did, what was commanded, and the time, for each channel; the penalty is
-    chosen on every fourth row.
+    For each channel a ridge regression on random Fourier features (Rahimi and Recht
+    2007) of the nominal sim's motion, the commands and the time. The penalty is chosen
+    on a quarter of the rows, in blocks of 50.
 
     Args:
-      learn: of the data to learn from.
-      judge: of the data to be judged, with the same channels.
-      seed: of the features.
+      learn: predictor of the data to learn from.
+      judge: predictor of the data on which the error is measured, same channels.
+      seed: seed of the features.
     """
     rng = np.random.default_rng(seed)
     known, wrong, seen = _data(learn)
@@ -53,10 +58,10 @@ def flexible_regression_errors(
 
 
 class _Lift:
-    """Inputs as they are, scaled, and random cosines of them.
+    """Features of a regression: scaled inputs and random cosines of them.
 
-    Half of the cosines are of all inputs and smooth. The others are of one input, with
-    shorter waves: a motor's cogging, say, which cosines of all inputs would not show.
+    Half of the cosines are smooth functions of all inputs. The others have shorter
+    waves and a single input each, as the cogging of a motor has.
     """
 
     def __init__(self, inputs: FloatArray, rng: np.random.Generator) -> None:
@@ -76,7 +81,7 @@ class _Lift:
 
 
 def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
-    """Coefficients; none where there are too few rows to choose the penalty."""
+    """Coefficients of the regression; zeros if there are too few rows to learn from."""
     if len(wanted) < FEWEST:
         return np.zeros(features.shape[1])
     held = np.arange(len(wanted)) // 50 % 4 == 3
@@ -91,12 +96,13 @@ def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatArray:
+    """Coefficients of the ridge regression with a penalty."""
     gram = features.T @ features + penalty * np.eye(features.shape[1])
     return np.asarray(np.linalg.solve(gram, features.T @ wanted))
 
 
 def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArray]:
-    """What a regression may see, what it shall explain, and where that counts."""
+    """Inputs of each recording, (rows, c) errors to explain and whether each counts."""
     c = len(predictor.channels.names)
     nominal = predictor.predict([()])[0]
     wrong = predictor.residuals([()])[0].reshape(-1, c)
@@ -114,7 +120,7 @@ def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArra
 
 
 def _inputs(blocks: list[FloatArray], column: int, c: int) -> FloatArray:
-    """Present and past of one joint's sim and command, its speed, and the time."""
+    """One joint's predicted and commanded positions now and before, speed, and time."""
     parts = []
     for block in blocks:
         own = block[:, [column, c + column]]

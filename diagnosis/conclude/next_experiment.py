@@ -1,4 +1,4 @@
-"""The recording that would tell two answers apart best."""
+"""Proposes the recording that would best distinguish between two answers."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -17,12 +17,16 @@ from diagnosis.verdict.verdict import NextExperiment
 from groundwalk.arrays import FloatArray
 
 DURATION_S = 6.0
+"""Duration of the proposed motion [s]."""
+
 TICK_S = 0.01
+"""Control tick of the proposed motion [s]."""
+
 REACH = 0.8
-"""Of the range that the recordings used."""
+"""Share of the range of the recordings that the motion uses."""
 
 Motion = Callable[[FloatArray, float], FloatArray]
-"""(T,) positions in -1 to 1 of (T,) times [s] and the duration [s]."""
+"""A function of (T,) times [s] and the duration [s] to (T,) positions in -1 to 1."""
 
 MOTIONS: dict[str, Motion] = {
     "slow ramp there and back": lambda t, d: 1 - 2 * np.abs(1 - 2 * t / d),
@@ -34,23 +38,26 @@ MOTIONS: dict[str, Motion] = {
     "small fast sine": lambda t, d: 0.1 * np.sin(2 * np.pi * 3 * t),
     "hold at mirrored poses": lambda t, d: np.where(t < d / 2, 0.8, -0.8),
 }
+"""The motions that are compared, by the words in which they are proposed."""
+
 STIFFER = "the same with servos of twice the stiffness and half the damping"
+"""Words for the variant of a motion with changed servo gains."""
 
 
 def next_experiment(
     plant: Plant, found: SearchResult, traces: Sequence[Trace]
 ) -> NextExperiment | None:
-    """The motion whose predictions by the two best answers differ most (T-optimality).
+    """The motion for which the two best answers predict the most different courses.
 
-    Hunter and Reiner 1965: the experiment with the largest expected difference.
+    This is the criterion of Hunter and Reiner 1965 (T-optimality).
 
     Args:
-      plant: nominal.
-      found: of the search.
-      traces: the recordings so far; their reach is kept.
+      plant: nominal robot model.
+      found: the result of a search.
+      traces: the recordings so far, whose range is not exceeded.
 
     Returns:
-      None if one answer is clear, or there are no position commands to choose.
+      None if one answer is clear, or if the robot does not take position commands.
     """
     rivals = _rivals(found)
     if rivals is None or any(trace.command_rad is None for trace in traces):
@@ -73,6 +80,7 @@ def next_experiment(
 
 
 def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
+    """The winner and the most plausible other model; None if that is much worse."""
     winner = found.winner
     if winner is None:
         return None
@@ -85,7 +93,7 @@ def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
 
 
 def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
-    """The motion at all joints, within what they did before."""
+    """A recording of the motion at all joints, within the range of the recordings."""
     time_s = np.arange(0, DURATION_S, TICK_S)
     middle = (usage.low_rad + usage.high_rad) / 2
     half = REACH * (usage.high_rad - usage.low_rad) / 2
@@ -94,6 +102,7 @@ def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
 
 
 def _changed_servo(trace: Trace) -> Trace:
+    """The same recording with stiffer, less damped servos."""
     servo = replace(
         trace.servo,
         kp_nm_rad=2 * trace.servo.kp_nm_rad,
@@ -103,7 +112,7 @@ def _changed_servo(trace: Trace) -> Trace:
 
 
 def _difference(plant: Plant, models: Sequence[Model], trace: Trace) -> float:
-    """Rms [rad] between what two models predict."""
+    """Rms difference [rad] between the positions that two models predict."""
     start = Run(trace, trace.position_rad[0], np.zeros(len(plant.joints)))
     position = replay([start], variants_of(plant, models))[0].position_rad
     wrong = position[0] - position[1]

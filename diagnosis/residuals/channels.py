@@ -58,7 +58,8 @@ def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
 
     Args:
       plant: nominal robot model.
-      traces: recordings; their noise is estimated, with a floor for each kind of sensor.
+      traces: recordings, from which the noise is estimated; it has a floor for each
+        kind of sensor.
     """
     names = [f"position.{joint}" for joint in plant.joints]
     least = [LEAST_NOISE_RAD] * len(names)

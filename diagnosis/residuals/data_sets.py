@@ -111,7 +111,7 @@ class DataSets:
 
 
 def _exact(whole: Predictor, model: Model = ()) -> Predictor:
-    """A predictor calibrated at a model, with the longest time step that is accurate."""
+    """A predictor calibrated at a model, with the longest accurate time step."""
     for step_s in STEPS_S[whole.plant.base]:
         if step_s < whole.step_s:
             whole = whole.stepped(step_s)

@@ -1,7 +1,8 @@
-"""Parts of a plant that move each for itself.
+"""Splits a robot model into limbs that move independently of each other.
 
-The arms and legs of a robot whose torso is held do not feel each other. What is wrong
-at an elbow is found by replays of that arm, at a fraction of the whole robot's cost.
+The arms and legs of a robot whose torso is held do not influence each other. An effect
+at an elbow then needs replays of that arm only, at a fraction of the time that the
+whole robot takes.
 """
 
 from dataclasses import dataclass, replace
@@ -19,13 +20,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Limb:
-    """A part of a plant, itself a plant.
+    """A part of a robot model that moves independently, itself a robot model.
 
     Attributes:
-      plant: with this part's joints only.
-      columns: of the whole plant's joints.
-      first: whether it stands for what belongs to no limb, such as the gyroscope.
-      elsewhere: joints and bodies of the other limbs.
+      plant: the model with the joints of this limb only.
+      columns: indices of these joints in the whole model.
+      first: whether this limb also predicts channels that belong to no limb, such as
+        the gyroscope.
+      elsewhere: names of the joints and bodies of the other limbs.
     """
 
     plant: Plant
@@ -34,7 +36,7 @@ class Limb:
     elsewhere: frozenset[str]
 
     def felt(self, model: tuple[PlacedEffect, ...]) -> tuple[PlacedEffect, ...]:
-        """The effects that change anything here: not those at other limbs."""
+        """The effects of a model that change this limb: those at no other limb."""
         return tuple(one for one in model if one.place not in self.elsewhere)
 
     def run(self, run: Run) -> Run:
@@ -49,7 +51,7 @@ class Limb:
         )
 
     def channels(self, whole: Channels) -> tuple[Channels, list[int]]:
-        """This part's channels, and their indices in the whole plant's."""
+        """This limb's channels, and their indices among those of the whole robot."""
         mine = set(self.plant.joints)
         chosen = [
             i
@@ -61,13 +63,13 @@ class Limb:
 
 
 def _joint_of(channel: str) -> str | None:
-    """The joint that a channel is of, if it is one's."""
+    """The joint that a channel belongs to; None for channels of the whole robot."""
     kind, _, joint = channel.partition(".")
     return joint if kind in ("position", "torque") else None
 
 
 def limbs_of(plant: Plant) -> tuple[Limb, ...]:
-    """The parts of a plant, or all of it as the only one."""
+    """The limbs of a robot model; the whole model if its parts influence each other."""
     parts = _Trees(plant.model).parts if plant.base == "fixed" else []
     if not parts:
         return (Limb(plant, tuple(range(len(plant.joints))), True, frozenset()),)
@@ -85,14 +87,14 @@ def limbs_of(plant: Plant) -> tuple[Limb, ...]:
 
 
 class _Trees:
-    """MuJoCo's kinematic trees, and which of them are tied to each other."""
+    """MuJoCo's kinematic trees, grouped by the constraints that couple them."""
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         self._model = model
 
     @cached_property
     def parts(self) -> list[set[int]]:
-        """Sets of trees that feel each other; none if everything may."""
+        """Sets of coupled trees; empty if any part may touch or pull any other."""
         import mujoco
 
         model = self._model
@@ -108,7 +110,7 @@ class _Trees:
         return sorted(parts, key=min)
 
     def _tied(self) -> list[set[int]]:
-        """Trees that an equality constraint ties together."""
+        """Sets of trees that one equality constraint couples."""
         import mujoco
 
         model, ties = self._model, []
@@ -123,7 +125,7 @@ class _Trees:
 
 
 def _with_trees(plant: Plant, kept: set[int]) -> Plant:
-    """The plant without other trees, and without what only costs time."""
+    """The model with these trees only, without shapes and sensors."""
     model, spec = plant.model, plant.spec.copy()
     _without_shapes(spec, model)
     tree = model.body_treeid
@@ -147,7 +149,7 @@ def _with_trees(plant: Plant, kept: set[int]) -> Plant:
 
 
 def _without_shapes(spec: "mujoco.MjSpec", model: "mujoco.MjModel") -> None:
-    """Take shapes and sensors out; masses stay. Where nothing touches nobody asks."""
+    """Remove shapes and sensors but keep masses: nothing touches, so none is used."""
     import mujoco
 
     for body in spec.bodies[1:]:

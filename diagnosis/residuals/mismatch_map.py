@@ -1,4 +1,4 @@
-"""Where and when the nominal sim is off: channel by channel, regime by regime."""
+"""The mismatch map: the nominal sim's error by channel and by kind of motion."""
 
 from collections.abc import Mapping
 
@@ -12,22 +12,24 @@ from diagnosis.verdict.verdict import MismatchCell
 from groundwalk.arrays import BoolArray, FloatArray
 
 FAST, SLOW = 0.7, 0.2
-"""Of the speed that a joint seldom exceeds."""
+"""Shares of a joint's top speed above which motion is fast and below which it is slow;
+the top speed is the 95 % quantile."""
 
 REVERSAL_S = 0.1
-"""What is so near to a change of direction belongs to it."""
+"""Length [s] of the interval around a change of direction that counts as a reversal."""
 
 FEWEST = 20
+"""Fewest scored rows for which the error in a kind of motion is given."""
 
 
 def mismatch_map(
     predictor: Predictor, residual: FloatArray
 ) -> tuple[MismatchCell, ...]:
-    """One cell for each channel, the worst first.
+    """One cell for each channel, the one with the largest error first.
 
     Args:
-      predictor: of the traces.
-      residual: (N,) of the plant as it is, in units of noise.
+      predictor: it computed the residual.
+      residual: (N,) of the nominal sim, in units of noise.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
@@ -43,6 +45,7 @@ def mismatch_map(
 def _cell(
     predictor: Predictor, residual: FloatArray, index: int, share: float
 ) -> MismatchCell:
+    """The cell of the channel with this index and this share of the squared error."""
     channels = predictor.channels
     name, noise = channels.names[index], float(channels.noise[index])
     rows = predictor.channel == index
@@ -62,7 +65,7 @@ def _cell(
 def _regimes(
     predictor: Predictor, index: int, own: FloatArray, scored: BoolArray
 ) -> Mapping[str, float]:
-    """Rms error in parts of the data, in units of noise."""
+    """Rms error [noise] of a joint by kind of motion, such as "fast" or "reversals"."""
     if index >= len(predictor.plant.joints):
         return {}
     flags: dict[str, list[BoolArray]] = {}
@@ -81,7 +84,7 @@ def _regimes(
 
 
 def _flags(time_s: FloatArray, position_rad: FloatArray) -> dict[str, BoolArray]:
-    """Which rows belong to which regime."""
+    """For each kind of motion the (T,) rows of a recording that belong to it."""
     seen = np.isfinite(position_rad)
     if not seen.any():
         return {}

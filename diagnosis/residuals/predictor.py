@@ -153,11 +153,11 @@ class Predictor:
         )
 
     def calibrate(self, model: Model = ()) -> float:
-        """Measure the integration error and the effect of wrong start states at a model.
+        """Measure the integration error and the influence of wrong start states.
 
         Args:
-          model: effects with values; a replay that diverges counts with the largest
-            error, `WORST`.
+          model: the effects at which they are measured; a replay that diverges counts
+            with the largest error, `WORST`.
 
         Returns:
           Rms [noise] of the integration error that the correction leaves.
@@ -202,7 +202,7 @@ class Predictor:
         return (*self._noise.model, *model) if self._noise else model
 
     def _warming(self) -> BoolArray:
-        """(rows,) rows that are not scored: the first seconds, or a window's first row."""
+        """(rows,) whether a row is not scored, as the first ones of a window."""
         flags = []
         for run in self._runs:
             since_s = run.trace.time_s - run.trace.time_s[0]
@@ -218,8 +218,8 @@ class Predictor:
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) predicted values, the rows of all traces one after another.
 
-        Models with a spring between motor and link are replayed with half the time step:
-        their motor oscillates too fast for the full one.
+        Models with a spring between motor and link are replayed with half the time
+        step: their motor oscillates too fast for the full one.
 
         Args:
           models: n models.

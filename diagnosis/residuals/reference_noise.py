@@ -1,12 +1,12 @@
-"""The standing difference between a model and its robot: there when all was well.
+"""Model error that reference recordings show already, treated as noise.
 
-A model is never exact: engines differ in contacts, start states are known to the
-sensors' noise, real robots have a friction that their model lacks. What recordings of
-the robot in good order show of it is known before a search begins. What effects explain
-of it becomes part of the plant. The rest counts as noise, with its size and its shape:
-residuals are whitened by its covariance (generalised least squares, Aitken 1936), so
-that an error which was there before is no evidence, however large, and one that was
-not is as much evidence as the sensors' noise allows.
+A model is never exact: engines differ in contacts, start states are known up to sensor
+noise, and real robots have friction that their model lacks. Reference recordings of the
+healthy robot show these errors before a search begins. Effects that explain a part of
+them become part of the nominal model. The remaining error counts as noise with its size
+and shape: residuals are whitened by its covariance (generalised least squares, Aitken
+1936). An error that was present before is then no evidence, however large, and a new
+error is as much evidence as the sensors' noise allows.
 """
 
 import itertools
@@ -21,25 +21,27 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
 
 WAVES = 4
-"""Legendre polynomials that stand for the smooth part of a channel's error in a block;
-what is quicker is taken as white."""
+"""Number of Legendre polynomials that describe the smooth part of a channel's error in
+a block; faster parts count as white noise."""
 
 FEWEST_ROWS = 2 * WAVES
-"""Shorter blocks have no smooth part of their own."""
+"""Fewest scored rows of a block for which a smooth part is described."""
 
-TOO_SHORT = "the reference recordings are too short to tell what was wrong before"
+TOO_SHORT = "the reference recordings are too short to learn the model error from"
 
 SHRINKAGES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0)
-"""Of the covariance towards its diagonal: blocks are fewer than its rows."""
+"""Shrinkages of the covariance towards its diagonal that are tried. Some shrinkage is
+needed because there are fewer blocks than rows of the covariance."""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Some consecutive rows of a run whose errors go together.
+    """Consecutive rows of a recording whose errors are correlated.
 
     Attributes:
-      rows: of the predictor.
-      waves: (rows, waves) orthonormal over the rows that are scored, 0 elsewhere.
+      rows: their place among all rows of a predictor.
+      waves: (rows, waves) polynomials, orthonormal over the scored rows, 0 elsewhere;
+        no columns if too few rows are scored.
     """
 
     rows: slice
@@ -67,7 +69,7 @@ def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
 
 
 def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
-    """Polynomials of times in [0, 1), orthonormal over the scored rows."""
+    """(rows, waves) polynomials of times in [0, 1), orthonormal over scored rows."""
     if scored.sum() < FEWEST_ROWS:
         return np.zeros((len(within), 0))
     values = np.polynomial.legendre.legvander(2 * within - 1, WAVES - 1)
@@ -79,15 +81,15 @@ def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class ReferenceNoise:
-    """What a model of c channels gets wrong when all is well.
+    """Errors that a model of c channels makes for the healthy robot.
 
     Attributes:
-      model: effects that are part of the plant.
-      scale: (c,) rms of quick errors, in units of noise; at least 1.
-      power: (k,) variances of smooth errors along `axes`, in units of noise times
+      model: effects that count as part of the nominal model.
+      scale: (c,) rms of the fast errors in units of sensor noise; at least 1.
+      power: (k,) variances of the smooth errors along `axes`, in units of noise times
         scale; at least 1.
-      axes: (waves c, k) orthonormal.
-      rows: of the blocks that these were learned from.
+      axes: (waves c, k) orthonormal directions.
+      rows: typical number of rows of the blocks from which these were learned.
     """
 
     model: tuple[PlacedEffect, ...]
@@ -98,7 +100,12 @@ class ReferenceNoise:
 
     @classmethod
     def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":
-        """Nothing but effects."""
+        """Known effects, without any further error.
+
+        Args:
+          model: the effects.
+          channels: number of channels.
+        """
         none = np.zeros((WAVES * channels, 0))
         return cls(model, np.ones(channels), np.zeros(0), none, 1.0)
 
@@ -110,13 +117,13 @@ class ReferenceNoise:
         scored: BoolArray,
         blocks: Sequence[Block],
     ) -> "ReferenceNoise":
-        """Learn from reference recordings.
+        """Learn the errors from residuals of reference recordings.
 
         Args:
-          model: that is part of the plant.
-          residual: (rows, c) that it leaves, in units of noise.
-          scored: (rows, c).
-          blocks: of the rows.
+          model: effects that count as part of the nominal model.
+          residual: (rows, c) that the model leaves, in units of noise.
+          scored: (rows, c) whether an entry counts.
+          blocks: the rows in blocks.
 
         Raises:
           BadRecordingError: no block is long enough.
@@ -138,7 +145,12 @@ class ReferenceNoise:
         return cls(model, scale, *_covariance(smooth), rows)
 
     def without(self, residual: FloatArray, blocks: Sequence[Block]) -> FloatArray:
-        """(n, rows, c) residuals, whitened."""
+        """(n, rows, c) whitened residuals.
+
+        Args:
+          residual: (n, rows, c) in units of sensor noise.
+          blocks: the rows in blocks.
+        """
         white = residual / self.scale
         factors: dict[int, FloatArray] = {}
         for block in blocks:
@@ -154,19 +166,19 @@ class ReferenceNoise:
         return np.asarray(white)
 
     def _less(self, rows: int) -> FloatArray:
-        """One less the inverse root of the covariance in a block of so many rows.
+        """(waves c, waves c) I - C^(-1/2) for the covariance C in a block of rows.
 
-        A smooth error's power grows with the number of rows that see it.
+        The power of a smooth error grows with the number of rows.
         """
         power = 1 + (self.power - 1) * rows / self.rows
         return np.asarray((self.axes * (1 - 1 / np.sqrt(power))) @ self.axes.T)
 
 
 def _covariance(smooth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Variances and axes of (blocks, k) values, shrunk as far as they ask for.
+    """Variances and axes of (blocks, k) values, with a shrinkage chosen by the data.
 
-    The shrinkage is the one under which each half of the blocks is most likely, as
-    seen from the other half.
+    The shrinkage is chosen by cross-validation: under the covariance learned from one
+    half of the blocks the other half is most likely.
     """
     half = len(smooth) // 2
     parts = [smooth[:half], smooth[half:]]
@@ -182,7 +194,7 @@ def _covariance(smooth: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArray]:
-    """Second moments: an error that is always the same counts as one, too."""
+    """Variances and axes of second moments; a constant error counts as variance."""
     moments = smooth.T @ smooth / len(smooth)
     diagonal = np.diag(np.maximum(np.diag(moments), 1.0))
     power, axes = np.linalg.eigh((1 - shrinkage) * moments + shrinkage * diagonal)
@@ -190,6 +202,6 @@ def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArra
 
 
 def _surprise(smooth: FloatArray, power: FloatArray, axes: FloatArray) -> float:
-    """Minus the log-likelihood."""
+    """Minus the log-likelihood of (blocks, k) values, without a constant."""
     seen = smooth @ axes
     return float(0.5 * np.sum(seen**2 / power) + 0.5 * len(seen) * np.log(power).sum())

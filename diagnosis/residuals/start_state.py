@@ -40,15 +40,15 @@ def nudged(runs: Sequence[Run]) -> list[Run]:
 
 
 class StartUncertainty:
-    """Two signatures of wrong starts, position and velocity, for each window and channel."""
+    """Signatures of wrong start positions and velocities in each window and channel."""
 
     def __init__(self, changes: Sequence[FloatArray], ends: Sequence[int]) -> None:
         """Prepare the projection that removes the signatures.
 
         Args:
-          changes: two arrays (rows, c) in units of noise, 0 where not scored: the change
-            of the replays when positions, or velocities, start off by one standard
-            deviation.
+          changes: two arrays (rows, c) in units of noise, 0 where not scored. They are
+            the change of the replays when positions, or velocities, start off by one
+            standard deviation.
           ends: one past the last row of each window.
         """
         signatures = np.stack(changes)

@@ -1,4 +1,4 @@
-"""The shape of an error that no effect explains: over what it varies most."""
+"""The shape of an unexplained error over the quantity that it depends on most."""
 
 import numpy as np
 
@@ -9,21 +9,27 @@ from diagnosis.verdict.verdict import Unexplained
 from groundwalk.arrays import FloatArray
 
 BINS = 16
+"""Number of points of a curve."""
+
 FEWEST = 10
+"""Fewest rows of a point."""
 
 
 def unexplained(
     predictor: Predictor, residual: FloatArray, share: float
 ) -> Unexplained | None:
-    """The mean error of the worst joint, over what orders it best.
+    """The mean error of the worst joint as a curve over one quantity.
+
+    Position, velocity, command and time are tried; the one over which the mean error
+    varies most significantly is chosen.
 
     Args:
-      predictor: of the data.
+      predictor: it computed the residual.
       residual: (N,) of the best model, in units of noise.
-      share: of the squared error above the noise that is left.
+      share: share of the squared error above the noise that the model leaves.
 
     Returns:
-      None where nothing is scored.
+      None if no row of the worst joint is scored.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
@@ -46,10 +52,11 @@ def unexplained(
 
 
 Curve = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
+"""Middles of the bins, mean errors, and standard errors of the means."""
 
 
 def _curve(values: FloatArray, wrong: FloatArray) -> Curve:
-    """Middles, means and standard errors in bins of equal counts."""
+    """The curve of errors over (rows,) values, in bins with equal numbers of rows."""
     edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
     where = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
     at, mean, spread = [], [], []
@@ -63,13 +70,13 @@ def _curve(values: FloatArray, wrong: FloatArray) -> Curve:
 
 
 def _explained(curve: tuple[str, str, *Curve]) -> float:
-    """Chi-square of a curve's means."""
+    """Chi-square of the means of a curve (name, unit, curve) against zero."""
     mean, spread = np.array(curve[3]), np.array(curve[4])
     return float(np.sum((mean / np.maximum(spread, 1e-12)) ** 2)) if len(mean) else 0.0
 
 
 def _orders(predictor: Predictor, joint: int) -> list[tuple[str, str, FloatArray]]:
-    """What an error may depend on."""
+    """Name, unit and (rows,) values of quantities that an error may depend on."""
     name = predictor.plant.joints[joint]
     position, velocity, time_s, command = [], [], [], []
     for trace in predictor.traces:

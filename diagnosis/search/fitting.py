@@ -167,7 +167,7 @@ def fit_all(
     jacobians: Sequence[FloatArray | None] | None = None,
     exactly: bool = False,
 ) -> list[FittedModel]:
-    """FittedModel the values of several models, each from its own start.
+    """Fit the values of several models, each from its own start.
 
     Args:
       predictor: of the data.
