@@ -15,8 +15,9 @@ CONCEALED := $(RESULTS)/concealed
 SEALED := 6598788
 # What the real NAO of results-diagnosed-gait lacks against its model.
 SLOW_KNEES := speed_limit@LKneePitch:speed=2.5 speed_limit@RKneePitch:speed=2.5
-# Recordings of real robots, where they are at hand, and whose they are.
-DATA := ../shared/data
+# Recordings of real robots, which are not part of the repository: docs/diagnosis.md says
+# where they come from. Another folder: make results-diagnosis DATA=FOLDER.
+DATA := data
 REAL := so101 emps go2
 
 .PHONY: help env walk test lint results results-walk results-pictures results-nao \

@@ -28,6 +28,7 @@ from experiments.reports.origin import command_of
 from experiments.runs.checkpoint_files import CheckpointFiles
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
+    CONFIG,
     PROVENANCE,
     RunFolder,
     check_free,
@@ -56,12 +57,14 @@ class Diagnose(RunOptions):
       reference: recordings of the same robot while it was healthy. What they show is
         taken as given; the question is then what has changed since.
       robot: its name, a model file (.xml or .urdf), or a robot of example-robot-data.
-      kp: stiffness of all servos [N m/rad], where recordings do not say.
-      kd: damping of all servos [N m s/rad], likewise.
-      max_torque: limit of all servos [N m], likewise; no limit by default.
-      drive: what moves the joints of the model where both commands and torques were
+      kp: stiffness of all servos [N m/rad], for recordings that do not state it.
+      kd: damping of all servos [N m s/rad], for recordings that do not state it.
+      max_torque: torque limit of all servos [N m], for recordings that do not state it;
+        no limit by default.
+      drive: what moves the model's joints where both commands and torques were
         recorded: its servos, or the measured torques.
-      least_share: of the sim's squared error that an effect must explain to count.
+      least_share: smallest share of the sim's squared error that an effect must explain
+        to be reported, from 0 to below 1.
       threads: processor threads of the replays.
     """
 
@@ -78,7 +81,11 @@ class Diagnose(RunOptions):
     threads: int = 2
 
     def __post_init__(self) -> None:
-        """Refuse what no diagnosis can do."""
+        """Refuse options that no diagnosis can work with.
+
+        Raises:
+          BadValueError: there is no recording or no robot, or a number is out of range.
+        """
         super().__post_init__()
         if self.resume is None and not self.recordings:
             raise BadValueError("no recording is given; give one at least")
@@ -91,12 +98,14 @@ class Diagnose(RunOptions):
         if self.kp is None and (self.kd, self.max_torque) != (None, None):
             raise BadValueError("kd or max_torque is given without kp")
         if not 0 <= self.least_share < 1:
-            raise BadValueError(f"least_share is {self.least_share}; it must be a part")
+            raise BadValueError(
+                f"least_share is {self.least_share}; it must be at least 0, below 1"
+            )
         check_at_least(self, threads=0)
 
     @property
     def gains(self) -> ServoGains | None:
-        """Of all servos, if they are given."""
+        """The servo gains from the options; None if they are not given."""
         if self.kp is None:
             return None
         limit = sys.float_info.max if self.max_torque is None else self.max_torque
@@ -104,14 +113,15 @@ class Diagnose(RunOptions):
 
 
 def main(config: Diagnose) -> None:
-    """Diagnose, and say what was found."""
+    """Diagnose, and print the verdict."""
     folder, verdict = run_diagnosis(config)
     if config.json:
         print(verdict.to_json(), end="")
     else:
         written = [folder.path / name for name in (REPORT, OVERLAY)]
         paths = [path for path in written if path.exists()]
-        print_verdict(verdict, paths, changed=bool(config.reference))
+        asked = folder.read_json(CONFIG)  # a resumed run has no options of its own
+        print_verdict(verdict, paths, changed=bool(asked["reference"]))
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
@@ -175,7 +185,7 @@ def _diagnosed(
 def _write(
     config: Diagnose, folder: RunFolder, found: Diagnosis, advance: Callable[[], None]
 ) -> None:
-    """Write the verdict, then all that explains it."""
+    """Write the verdict first, then the files that explain it."""
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
     with extra(CORRECTED_XML):
@@ -193,7 +203,12 @@ def _write(
 
 
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:
-    """The sim that is right, if anything was found to be wrong with it."""
+    """Write the corrected model, if effects were found.
+
+    Args:
+      folder: of the run; gets `corrected.xml` and `corrected.json`.
+      found: the diagnosis.
+    """
     if not found.verdict.effects:
         return
     first = found.test.traces[0]
@@ -206,7 +221,7 @@ def write_correction(folder: RunFolder, found: Diagnosis) -> None:
 
 
 def _description(config: Diagnose) -> robots.Description | None:
-    """What the overlay draws; None for a robot that is no biped, such as an arm."""
+    """The robot that the overlay draws; None if it is no biped, such as an arm."""
     try:
         return robots.get(config.robot)
     except GroundwalkError:
@@ -223,11 +238,11 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
     files = {
         VERDICT: "the verdict, for programs",
         OVERLAY: "real, sim and corrected sim in Rerun",
-        AUDIT: "what the recordings are like",
+        AUDIT: "rate, noise and defects of the recordings",
     }
     if found.verdict.effects:
-        files[CORRECTED_XML] = "the corrected model, as far as MuJoCo has the effects"
-        files[CORRECTED_JSON] = "all effects; --sim takes them"
+        files[CORRECTED_XML] = "the corrected model, with the effects that MuJoCo has"
+        files[CORRECTED_JSON] = "all effects found, for the option --sim"
     packages = {k: str(v) for k, v in provenance["packages"].items() if v}
     return ReportFacts(
         robot=config.robot,

@@ -1,4 +1,4 @@
-"""`groundwalk real-robots`: diagnose real recordings, and judge the answer."""
+"""`groundwalk real-robots`: diagnose real recordings, and compare with known values."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,20 +16,22 @@ from experiments.reports.report import REPORT
 from experiments.runs.extras import extra
 from groundwalk.errors import BadValueError
 
-DATA = Path("../shared/data")
+DATA = Path("data")
+"""Default folder of the recordings; they are not part of the repository."""
 DIAGNOSIS = "diagnosis.html"
-"""The diagnosis' own report; the run's is the one that judges it."""
+"""The diagnosis' own report; the run's `report.html` compares it with known values."""
 
 
 @dataclass(frozen=True)
 class RealRobots:
-    """Diagnose recordings of a real robot, and hold the answer against what is known.
+    """Diagnose recordings of a real robot, and compare the answer with known values.
 
     Attributes:
-      robot: whose recordings.
-      data: folder with a folder of recordings for each robot.
+      robot: the robot whose recordings are diagnosed.
+      data: folder with a subfolder of recordings for each robot; docs/diagnosis.md says
+        where they come from.
       seed: every random number follows from it.
-      threads: of the replays.
+      threads: number of threads that replay.
       out: the run's folder; a new one under runs/ by default.
     """
 
@@ -40,7 +42,7 @@ class RealRobots:
     out: Path | None = None
 
     def diagnose(self) -> Diagnose:
-        """The diagnosis that this is.
+        """The options of `groundwalk diagnose` for this robot's recordings.
 
         Raises:
           BadValueError: there are no recordings.
@@ -50,7 +52,8 @@ class RealRobots:
         recordings = tuple(sorted(folder.glob("*.parquet")))
         if not recordings:
             raise BadValueError(
-                f"{folder} has no recordings; --data says where they are"
+                f"{folder} has no recordings: give the folder that holds "
+                f"{case.folder}/ with --data; they come from {case.source}"
             )
         gains = case.gains
         share = case.least_share
@@ -69,7 +72,7 @@ class RealRobots:
 
 
 def main(config: RealRobots) -> None:
-    """Diagnose, write the page, and say what was found."""
+    """Diagnose, write the page, and print the verdict."""
     folder, verdict = run_diagnosis(config.diagnose())
     report, diagnosis = folder.path / REPORT, folder.path / DIAGNOSIS
     if report.exists():

@@ -1,1 +1,1 @@
-"""The study of `groundwalk real-robots`: cases, claims, page."""
+"""Study of `groundwalk real-robots`: diagnoses of real robots against known values."""

@@ -1,4 +1,4 @@
-"""Recordings of real robots that are at hand, and what others say of these robots."""
+"""The real robots that are diagnosed, and what others published about them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from worlds import ServoGains
 
 @dataclass(frozen=True)
 class Published:
-    """A value that others found.
+    """A value that others found for a robot.
 
     Attributes:
-      effect: name of the effect that stands for it.
-      parameter: of the effect.
-      value: in SI units, with the sign that the effect gives it.
-      text: what it is, for a page.
+      effect: name of the effect that the value belongs to.
+      parameter: name of the effect's parameter.
+      value: in SI units, with the sign that the effect's parameter has.
+      text: the quantity in words, for a page.
     """
 
     effect: str
@@ -26,7 +26,13 @@ class Published:
 
 @dataclass(frozen=True)
 class Sane:
-    """Bounds of what a parameter can be on hardware of this kind."""
+    """Bounds of what a parameter can be on such hardware.
+
+    Attributes:
+      low: least possible value, in the parameter's unit.
+      high: largest possible value, in the same unit.
+      why: where the bounds come from.
+    """
 
     low: float
     high: float
@@ -35,25 +41,28 @@ class Sane:
 
 @dataclass(frozen=True)
 class RealRobot:
-    """One robot's recordings, and what to hold an answer against.
+    """One robot's recordings, and the knowledge that a diagnosis is compared with.
 
     Attributes:
       title: of the page.
-      folder: of the recordings, in the folder of all data.
-      model: name of the robot, or a file in that folder.
-      about: where data, model and servo gains are from.
-      gains: of all servos, where the model has none.
-      drive: as `groundwalk diagnose` has it, likewise the next.
-      least_share: of the error that an effect must explain.
-      published: what others found.
-      sane: by parameter, as "effect.parameter", what is possible.
-      pulses: number of pulses that were added at the actuator's input.
-      twice: whether kept-out motions shall be predicted twice as well.
+      folder: name of the folder of recordings, in the folder of all robots' recordings.
+      model: name of the robot, or a model file in that folder.
+      source: where the recordings come from, and their licence.
+      about: where data, model and servo gains come from, as a paragraph for the page.
+      gains: of all servos; None where the recordings or the model state them.
+      drive: "servos" or "torques", as in `groundwalk diagnose --drive`.
+      least_share: as in `groundwalk diagnose --least-share`; its default where None.
+      published: values that others found.
+      sane: by "effect.parameter", the bounds of what is possible.
+      pulses: number of force pulses that were added at the actuator's input.
+      twice: whether the page claims that held-out motions are predicted at least twice
+        as well with the effects found.
     """
 
     title: str
     folder: str
     model: str
+    source: str
     about: str
     gains: ServoGains | None = None
     drive: DriveBy = "servos"
@@ -65,14 +74,16 @@ class RealRobot:
 
 
 _SO101_KP, _SO101_LIMIT = 7.8, 2.94
+"""Stiffness [N m/rad] and stall torque [N m] of the servo; `about` has the sources."""
 
 ROBOTS = {
     "so101": RealRobot(
         title="SO-101: what the URDF with ideal servos lacks",
         folder="so101",
         model="so101",
-        about="""Twelve motions of a real arm (SAGE data set, Apache-2.0), nobody has
-labelled what its model lacks. The model is `so101.urdf` of example-robot-data with the
+        source="the SAGE data set (Apache-2.0)",
+        about="""Twelve motions of a real arm (SAGE data set, Apache-2.0); what its
+model lacks is not known. The model is `so101.urdf` of example-robot-data with the
 servos of the data sheet (Feetech STS3215 at 12 V): stall torque 2.94 N m, no load at
 45 rpm, so 0.62 N m s/rad of back-EMF; its firmware's P of 16 is a duty cycle of 2.66
 per radian (0.166 each, as Rhoban's BAM measured it), so 7.8 N m/rad.""",
@@ -100,6 +111,7 @@ per radian (0.166 each, as Rhoban's BAM measured it), so 7.8 N m/rad.""",
         title="EMPS: friction behind a closed position loop, and pulses",
         folder="emps",
         model="emps.xml",
+        source="nonlinearbenchmark.org (EMPS)",
         about="""A real ball-screw axis at 1 kHz (nonlinearbenchmark.org): reference,
 position and motor force of two runs; in the second, force pulses were added at the
 actuator. The model is its mass of 95.11 kg and its documented controller. In closed
@@ -122,9 +134,11 @@ its controller only says where the pulses are.""",
         title="Go2 in the air: a verdict with its doubts",
         folder="go2",
         model="go2",
+        source="iit-DLSLab/sim2real-robot-identification (BSD-3)",
         about="""One recording of a real Unitree Go2 held in the air (BSD-3): positions
 and their targets at 200 Hz, spaced evenly after the fact. The model is `go2.urdf` of
 example-robot-data, its base fixed and level, with the stated joint servos.""",
         gains=ServoGains(20.0, 1.5, 23.7),
     ),
 }
+"""The robots by their names on the command line."""

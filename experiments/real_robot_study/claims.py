@@ -1,4 +1,4 @@
-"""What an answer about a real robot is held against."""
+"""Claims about the diagnosis of a real robot, and whether they hold."""
 
 from collections.abc import Iterator
 
@@ -9,10 +9,16 @@ from experiments.real_robot_study.cases import Published, RealRobot
 from experiments.transfer.claims import Claim
 
 TWICE = 2.0
+"""Least factor by which held-out errors must fall."""
 
 
 def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
-    """Everything that can be said of a robot's answer."""
+    """All claims about a robot's diagnosis, each with whether it holds.
+
+    Args:
+      robot: with the values and bounds to compare with.
+      verdict: of its diagnosis.
+    """
     claims = list(_published(robot, verdict))
     if robot.pulses:
         claims.append(_pulses(robot.pulses, verdict.pulses))
@@ -24,13 +30,13 @@ def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
 
 
 def sane_bounds(robot: RealRobot, effect: str, parameter: str) -> str:
-    """What is possible, in words; nothing where nothing is known."""
+    """The possible range of a parameter in words; empty if none is known."""
     bounds = (robot.sane or {}).get(f"{effect}.{parameter}")
     return f"{bounds.low:g} to {bounds.high:g}: {bounds.why}" if bounds else ""
 
 
 def _published(robot: RealRobot, verdict: Verdict) -> Iterator[Claim]:
-    """Whether intervals hold what others found."""
+    """A claim for each published value: its interval holds that value."""
     for known in robot.published:
         found = _estimate(verdict, known)
         text = f"{known.text}: the 80 % interval holds the published {known.value:g}"
@@ -49,7 +55,7 @@ def _estimate(verdict: Verdict, known: Published) -> Estimate | None:
 
 
 def _pulses(count: int, pulses: tuple[Pulse, ...]) -> Claim:
-    """Whether all pulses were found where they came in."""
+    """The claim that all pulses were found and attributed to the actuator's input."""
     text = f"all {count} pulses are located and attributed to the actuator's input"
     right = [pulse for pulse in pulses if pulse.source == "actuator input"]
     found = "; ".join(pulse_sentences(pulses)) or "none found"
@@ -57,10 +63,10 @@ def _pulses(count: int, pulses: tuple[Pulse, ...]) -> Claim:
 
 
 def _twice(verdict: Verdict) -> Claim:
-    """Whether motions that no fit has seen are predicted twice as well."""
-    text = "motions kept out of the fit are predicted at least twice as well"
+    """The claim that held-out motions are predicted at least twice as well."""
+    text = "held-out motions are predicted at least twice as well"
     if verdict.fit is None:
-        return Claim(text, False, "nothing was kept out")
+        return Claim(text, False, "nothing was held out")
     fit = verdict.fit
     ratios = {
         name.partition(".")[2]: one.nominal / one.corrected
@@ -72,8 +78,8 @@ def _twice(verdict: Verdict) -> Claim:
 
 
 def _sane(robot: RealRobot, verdict: Verdict) -> Claim:
-    """Whether all values are possible for such hardware."""
-    text = "what is missing is named at each joint, with values that are possible"
+    """The claim that every joint has an effect, and that all values are possible."""
+    text = "an effect is named at each joint, and all values are possible"
     joints = [
         name.partition(".")[2]
         for name in (verdict.fit.channels if verdict.fit else ())

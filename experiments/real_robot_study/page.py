@@ -12,14 +12,15 @@ from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import write_transfer_page
 
 MUCH = 2.0
-"""Times the noise: what is left above it is told."""
+"""Multiple of the noise floor; an error left above it is mentioned as a doubt."""
 
 NOTES = """
-Intervals are of 80 %. "Real less sim" is the rms error on recordings, or parts of them,
-that neither the fit nor the choice of effects has seen; "regression" is what a flexible
-regression without physics reaches there. "Effect elsewhere" and "wrong effect" replace
-the main effect only. How often such probabilities are right is told by
-[concealed cases](concealed.md); no real robot has told it.
+Intervals hold 80 %. Errors are rms errors of the sim on recordings, or parts of them,
+that neither the fit nor the choice of effects has seen; "regression" is the error that
+a flexible regression without physics reaches there. "Same effect, other place" and
+"other effect, same place" are controls that replace the main effect only. How often the
+stated probabilities are right was measured on [concealed cases](concealed.md), on no
+real robot.
 """
 
 
@@ -28,12 +29,12 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
 
     Args:
       folder: of the diagnosis.
-      robot: that was diagnosed.
-      verdict: the answer.
+      robot: the robot that was diagnosed.
+      verdict: of the diagnosis.
     """
     body = [" ".join(robot.about.split()), "", f"## Verdict: {badge(verdict)}"]
     body += ["", *_effects(robot, verdict.effects), "", *_doubts(verdict)]
-    body += ["", "## Real less sim, kept out of the fit", "", *_fit(verdict)]
+    body += ["", "## Errors of the sim on held-out recordings", "", *_fit(verdict)]
     body += _pulses(verdict)
     body += ["", "## What was used for what", "", *_recordings(verdict), NOTES.rstrip()]
     claims = claims_of(robot, verdict)
@@ -41,7 +42,7 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
 
 
 def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
-    """A row for each parameter that data can show."""
+    """A table with a row for each parameter of the effects found."""
     rows = []
     for effect in sorted(effects, key=lambda one: (one.place, one.name)):
         for name, value in effect.parameters.items():
@@ -58,9 +59,9 @@ def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
 
 
 def _doubts(verdict: Verdict) -> list[str]:
-    """What else it may be, what these data cannot tell, what is left."""
+    """A list: other answers, limits of the data, and the error that is left."""
     lines = [
-        f"- {effect.name} at {effect.place} may as well be "
+        f"- instead of {effect.name} at {effect.place} it may be "
         + ", ".join(
             f"{other.name} at {other.place}" for other in effect.confusable_with
         )
@@ -68,7 +69,7 @@ def _doubts(verdict: Verdict) -> list[str]:
         if effect.confusable_with
     ]
     lines += [
-        "- as a whole it may be "
+        "- another answer that fits as well: "
         + " with ".join(f"{one.name} at {one.place}" for one in answer)
         for answer in verdict.alternatives
     ]
@@ -87,25 +88,25 @@ def _doubts(verdict: Verdict) -> list[str]:
 
 
 def _rest_of_fit(verdict: Verdict) -> list[str]:
-    """What the corrected sim leaves, and whether there is more to be explained."""
+    """Lines on the error that the corrected sim leaves, if it is large."""
     fit = verdict.fit
     if fit is None or fit.corrected <= MUCH * fit.floor:
         return []
     left = f"- {fit.corrected:.1f} times the noise is left"
     if fit.ceiling is not None and fit.ceiling < fit.corrected:
         left += (
-            f", and a regression without physics leaves {fit.ceiling:.1f}: something "
-            "else is there that these effects do not say"
+            f", and a regression without physics leaves {fit.ceiling:.1f}: there is "
+            "something else that these effects do not describe"
         )
     parts = [name.partition("[")[0] for name in verdict.recordings.test]
     known = {name.partition("[")[0] for name in verdict.recordings.fit}
     if known >= set(parts):
-        return [left, "- what was kept out is parts of the recordings that were fitted"]
+        return [left, "- the held-out data are parts of recordings that were fitted"]
     return [left]
 
 
 def _may_be_nothing(effects: Sequence[Found]) -> list[str]:
-    """Effects whose first value may be 0."""
+    """A line with the effects whose first value may be 0, if there are any."""
     names = [
         f"{effect.name} at {effect.place}"
         for effect in effects
@@ -115,12 +116,12 @@ def _may_be_nothing(effects: Sequence[Found]) -> list[str]:
 
 
 def _fit(verdict: Verdict) -> list[str]:
-    """Errors by channel, and of all together."""
+    """A table of held-out errors by channel, and of all channels together."""
     fit = verdict.fit
     if fit is None:
-        return ["Nothing was kept out."]
-    columns = ["channel", "unit", "as it was", "corrected", "noise", "regression"]
-    columns += ["effect elsewhere", "wrong effect"]
+        return ["Nothing was held out."]
+    columns = ["channel", "unit", "sim", "corrected", "noise floor", "regression"]
+    columns += ["same effect, other place", "other effect, same place"]
     every = {
         **{name: (one, one.unit) for name, one in fit.channels.items()},
         "all": (fit, "noise"),
@@ -140,7 +141,7 @@ def _fit(verdict: Verdict) -> list[str]:
 
 
 def _pulses(verdict: Verdict) -> list[str]:
-    """When something was added to a servo's torque."""
+    """A table of the pulses that were added to a servo's torque, if there are any."""
     if not verdict.pulses:
         return []
     columns = ["recording", "joint", "from [s]", "to [s]", "size", "came in at"]
@@ -161,6 +162,6 @@ def _recordings(verdict: Verdict) -> list[str]:
         for use, names in (
             ("fitted", used.fit),
             ("to select effects", used.select),
-            ("kept out", used.test),
+            ("held out", used.test),
         )
     ] + [f"- {verdict.seconds:.0f} s"]

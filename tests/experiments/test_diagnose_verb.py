@@ -141,6 +141,8 @@ def test_what_was_there_before_is_no_finding(recording, tmp_path, capsys):
     assert "Nothing has changed that these recordings could show." in page
     assert "lack" not in page[page.index("<h1>") :]
     assert "nothing has changed since the reference" in capsys.readouterr().out
+    main(Diagnose(resume=out))
+    assert "nothing has changed since the reference" in capsys.readouterr().out
 
 
 def test_a_reference_of_another_robot_is_refused(recording, tmp_path):
@@ -166,7 +168,7 @@ def test_a_recording_of_another_robot_is_refused_and_nothing_is_written(
         ({"robot": ""}, "no robot"),
         ({"kp": -1.0}, "kp is -1.0"),
         ({"kd": 1.0}, "without kp"),
-        ({"seed": -1}, "negative"),
+        ({"seed": -1}, "at least 0"),
     ],
 )
 def test_impossible_questions_are_refused(recording, change, said):

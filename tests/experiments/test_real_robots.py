@@ -16,7 +16,7 @@ from experiments.runs.folder import RunFolder
 from groundwalk.errors import BadValueError
 
 KNOWN = Published("viscous_friction", "coefficient", 3.0, "oil")
-ROBOT = RealRobot("A robot", "folder", "nao", "about it", published=(KNOWN,))
+ROBOT = RealRobot("A robot", "folder", "nao", "there", "about it", published=(KNOWN,))
 
 
 def pulse(k=0, source="actuator input"):
@@ -126,7 +126,7 @@ def test_parts_of_the_same_recording_are_a_doubt(tmp_path):
     fit = replace(verdict().fit, corrected=7.0 * verdict().fit.floor)
     same = Recordings(("a[0-2 s]",), ("a[2-3 s]",), ("a[3-4 s]",))
     other = replace(same, test=("b",))
-    said = "parts of the recordings that were fitted"
+    said = "parts of recordings that were fitted"
     assert said in page_of(verdict(fit=fit, recordings=same), tmp_path, "same")
     assert said not in page_of(verdict(fit=fit, recordings=other), tmp_path, "other")
 
