@@ -1,4 +1,4 @@
-"""All measures of one grounding in one place."""
+"""All measures of one grounding, before a policy is trained in it."""
 
 import json
 import math
@@ -22,27 +22,36 @@ from sgat.models.forward_model import ForwardModel
 from sgat.transitions import Transitions
 
 LEVELS = (0.5, 0.8, 0.9, 0.95, 0.99)
+"""Probabilities of the central intervals whose coverage is measured."""
 LAGS = 10
+"""Largest lag [ticks] of the autocorrelation."""
 HORIZON = 10
+"""Ticks that are predicted without correction."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroundingReport:
-    """How good a grounding is, told before any policy is trained in it.
+    """How good the forward model of a grounding is.
 
-    Measured on transitions of the real world that the models have not seen; p is the
-    width of a next state, a that of an action.
+    Measured on transitions of the real world that the model has not seen; p is the
+    number of columns of a next state.
 
     Attributes:
-      one_step_error: (p,) root mean square, in the state's units.
-      one_step_r_squared: (p,) share of the state's change that is predicted.
-      multi_step_error: (horizon, p) root mean square without correction.
-      log_likelihood: per transition and dimension.
-      levels: (levels,) of the central intervals.
-      coverage: (levels, p) share of the residuals within them.
+      one_step_error: (p,) root mean square error, in the state's units.
+      one_step_r_squared: (p,) share of the variance of the state's change that is
+        predicted.
+      multi_step_error: (horizon, p) root mean square error of predictions without
+        correction, in the state's units.
+      log_likelihood: mean per transition and dimension.
+      levels: (levels,) probabilities of central intervals.
+      coverage: (levels, p) share of the residuals within each interval.
       autocorrelation: (lags, p) of the residuals.
       cross_correlation: (p, p) of the residuals.
       excess_kurtosis: (p,) of the residuals.
+
+    Example:
+      >>> report = GroundingReport.of(forward, held_out, forward.predict)
+      >>> print(report.to_json())
     """
 
     one_step_error: FloatArray
@@ -64,14 +73,14 @@ class GroundingReport:
         horizon: int = HORIZON,
         lags: int = LAGS,
     ) -> Self:
-        """Everything that can be said of a forward model.
+        """Measure a forward model.
 
         Args:
-          forward: of the real world.
-          held_out: of the real world.
-          advance: one tick of the whole state, see `multi_step_error`.
-          horizon: ticks without correction.
-          lags: ticks of autocorrelation.
+          forward: model of the real world.
+          held_out: transitions of the real world that the model was not fitted to.
+          advance: predicts the whole state one tick later; see `multi_step_error`.
+          horizon: ticks that are predicted without correction.
+          lags: largest lag [ticks] of the autocorrelation.
         """
         residuals = forward.residuals(held_out)
         predicted = forward.predict(held_out.state, held_out.action)
@@ -89,7 +98,7 @@ class GroundingReport:
         )
 
     def to_json(self) -> str:
-        """One JSON object; null is what is not defined, as a constant's kurtosis."""
+        """One JSON object; null stands for undefined, as a constant's kurtosis is."""
         return json.dumps(
             {name: _plain(value) for name, value in vars(self).items()}, allow_nan=False
         )

@@ -1,7 +1,7 @@
-"""How good a grounding is, before any policy is trained in it.
+"""Measures of a grounding: functions on arrays, before any policy is trained in it.
 
-Pure functions on arrays: residuals are standardised ones, `ForwardModel.residuals`, of
-transitions that the model was not fitted to.
+Residuals are the standardised ones of `ForwardModel.residuals`, of transitions that the
+model was not fitted to.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,18 +14,24 @@ from groundwalk.errors import BadValueError
 from sgat.transitions import Transitions
 
 Advance = Callable[[FloatArray, FloatArray], FloatArray]
-"""States (n, s) and actions (n, a) to the states one tick later (n, s)."""
+"""A function of states (n, s) and actions (n, a) that gives the states (n, s) one
+tick later."""
 
 
 def root_mean_square(errors: FloatArray) -> FloatArray:
-    """(d,) of errors (N, d)."""
+    """(d,) root mean square of errors (N, d), in their units."""
     return np.asarray(np.sqrt(np.mean(errors**2, axis=0)))
 
 
 def r_squared(predicted: FloatArray, actual: FloatArray) -> FloatArray:
-    """(d,) share of the variance of the (N, d) actual values that is predicted.
+    """(d,) share of the variance of values that is predicted.
 
-    1 is perfect, 0 no better than the mean, NaN where nothing varies.
+    1 is perfect, 0 is no better than predicting the mean, NaN stands for values that
+    are constant.
+
+    Args:
+      predicted: (N, d).
+      actual: (N, d).
     """
     error = np.mean((predicted - actual) ** 2, axis=0)
     return np.asarray(1 - error / _variance(actual))
@@ -34,16 +40,19 @@ def r_squared(predicted: FloatArray, actual: FloatArray) -> FloatArray:
 def multi_step_error(
     advance: Advance, transitions: Transitions, horizon: int
 ) -> FloatArray:
-    """(horizon, p) root mean square error after 1, 2 ... ticks without correction.
+    """(horizon, p) root mean square error of predictions 1, 2 ... ticks ahead.
 
     From every transition that has enough successors in its episode, the recorded
-    actions are replayed and the predicted states fed back.
+    actions are replayed and the predicted states are fed back.
 
     Args:
-      advance: predicts a whole state; where a next state is as wide as a state this
-        can be `ForwardModel.predict` itself.
-      transitions: what really happened.
-      horizon: ticks.
+      advance: predicts a whole state; where a next state has all columns of a state,
+        this can be `ForwardModel.predict`.
+      transitions: recorded in the real world.
+      horizon: ticks to predict.
+
+    Raises:
+      BadValueError: no episode is as long as the horizon.
     """
     episode = transitions.episode
     starts = np.arange(max(transitions.n - horizon + 1, 0))
@@ -59,11 +68,15 @@ def multi_step_error(
 
 
 def coverage(residuals: FloatArray, levels: Sequence[float]) -> FloatArray:
-    """(levels, d) share of the residuals within each central normal interval.
+    """(levels, d) share of the residuals within each central interval.
 
-    Calibrated residuals are within the interval of level 0.9 nine times in ten; an
-    over-confident model's are less often, but with heavy tails that shows only at
-    the high levels.
+    The intervals are those of the standard normal distribution. Calibrated residuals
+    lie within the interval of level 0.9 nine times in ten. An over-confident model's
+    lie there less often; with heavy tails, this shows only at the high levels.
+
+    Args:
+      residuals: (N, d) standardised.
+      levels: probabilities of the intervals, between 0 and 1.
     """
     bounds = [NormalDist().inv_cdf((1 + level) / 2) for level in levels]
     return np.array([(np.abs(residuals) <= bound).mean(axis=0) for bound in bounds])
@@ -72,7 +85,19 @@ def coverage(residuals: FloatArray, levels: Sequence[float]) -> FloatArray:
 def lagged_pairs(
     values: FloatArray, episode: IntArray, lag: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Rows of (N, d) values, and those `lag` ticks before them in the same episode."""
+    """Pairs of rows that are `lag` ticks apart in the same episode.
+
+    Args:
+      values: (N, d).
+      episode: (N,) number of the episode of each row.
+      lag: ticks.
+
+    Returns:
+      Two arrays (pairs, d): the later rows and the earlier rows.
+
+    Raises:
+      BadValueError: no episode is longer than the lag.
+    """
     same = episode[lag:] == episode[: len(episode) - lag]
     if not same.any():
         raise BadValueError(f"no episode is longer than {lag} ticks")
@@ -80,7 +105,13 @@ def lagged_pairs(
 
 
 def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> FloatArray:
-    """(lags, d) correlation with the residual 1, 2 ... ticks before; 0 is white."""
+    """(lags, d) correlation with the residual 1, 2 ... ticks before; 0 for white noise.
+
+    Args:
+      residuals: (N, d).
+      episode: (N,) number of the episode of each row.
+      lags: largest lag [ticks].
+    """
     off = residuals - residuals.mean(axis=0)
     rows = []
     for lag in range(1, lags + 1):
@@ -90,18 +121,31 @@ def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> Floa
 
 
 def cross_correlation(residuals: FloatArray) -> FloatArray:
-    """(d, d) correlation between dimensions at the same tick; NaN where constant."""
+    """(d, d) correlation between dimensions at the same tick; NaN for constants.
+
+    Args:
+      residuals: (N, d).
+    """
     off = residuals - residuals.mean(axis=0)
     spread = np.sqrt(_variance(off))
     return np.asarray(off.T @ off / len(off) / np.outer(spread, spread))
 
 
 def excess_kurtosis(residuals: FloatArray) -> FloatArray:
-    """(d,) fourth moment over squared variance, less 3: 0 is normal, above heavy."""
+    """(d,) fourth moment over squared variance, minus 3.
+
+    0 for a normal distribution, positive for heavy tails.
+
+    Args:
+      residuals: (N, d).
+    """
     off = residuals - residuals.mean(axis=0)
     return np.asarray(np.mean(off**4, axis=0) / _variance(off) ** 2 - 3)
 
 
 def _variance(values: FloatArray) -> FloatArray:
-    """(d,) of (N, d) values; NaN where they are constant, whatever rounding says."""
+    """(d,) variance of (N, d) values; NaN for constants.
+
+    Rounding could give a constant a variance above 0.
+    """
     return np.where(np.ptp(values, axis=0) > 0, values.var(axis=0), np.nan)

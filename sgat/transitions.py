@@ -1,4 +1,4 @@
-"""What was seen of a world's dynamics: states, actions, and what they led to."""
+"""Transitions of a world: states, actions, and the states that they led to."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -13,16 +13,20 @@ from groundwalk.errors import BadValueError
 class Transitions:
     """N transitions (s, a, s') of one or more episodes.
 
-    A next state may be narrower than a state. Its p columns are then the state's
-    first p columns one tick later, and the state's further columns are context:
-    histories that the models look at but need not predict.
+    A next state may have fewer columns than a state. Its p columns are then the state's
+    first p columns one tick later. The state's other columns are context, such as
+    histories, which models see but need not predict.
 
     Attributes:
       state: (N, s).
       action: (N, a).
-      next_state: (N, p) with p <= s, what the action led to. At an episode's end it is
-        the true last state, never the next episode's first.
-      episode: (N,) which episode; the rows of one are consecutive in time.
+      next_state: (N, p) with p <= s, the state after the action. At an episode's end it
+        is the true last state, never the first state of the next episode.
+      episode: (N,) number of the episode; its rows are consecutive in time.
+
+    Example:
+      >>> Transitions(np.zeros((9, 3)), np.zeros((9, 1)), np.ones((9, 3)), [0] * 9).n
+      9
     """
 
     state: FloatArray
@@ -31,7 +35,7 @@ class Transitions:
     episode: IntArray
 
     def __post_init__(self) -> None:
-        """Refuse arrays that do not fit each other, and numbers that are none."""
+        """Refuse arrays that do not fit together, and numbers that are not finite."""
         for name in ("state", "action", "next_state"):
             array = np.asarray(getattr(self, name), dtype=np.float64)
             if array.ndim != 2 or array.shape[0] == 0 or array.shape[1] == 0:
@@ -53,21 +57,21 @@ class Transitions:
 
     @property
     def n(self) -> int:
-        """How many transitions."""
+        """Number of transitions."""
         return len(self.state)
 
     @property
     def outcomes(self) -> int:
-        """How many columns a next state has."""
+        """p, the number of columns of a next state."""
         return int(self.next_state.shape[1])
 
     @property
     def change(self) -> FloatArray:
-        """(N, p) how the predicted part of the state changed."""
+        """(N, p) change of the state's first p columns."""
         return self.next_state - self.state[:, : self.outcomes]
 
     def joined(self, other: Self) -> "Transitions":
-        """These and then the others, whose episodes get new numbers."""
+        """These transitions, then the others, whose episodes get new numbers."""
         theirs = other.episode - other.episode.min() + self.episode.max() + 1
         return Transitions(
             np.concatenate([self.state, other.state]),
@@ -77,7 +81,11 @@ class Transitions:
         )
 
     def subset(self, mask: BoolArray) -> "Transitions":
-        """Those of the (N,) mask; what is left of an episode counts as consecutive."""
+        """The transitions that a mask selects.
+
+        Args:
+          mask: (N,) rows to keep. Rows of an episode that remain count as consecutive.
+        """
         return Transitions(
             self.state[mask],
             self.action[mask],
@@ -88,7 +96,12 @@ class Transitions:
     def split(
         self, share: float, rng: np.random.Generator
     ) -> tuple["Transitions", "Transitions"]:
-        """Most of the episodes, and about this share of them held out."""
+        """Two parts: most of the episodes, and a random share that is held out.
+
+        Args:
+          share: of the episodes to hold out, between 0 and 1.
+          rng: chooses the episodes.
+        """
         held_out = held_out_rows(self.episode, share, rng)
         return self.subset(~held_out), self.subset(held_out)
 
@@ -96,9 +109,19 @@ class Transitions:
 def held_out_rows(
     episode: IntArray, share: float, rng: np.random.Generator
 ) -> BoolArray:
-    """(N,) rows of a random share of the episodes: at least one, never all.
+    """(N,) mask of the rows of randomly chosen episodes: at least one, never all.
 
-    Rows of one episode are too alike to be divided.
+    Whole episodes are chosen, because rows of the same episode are too similar to
+    separate what is learned from what is tested.
+
+    Args:
+      episode: (N,) number of the episode of each row.
+      share: of the episodes to choose, between 0 and 1.
+      rng: chooses the episodes.
+
+    Raises:
+      BadValueError: there are fewer than two episodes, or the share is not between 0
+        and 1.
     """
     names = np.unique(episode)
     if not 0 < share < 1:

@@ -1,4 +1,4 @@
-"""Where gaits walk: the real world's course, or a sim."""
+"""Where gaits walk: the real world's course, or a sim, flat or uneven."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -18,23 +18,27 @@ from worlds.hidden.effects import Hidden
 
 @dataclass(frozen=True)
 class RealCourse:
-    """The real world that a gait is for.
+    """The real world that a gait is tuned for.
 
     Attributes:
       terrain: its ground in words, such as "lumps:amplitude_m=0.01".
-      hidden: physics that it has and the sim's model lacks.
+      hidden: physics of the real world that the sim's model lacks.
+
+    Example:
+      >>> RealCourse("flat").flat
+      True
     """
 
     terrain: str = worlds.kind("real").terrain
     hidden: tuple[Hidden, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse a terrain that is none."""
+        """Refuse an unknown terrain."""
         terrain.parse(self.terrain)
 
     @property
     def options(self) -> WorldOptions:
-        """The real world's own, with what is hidden."""
+        """Options of the real world, with the hidden physics."""
         return replace(worlds.kind("real").options, hidden=self.hidden)
 
     @property
@@ -43,7 +47,11 @@ class RealCourse:
         return terrain.parse(self.terrain)[0] == "flat"
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """One for each seed; flat ones are one object."""
+        """One ground for each seed; flat grounds are one shared object.
+
+        Args:
+          seeds: of the grounds.
+        """
         name, parameters = terrain.parse(self.terrain)
         if self.flat:
             return [terrain.make(name, 0, **parameters)] * len(seeds)
@@ -51,23 +59,27 @@ class RealCourse:
 
 
 LUMPS_M = (0.002, 0.005, 0.008, 0.011, 0.014)
-"""Amplitudes of an uneven sim's lumps."""
+"""Amplitudes [m] of the lumps of uneven sims that are tried."""
 
 START_M, SHORT_START_M = 0.35, 0.1
-"""Flat ground around the start of a course, and of short walks: they shall not spend
-half of their time on it."""
+"""Radius [m] of the flat ground around the start of a course (0.35), and of walks of
+a few seconds (0.1), which would otherwise spend half of their time on it."""
 
 
 @dataclass(frozen=True)
 class SimPlace:
-    """A sim, flat or as uneven as real.
+    """A sim, flat or with lumps.
 
     Attributes:
-      lumps_m: amplitude of the lumps that it has, or several, of which every ground
-        has one by chance. Where 0 it is flat, and its sensors have no noise; else they
-        are as noisy as the real world's.
-      start_m: radius of the flat ground around the start.
-      correction: folder or file of a diagnosis, whose effects the sim shall have.
+      lumps_m: amplitude of the lumps [m], or several amplitudes, of which each ground
+        has a random one. At 0 the ground is flat and the sensors have no noise;
+        otherwise they have the real world's.
+      start_m: radius of the flat ground around the start [m].
+      correction: folder or file of a diagnosis; the sim has the effects that it found.
+
+    Example:
+      >>> place = SimPlace(lumps_m=0.008)
+      >>> grounds = place.grounds(np.random.SeedSequence(1).spawn(4))
     """
 
     lumps_m: float | tuple[float, ...] = 0.0
@@ -75,12 +87,16 @@ class SimPlace:
     correction: Path | None = None
 
     def __post_init__(self) -> None:
-        """Refuse no lumps at all."""
+        """Refuse an empty tuple of amplitudes."""
         if self.lumps_m == ():
             raise BadValueError("lumps_m is empty; give at least one amplitude")
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """One for each seed, flat or with lumps as long as the real world's."""
+        """One ground for each seed: flat, or lumps as long as the real world's.
+
+        Args:
+          seeds: of the grounds.
+        """
         if not self.lumps_m:
             return [terrain.make("flat", 0)] * len(seeds)
         return [self._lumps(seed) for seed in seeds]
@@ -95,7 +111,7 @@ class SimPlace:
 
     @property
     def options(self) -> WorldOptions:
-        """Of the world inside."""
+        """Options of the world that computes the physics."""
         return noisy_sim() if self.lumps_m else worlds.kind("sim").options
 
 
@@ -105,25 +121,40 @@ def world_at(
     grounds: Sequence[Heightfield],
     seeds: Sequence[np.random.SeedSequence],
 ) -> World:
-    """One robot on each ground; the seeds are of the sensors' noise."""
+    """A world with one robot on each ground.
+
+    Args:
+      place: which world.
+      description: the robot.
+      grounds: n grounds.
+      seeds: n seeds of the sensors' noise.
+    """
     if isinstance(place, RealCourse):
         return worlds.make("real", description, grounds, seeds, place.options)
     return make_sim(description, grounds, seeds, place.options, place.correction)
 
 
 def noisy_sim() -> WorldOptions:
-    """The sim's options, but with the real world's sensors."""
+    """The sim's options, but with the real world's sensor noise.
+
+    Example:
+      See docs/python.md, "Learn with Gymnasium".
+    """
     noise = worlds.kind("real").options.noise
     return WorldOptions(worlds.kind("sim").options.timestep_s, noise=noise)
 
 
 @dataclass(frozen=True)
 class Places:
-    """The two worlds of a grounding.
+    """The real world and the sim of a grounding.
 
     Attributes:
-      real: where gaits shall walk in the end.
-      correction: of the sim; see `SimPlace`.
+      real: the world that gaits are tuned for.
+      correction: folder or file of a diagnosis that corrects the sim; see `SimPlace`.
+
+    Example:
+      >>> Places(RealCourse("lumps:amplitude_m=0.006")).sim().lumps_m
+      0.0
     """
 
     real: RealCourse = field(default_factory=RealCourse)
@@ -132,5 +163,10 @@ class Places:
     def sim(
         self, lumps_m: float | tuple[float, ...] = 0.0, start_m: float = SHORT_START_M
     ) -> SimPlace:
-        """The sim, on the flat or on lumps."""
+        """The sim, flat or on lumps.
+
+        Args:
+          lumps_m: amplitude of the lumps [m], or several; see `SimPlace`.
+          start_m: radius of the flat ground around the start [m].
+        """
         return SimPlace(lumps_m, start_m, self.correction)

@@ -35,7 +35,7 @@ def walk(
     exploration_rad: Sequence[float] = (0.0,),
     rules: TrialRules = WALK,
 ) -> tuple[Trials, Transitions]:
-    """Let each gait walk once, on ground of its own, and note all transitions.
+    """Let each gait walk once, on ground of its own, and record all transitions.
 
     Args:
       place: the world and its grounds.
@@ -47,7 +47,11 @@ def walk(
       rules: when a walk is over.
 
     Returns:
-      How the n walks went, and their transitions in the same order.
+      Results of the n walks, and their transitions in the same order.
+
+    Example:
+      >>> vectors = GaitCloud().draw(gaits.get("start"), 4, np.random.SeedSequence(1))
+      >>> trials, noted = walk(SimPlace(), robots.get("nao"), vectors, seed)
     """
     levels = np.resize(np.asarray(exploration_rad, float), (len(vectors), 1))
     trials, noted = [], []

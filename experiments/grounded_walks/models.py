@@ -42,6 +42,9 @@ class WalkModels:
       records: walks that the models learn from.
       seed: of all trainings.
       places: the two worlds of the walks.
+
+    Example:
+      See docs/python.md, "Learn with Gymnasium".
     """
 
     records: WalkRecords

@@ -1,4 +1,4 @@
-"""What rates gaits in a search: worlds of several kinds, several walks of each gait."""
+"""Raters for a search: each lets gaits walk in one kind of world and gives rewards."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,25 +18,28 @@ from terrain import Heightfield
 from worlds import WorldOptions
 
 RATED = TrialRules(limit_s=7.5, start_spread_rad=0.01)
-"""A walk that is rated: of the search's length, from a start pose that spreads."""
+"""A walk that is rated: 7.5 s, as in the search in the plain sim; start poses vary
+by 0.01 rad per joint."""
 
 FALL_PENALTY_WALK_CM_S = 60.0
-"""Four times the paper's. With its 15 a gait of 25 cm/s that falls on every second
-course earns as much as one of 18 cm/s that hardly ever does: on the course of 3 m,
-where falls are counted, there is more than twice the time to fall in."""
+"""What a fall costs in a rated walk [cm/s]: four times the SGAT paper's 15. With 15,
+a gait of 25 cm/s that falls on every second course is worth as much as one of 18
+cm/s that hardly ever falls. On the course of 3 m, where falls are counted, a walk
+lasts more than twice as long."""
 
 REAL_GROUNDS = 10
-"""Grounds of a generation on real: on a single one, all gaits may fall or none."""
+"""Number of grounds in a generation on real: on a single one, all gaits may fall, or
+none."""
 
 
 @dataclass(frozen=True)
 class GroundedRater:
-    """The sim, grounded or as it is.
+    """Rates gaits in the sim, grounded or not.
 
     Attributes:
-      sim: that gaits walk in.
+      sim: the sim.
       repeats: walks of each gait.
-      rules: of the walks.
+      rules: when a walk is over.
     """
 
     sim: GroundedSim
@@ -44,7 +47,12 @@ class GroundedRater:
     rules: TrialRules = RATED
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `experiments.walking.tuning.Rater`."""
+        """(n,) mean rewards [cm/s]; see `experiments.walking.tuning.Rater`.
+
+        Args:
+          vectors: (n, 16) gaits.
+          seed: of the walks.
+        """
         trials = walk_in_sim(self.sim, vectors, self.repeats, seed, self.rules)
         rewards = _reward_cm_s(trials, self.rules)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
@@ -52,11 +60,11 @@ class GroundedRater:
 
 @dataclass(frozen=True)
 class RandomisedRater:
-    """The sim with dynamics drawn anew for every walk: dynamics randomisation.
+    """Rates gaits in the sim with random dynamics: dynamics randomisation.
 
     Attributes:
-      repeats: walks of each gait, each in dynamics of its own.
-      latency_s: least and largest time until a command takes effect.
+      repeats: walks of each gait, each in its own dynamics.
+      latency_s: least and largest time until a command takes effect [s].
       friction: least and largest coefficient between sole and ground.
     """
 
@@ -65,7 +73,12 @@ class RandomisedRater:
     friction: tuple[float, float] = (0.4, 1.0)
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `experiments.walking.tuning.Rater`."""
+        """(n,) mean rewards [cm/s]; see `experiments.walking.tuning.Rater`.
+
+        Args:
+          vectors: (n, 16) gaits.
+          seed: of the dynamics and the walks.
+        """
         grounds = [terrain.make("flat", 0)] * len(vectors)
         rewards = []
         for child in seed.spawn(self.repeats):
@@ -75,7 +88,11 @@ class RandomisedRater:
         return np.asarray(np.mean(rewards, axis=0))
 
     def options(self, rng: np.random.Generator) -> WorldOptions:
-        """One draw; sensors are as noisy as the real world's."""
+        """Options of the sim with randomly drawn dynamics and the real sensors' noise.
+
+        Args:
+          rng: draws latency and friction.
+        """
         step_s = worlds.kind("sim").options.timestep_s
         latency_s = step_s * round(rng.uniform(*self.latency_s) / step_s)
         noise = worlds.kind("real").options.noise
@@ -86,18 +103,23 @@ class RandomisedRater:
 
 @dataclass(frozen=True)
 class RealRater:
-    """The real world on its ground, a walk of a course's length for each gait.
+    """Rates gaits in the real world, with one walk of 15 s each.
 
-    It is the upper line.
+    A search with it shows how well a gait could do if real walks cost nothing.
 
     Attributes:
-      course: the ground, and what is hidden.
+      course: the ground, and the physics that the sim lacks.
     """
 
     course: RealCourse
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """See `experiments.walking.tuning.Rater`."""
+        """(n,) rewards [cm/s]; see `experiments.walking.tuning.Rater`.
+
+        Args:
+          vectors: (n, 16) gaits.
+          seed: of the grounds and the walks.
+        """
         grounds = self.course.grounds(seed.spawn(REAL_GROUNDS))
         trials = []
         for first in range(0, len(vectors), MOST_AT_ONCE):
@@ -116,7 +138,7 @@ def _walk(
     options: WorldOptions,
     rules: TrialRules = RATED,
 ) -> Trials:
-    """Every gait once, with the same noise and from the same start pose."""
+    """Let every gait walk once, with the same noise and from the same start pose."""
     seeds: Sequence[np.random.SeedSequence] = [seed] * len(vectors)
     world = worlds.make(world_name, robots.get(ROBOT), grounds, seeds, options)
     try:

@@ -57,6 +57,9 @@ def walk_in_sim(
 
     Returns:
       gaits * repeats trials; those of one gait follow each other.
+
+    Example:
+      >>> trials = walk_in_sim(GroundedSim(), vectors, 2, np.random.SeedSequence(1))
     """
     if own_seeds:
         seeds = seed.spawn(repeats * len(vectors))

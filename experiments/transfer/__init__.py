@@ -1,4 +1,4 @@
-"""`groundwalk transfer`: the experiments of the SGAT paper, a study each."""
+"""`groundwalk transfer`: the experiments of the SGAT paper, one study for each."""
 
 from experiments.command_line import Verb
 
@@ -20,4 +20,4 @@ STUDIES = {
         "does the grounded sim know which gaits fall?",
     ),
 }
-"""By their names on the command line."""
+"""The studies by their names on the command line."""

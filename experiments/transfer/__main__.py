@@ -1,4 +1,4 @@
-"""`groundwalk transfer` as a script."""
+"""Runs `groundwalk transfer` as a script: `python -m experiments.transfer STUDY`."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""What the pages of all transfer studies share: claims, and how they are written."""
+"""Claims of a paper, checked by a study, and the page that shows them."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from experiments.runs.folder import RunFolder
 
 @dataclass(frozen=True)
 class Claim:
-    """Something that the paper says, and whether it came out so.
+    """Something that the paper says, and whether the study confirms it.
 
     Attributes:
-      text: what is claimed.
-      holds: whether it does.
-      found: the numbers that say so, in words.
+      text: the claim.
+      holds: whether the study confirms it.
+      found: the numbers that decide it, in words.
     """
 
     text: str
@@ -25,7 +25,7 @@ class Claim:
     found: str
 
     def to_json(self) -> dict[str, Any]:
-        """As plain values."""
+        """The claim as plain values."""
         return dataclasses.asdict(self)
 
 
@@ -36,14 +36,14 @@ def write_transfer_page(
     body: Sequence[str],
     answer: Sequence[str] = (),
 ) -> None:
-    """Write `result.md` and the HTML: the answer, the claims, and the rest.
+    """Write `result.md` and `report.html`: answer, claims, then the body.
 
     Args:
-      folder: the run, which has its pictures already.
-      title: what was asked, as a heading.
-      claims: what is to be shown.
+      folder: of the run; the pictures are in it already.
+      title: the study's question, as a heading.
+      claims: what the study checks.
       body: lines of Markdown.
-      answer: in plain words; how many claims hold where there are none.
+      answer: in plain words; if empty, the number of claims that hold.
     """
     lines = [*claim_lines(claims), "", *body]
     answer = answer or claims_answer(claims)
@@ -51,7 +51,7 @@ def write_transfer_page(
 
 
 def claims_answer(claims: Sequence[Claim]) -> list[str]:
-    """How many claims hold."""
+    """One sentence on how many of the claims hold; nothing if there are none."""
     if not claims:
         return []
     every, held = len(claims), sum(claim.holds for claim in claims)
@@ -61,7 +61,7 @@ def claims_answer(claims: Sequence[Claim]) -> list[str]:
 
 
 def claim_lines(claims: Sequence[Claim]) -> list[str]:
-    """A list with the verdict in front of each claim."""
+    """A Markdown list of the claims, each with its verdict in front."""
     return [
         f"- **{'holds' if claim.holds else 'does not hold'}**: {claim.text}: "
         f"{claim.found}"

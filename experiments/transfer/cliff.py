@@ -26,11 +26,11 @@ class TransferCliff(RunOptions):
     """Walk along a cliff with random moves: no grounding, GAT, SGAT and the optimum.
 
     Attributes:
-      rows: of the grid.
-      columns: of the grid.
-      noise: chances of a random move, each a real world of its own.
-      episodes: in the real world, of each policy that was found.
-      real_episodes: in the real world, at each grounding step.
+      rows: rows of the grid.
+      columns: columns of the grid.
+      noise: probabilities of a random move; each makes a real world of its own.
+      episodes: real episodes in which each policy is tried.
+      real_episodes: real episodes that a grounding step learns from.
     """
 
     rows: int = 4
@@ -40,20 +40,20 @@ class TransferCliff(RunOptions):
     real_episodes: int = 10_000
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse options with which nothing can run, before anything is written."""
         self.study()
         if not self.noise or min(self.noise) < 0 or max(self.noise) > 1:
             raise BadValueError(f"noise is {self.noise}; give values from 0 to 1")
         super().__post_init__()
 
     def study(self) -> CliffStudy:
-        """How the methods are compared."""
+        """The study that these options describe."""
         loop = TabularLoop(episodes=self.real_episodes)
         return CliffStudy(self.rows, self.columns, self.episodes, loop)
 
 
 def main(config: TransferCliff) -> None:
-    """Compare the methods at every noise value, and write everything down."""
+    """Compare the methods for every noise value, and write everything down."""
     folder, config = open_run(VERB, config)
     rows = _compare_all(config, folder)
     claims = check_claims(rows)
@@ -71,7 +71,7 @@ def main(config: TransferCliff) -> None:
 
 
 def _compare_all(config: TransferCliff, folder: RunFolder) -> list[Row]:
-    """All noise values; those that the run's history has are not computed again."""
+    """Results for all noise values; those in the run's history are kept."""
     rows = folder.read_json(HISTORY)["rows"] if folder.has(HISTORY) else []
     seeds = np.random.SeedSequence(config.seed).spawn(len(config.noise))
     with progress("cliff walking", len(config.noise), done=len(rows)) as bar:

@@ -1,4 +1,4 @@
-"""`groundwalk transfer nao`: gaits tuned in grounded sims, tried on uneven ground."""
+"""`groundwalk transfer nao`: tune gaits in grounded sims, try them on uneven ground."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -41,6 +41,7 @@ from worlds.real.hidden_robot import check_hidden
 VERB = "transfer-nao"
 SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,
             "more_real_walks": 2, "sim_walks": 2, "real_generations": 1}  # fmt: skip
+"""Least value of each option with which a study can run."""
 
 
 @dataclass(frozen=True)
@@ -48,22 +49,22 @@ class TransferNao(RunOptions):
     """Tune gaits in grounded sims, and count falls on real uneven ground.
 
     Attributes:
-      methods: to compare; the start gait is always tried.
-      terrain: of the real world's courses of 3 m.
+      methods: methods to compare; the start gait is always tried.
+      terrain: ground of the real world's courses of 3 m.
       hidden: physics of the real world that the sim's model lacks, such as
         speed_limit@LKneePitch:speed=3.
-      sim: folder of a diagnosis of the real robot; the sim that it corrects is then
-        tried beside the one as it is.
-      trials: of each gait found.
-      population: gaits in a generation.
-      generations: of a search in the sim.
-      sigma: spread of the first generation, as a part of each parameter's range.
-      repeats: walks of each gait in a stochastic sim.
-      real_walks: that the first grounding step learns from.
-      more_real_walks: that each further step learns from.
-      sim_walks: that each grounding step learns from.
+      sim: folder of a diagnosis of the real robot; the sim that it corrects is tried
+        beside the plain one.
+      trials: real courses on which each gait that was found is tried.
+      population: gaits in a generation of a search in the sim.
+      generations: number of generations of a search in the sim.
+      sigma: spread of the first generation, as a share of each parameter's range.
+      repeats: walks of each gait, for its rating in a sim with random numbers.
+      real_walks: number of real walks that the first grounding step learns from.
+      more_real_walks: number of real walks that each further step adds.
+      sim_walks: number of walks in the sim for each grounding step.
       real_population: gaits in a generation of the search on real.
-      real_generations: of the search on real.
+      real_generations: number of generations of the search on real.
     """
 
     methods: tuple[str, ...] | None = None
@@ -82,7 +83,7 @@ class TransferNao(RunOptions):
     real_generations: int = 10
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse options with which nothing can run, before anything is written."""
         known = tuple(dict.fromkeys((*METHODS, *WITH_SIM, *WITH_SIM_ON_FLAT)))
         for method in self.compared:
             if method not in known:
@@ -100,7 +101,7 @@ class TransferNao(RunOptions):
 
     @property
     def compared(self) -> tuple[str, ...]:
-        """The methods, those of the default where none are given."""
+        """The methods to compare; a default set if none are given."""
         if self.methods is not None:
             return self.methods
         if self.sim is None:
@@ -109,12 +110,12 @@ class TransferNao(RunOptions):
 
     @property
     def plan(self) -> tuple[tuple[str, int], ...]:
-        """Method and step of the cells that are asked for."""
+        """Method and grounding step of each cell to compute."""
         return tuple(cell for cell in PLAN if cell[0] in (START, *self.compared))
 
     @property
     def places(self) -> Places:
-        """The real course, and what corrects the sim."""
+        """The real course, and the diagnosis that corrects the sim."""
         hidden = tuple(Hidden.parse(text) for text in self.hidden)
         return Places(RealCourse(self.terrain, hidden), self.sim)
 
@@ -132,7 +133,7 @@ class TransferNao(RunOptions):
 
 
 def main(config: TransferNao) -> None:
-    """Find every cell's gait and try it; what is done is not done again."""
+    """Compute and try every cell's gait; cells of an earlier run are kept."""
     folder, config = open_run(VERB, config)
     study = NaoStudy(folder, config.effort, config.places, config.seed)
     if study.cells:
@@ -153,7 +154,7 @@ def main(config: TransferNao) -> None:
 def _write(
     folder: RunFolder, config: TransferNao, cells: Sequence[Mapping[str, Any]]
 ) -> None:
-    """Write down what is known so far: a study takes hours."""
+    """Write the results so far, since a study takes hours."""
     folder.write_json(RESULT, {CELLS: cells})
     with extra(FIGURE):
         draw_cells(cells, folder.path / FIGURE)

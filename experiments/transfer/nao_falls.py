@@ -46,11 +46,11 @@ class TransferNaoFalls(RunOptions):
     """Predict speed and falls of gaits that no grounding has seen.
 
     Attributes:
-      gaits: held out of the grounding data.
-      trials: of each of them, on real uneven ground.
-      rollouts: of each of them, in every grounded sim.
-      real_walks: of other gaits in the real world, which the groundings learn from.
-      sim_walks: of other gaits in the sim.
+      gaits: number of gaits that are held out of the grounding data.
+      trials: real walks of each held-out gait, on uneven ground.
+      rollouts: walks of each held-out gait in every grounded sim.
+      real_walks: real walks of other gaits, which the groundings learn from.
+      sim_walks: walks of other gaits in the sim, which the groundings learn from.
     """
 
     gaits: int = 24
@@ -60,7 +60,7 @@ class TransferNaoFalls(RunOptions):
     sim_walks: int = 220
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse options with which nothing can run, before anything is written."""
         for name in ("gaits", "trials", "rollouts", "real_walks", "sim_walks"):
             if getattr(self, name) < 2:
                 raise BadValueError(f"{name} is {getattr(self, name)}; give at least 2")
@@ -68,7 +68,7 @@ class TransferNaoFalls(RunOptions):
 
 
 def main(config: TransferNaoFalls) -> None:
-    """Walk, learn, predict and compare; what is done is not done again."""
+    """Walk, learn, predict and compare; stages of an earlier run are kept."""
     folder, config = open_run(VERB, config)
     state = folder.read_json(HISTORY) if folder.has(HISTORY) else {}
     with progress("predicting falls", STAGES, done=len(state)) as bar:
@@ -93,7 +93,7 @@ def main(config: TransferNaoFalls) -> None:
 def _stages(
     config: TransferNaoFalls, done: Mapping[str, Any]
 ) -> Iterator[tuple[str, Any]]:
-    """What is still to be done, stage by stage."""
+    """Compute what is missing, stage by stage, and yield each result."""
     description, start = robots.get(ROBOT), gaits.get("start")
     held_out = GaitCloud().draw(start, config.gaits, _seed(config, 0))
     if "real" not in done:
@@ -119,12 +119,12 @@ def _stages(
 
 
 def _seed(config: TransferNaoFalls, use: int) -> np.random.SeedSequence:
-    """The random numbers of one use, the same however often they are asked for."""
+    """The seed of one use, always the same for the same number."""
     return np.random.SeedSequence(config.seed, spawn_key=(use,))
 
 
 def _per_gait(trials: Trials, count: int) -> dict[str, list[float]]:
-    """Fall rate and mean speed [cm/s] of each gait, whose trials follow each other."""
+    """Fall rate and mean speed [cm/s] of each gait; its trials follow each other."""
     return {
         "fall_rate": trials.fell.reshape(count, -1).mean(axis=1).tolist(),
         "speed_cm_s": trials.speed_cm_s.reshape(count, -1).mean(axis=1).tolist(),

@@ -1,4 +1,4 @@
-"""`groundwalk transfer toy`: the paper's toy worlds, solved exactly."""
+"""`groundwalk transfer toy`: the SGAT paper's toy worlds, solved exactly."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ NOTES = (
     '"from counts".',
 )
 FIRST = 0
-"""The state of the choice."""
+"""State in which the choice is made."""
 
 
 @dataclass(frozen=True)
@@ -44,19 +44,19 @@ class TransferToy(RunOptions):
     """Find the best action in the paper's toy worlds, grounded by GAT and by SGAT.
 
     Attributes:
-      episodes: random real transitions, for the forward models that are counted.
+      episodes: random real transitions from which forward models are counted.
     """
 
     episodes: int = 30_000
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse options with which nothing can run, before anything is written."""
         check_at_least(self, episodes=1)
         super().__post_init__()
 
 
 def main(config: TransferToy) -> None:
-    """Solve the toys, and write everything down."""
+    """Solve the toy worlds, and write everything down."""
     folder, config = open_run(VERB, config)
     if not folder.has(RESULT):
         folder.write_json(RESULT, _solve_all(config))
@@ -107,12 +107,12 @@ def _solve_all(config: TransferToy) -> dict[str, Any]:
 def solve(
     toy: Toy, episodes: int, generator: np.random.Generator
 ) -> list[dict[str, Any]]:
-    """What is best in the sim, in both grounded sims and in the real world.
+    """The best action in the sim, in both grounded sims and in the real world.
 
     Args:
       toy: the worlds.
-      episodes: random real transitions, for the forward models that are counted.
-      generator: where they come from.
+      episodes: random real transitions from which forward models are counted.
+      generator: draws them.
     """
     anything = np.zeros(toy.sim.states, np.intp)
     seen = roll_out(toy.real, anything, episodes, generator, exploration=1.0).counts
@@ -142,7 +142,7 @@ def _planned_in(toy: Toy, forward: FloatArray) -> dict[str, FiniteMdp]:
 
 
 def _first_values(mdp: FiniteMdp) -> FloatArray:
-    """(A,) value of each action; nothing comes after it."""
+    """(A,) value of each action in the first state, after which an episode ends."""
     values: FloatArray = action_values(mdp, np.zeros(mdp.states))[FIRST]
     return values
 

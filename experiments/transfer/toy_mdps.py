@@ -1,4 +1,4 @@
-"""The toy worlds of the paper: one choice, and what it leads to."""
+"""The SGAT paper's toy worlds: one choice between actions with random outcomes."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,14 @@ from sgat.tabular.mdp import FiniteMdp
 
 @dataclass(frozen=True, eq=False)
 class Toy:
-    """A simulator, a real world, and what the paper says of them.
+    """A simulator, a real world, and the paper's statements about them.
 
     Attributes:
-      figures: where the paper shows it; figures counted in the order of its source.
+      figures: where the paper shows the toy, by the order of figures in its source.
       sim: the simulator.
       real: the real world.
-      best: the best action in sim, both grounded sims and real, as the paper says.
+      best: the best action in the sim, both grounded sims and the real world, according
+        to the paper.
     """
 
     figures: str
@@ -26,11 +27,11 @@ class Toy:
 
 
 def choice(rewards: npt.ArrayLike, chances: npt.ArrayLike) -> FiniteMdp:
-    """A world of a single step, from s0 into one of the states s1, s2, ...
+    """A world with a single step, from s0 into one of the states s1, s2, ...
 
     Args:
-      rewards: what each of those states pays.
-      chances: (actions, states) probability of each.
+      rewards: (states,) reward for entering each of these states.
+      chances: (actions, states) probability of each of these states.
     """
     reward = np.concatenate([[0.0], np.asarray(rewards, np.float64)])
     outcomes = np.asarray(chances, np.float64)
@@ -54,4 +55,4 @@ TOYS = {
         best={"sim": "a3", "GAT": "a1", "SGAT": "a2", "real": "a2"},
     ),
 }
-"""By what their real world is like."""
+"""The toys, by what their real world is like."""

@@ -101,24 +101,24 @@ class WalkEnv(Environment):
         transformer: "Transformer | str | Path | None" = None,
         options: WorldOptions | None = None,
     ) -> None:
-        """Say who walks where; nothing is simulated yet.
+        """Choose the robot, its gait and its world; nothing is simulated yet.
 
         Args:
           world: "sim", "real", or "grounded": the sim behind an action transformer.
-          action: what an action is.
-          robot: its name, or a description.
-          gait: that actions are added to: a name, a JSON file or a gait.
+          action: meaning of an action; see the class.
+          robot: name of a robot, or a description.
+          gait: that residual actions are added to: a name, a JSON file or a gait.
           terrain: such as "lumps:amplitude_m=0.005", drawn anew at each reset, or a
-            ground of your own; the world's own where None.
-          limit_s: time limit of an episode.
-          residual_rad: what an action of 1 adds to a joint's command.
-          start_spread_rad: standard deviation of the joints at the start.
-          transformer: of a grounded world: an object, of which this environment gets a
-            copy, or the folder that `sgat.transformers.transformer_files` has written.
-          options: of the world, such as its latency; its own where None.
+            ground; the world's own if None.
+          limit_s: time limit of an episode [s].
+          residual_rad: what an action of 1 adds to a joint's command [rad].
+          start_spread_rad: standard deviation of the joints at the start [rad].
+          transformer: of a grounded world: an object, which is copied, or a folder that
+            `sgat.transformers.write_transformer` has written.
+          options: of the world, such as its latency; its own if None.
 
         Raises:
-          BadValueError: a value cannot be, or world and transformer do not fit.
+          BadValueError: a value is impossible, or world and transformer do not fit.
           UnknownNameError: there is no such world, kind of action, robot or gait.
         """
         if action not in get_args(ActionKind):
@@ -141,11 +141,14 @@ class WalkEnv(Environment):
     def reset(
         self, *, seed: int | None = None, options: Info | None = None
     ) -> tuple[FloatArray, Info]:
-        """Start an episode; what it meets follows from the seed.
+        """Start an episode; everything random in it follows from the seed.
 
         Args:
           seed: of this episode and all that follow; see `gymnasium.Env.reset`.
-          options: there are none.
+          options: not used.
+
+        Returns:
+          The observation, with the columns of the class's table, and `info`.
         """
         super().reset(seed=seed)
         self.close()
@@ -155,7 +158,14 @@ class WalkEnv(Environment):
         return self._seen(), self._info()
 
     def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, Info]:
-        """One tick with a residual, or one rollout with a gait; see the class."""
+        """One tick with a residual, or one whole rollout with a gait.
+
+        Args:
+          action: (joints,) residual or (16,) gait, from -1 to 1.
+
+        Returns:
+          Observation, reward, terminated, truncated and `info`; see the class.
+        """
         if self._episode is None:
             raise ResetNeeded("call reset before step")
         asked = np.clip(np.asarray(action, float), -1.0, 1.0)
@@ -170,7 +180,7 @@ class WalkEnv(Environment):
         return self._seen(), reward, terminated, truncated, self._info()
 
     def close(self) -> None:
-        """Give back the world's processes."""
+        """Close the world and its processes."""
         if self._world is not None:
             self._world.close()
         self._world = self._episode = None
@@ -180,7 +190,7 @@ class WalkEnv(Environment):
         self._episode = WalkEpisode(self._world, gait, self._rules, self._of_pose)
 
     def _tick(self, added_rad: FloatArray) -> float:
-        """Walk on for a tick; what that is worth."""
+        """Walk for one tick; the gain in reward [cm/s]."""
         assert self._episode is not None
         before = self._worth()
         if not self._episode.is_over:

@@ -1,4 +1,4 @@
-"""One robot that walks tick by tick, with something added to the engine's commands."""
+"""One robot that walks tick by tick, with additions to the engine's commands."""
 
 import numpy as np
 
@@ -10,13 +10,15 @@ from worlds import TICK_S, End, Observation, World
 
 
 class WalkEpisode:
-    """A trial of `experiments.walking.trials.walk_trials`, one tick at a time.
+    """A trial as in `experiments.walking.trials.walk_trials`, one tick at a time.
 
-    Where nothing is added to the commands it is that trial, to the bit.
+    If nothing is added to the commands, it is equal to that trial to the last bit.
 
     Attributes:
-      command_rad: (joints,) what the engine asks for at the next tick.
-      observation: of the last tick.
+      command_rad: (joints,) the engine's command for the next tick [rad].
+      observation: measurements of the last tick.
+      ticks: number of ticks so far.
+      distance_m: distance walked so far, along the x axis [m].
     """
 
     def __init__(
@@ -26,9 +28,9 @@ class WalkEpisode:
 
         Args:
           world: with one robot.
-          gait: that it walks.
+          gait: that the robot walks.
           rules: when the trial is over.
-          seed: of the pose at the start, if that shall spread.
+          seed: of the start pose, if poses vary.
         """
         self._world, self._rules = world, rules
         self._engine = WalkEngine(biped(world.description), [gait], TICK_S)
@@ -43,8 +45,8 @@ class WalkEpisode:
         """Walk for one tick.
 
         Args:
-          added_rad: (joints,) added to the engine's command, which does not know of it;
-            the sum is held within the joints' ranges.
+          added_rad: (joints,) is added to the engine's command [rad], which does not
+            know of it; the sum is held within the joints' ranges.
         """
         low, high = self._world.description.joint_range_rad.T
         # the engine's own commands may be past a range's end by the last bit
@@ -62,32 +64,32 @@ class WalkEpisode:
 
     @property
     def ended(self) -> End:
-        """Why the rollout ended; `End.NONE` if time is up or it goes on."""
+        """Why the rollout ended; `End.NONE` if time is up or it continues."""
         return self._world.ended[0]
 
     @property
     def is_over(self) -> bool:
-        """Whether the trial is."""
+        """Whether the trial is over."""
         out_of_time = self.ticks >= round(self._rules.limit_s / TICK_S)
         return out_of_time or not self._world.active[0]
 
     @property
     def support(self) -> float:
-        """The foot that supports: 1 left, -1 right, 0 both."""
+        """The supporting foot: 1 left, -1 right, 0 both."""
         return float(self._engine.support[0])
 
     @property
     def step_time_s(self) -> float:
-        """Time since the current step began."""
+        """Time since the current step began [s]."""
         return float(self._engine.step_time_s[0])
 
     def trials(self) -> Trials:
-        """How it went so far."""
+        """Result of the trial so far."""
         time_s = np.array([self.ticks * TICK_S])
         return Trials(np.array([self.distance_m]), time_s, (self.ended,))
 
     def _ask(self) -> None:
-        """What the engine commands after what was measured."""
+        """Get the engine's next command for the last measurements."""
         seen = self.observation
         self.command_rad: FloatArray = self._engine.step(
             Velocity.forward(), seen.gyroscope_rad_s, seen.foot_force_n

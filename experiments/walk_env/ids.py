@@ -13,13 +13,17 @@ IDS = {
     "Groundwalk/Nao-Real-v0": "real",
     "Groundwalk/Nao-Grounded-v0": "grounded",
 }
-"""Names and worlds. All take the arguments of `experiments.walk_env.env.WalkEnv`."""
+"""Ids and worlds. All take the arguments of `experiments.walk_env.env.WalkEnv`."""
 
 
 def register_envs() -> None:
-    """Make Gymnasium know the names of `IDS`; it may be called again.
+    """Register the ids of `IDS` with Gymnasium; it may be called again.
 
-    An environment's own code is imported when one is made.
+    The code of an environment is imported when one is made.
+
+    Example:
+      >>> register_envs()
+      >>> env = gymnasium.make("Groundwalk/Nao-Sim-v0")
     """
     import gymnasium
 

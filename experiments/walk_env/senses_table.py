@@ -1,4 +1,4 @@
-"""What a walking robot measures as one vector, and the bounds of its sensors."""
+"""A walking robot's measurements as one vector, and its bounds."""
 
 import math
 
@@ -14,10 +14,10 @@ HEAVIEST_N, LONGEST_STEP_S = 10_000.0, 10.0
 
 
 def senses_box(joints: int) -> Box:
-    """The space of `senses_of`.
+    """The space of the vectors that `senses_of` gives.
 
     Args:
-      joints: of the robot.
+      joints: number of joints of the robot.
     """
     parts = (
         (joints, -TURN_RAD, TURN_RAD),
@@ -35,11 +35,13 @@ def senses_box(joints: int) -> Box:
 
 
 def senses_of(episode: WalkEpisode, box: Box) -> FloatArray:
-    """(n,) what the robot measured at the last tick, and what its engine does next.
+    """(n,) measurements of the last tick, and the engine's next command.
+
+    The columns and their units are in the docstring of `WalkEnv`.
 
     Args:
       episode: of the robot.
-      box: of `senses_box`; what is beyond a bound is at it.
+      box: from `senses_box`; values beyond a bound are set to it.
     """
     seen = episode.observation
     vector = np.concatenate(

@@ -26,11 +26,11 @@ class EnvWorld:
     Attributes:
       name: "sim", "real", or "grounded": the sim behind a transformer.
       description: the robot.
-      terrain: in words, drawn anew for each episode, or a ground; the world's own
-        where None.
-      transformer: of a grounded world; an object, which is copied so that no two
+      terrain: in words, drawn anew for each episode, or a ground; the world's own if
+        None.
+      transformer: of a grounded world: an object, which is copied so that no two
         environments share one, or the folder of a written one.
-      options: of the world inside; its own where None.
+      options: of the world inside; its own if None.
     """
 
     name: WorldName
@@ -40,7 +40,7 @@ class EnvWorld:
     options: WorldOptions | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what does not fit together, and read or copy the transformer."""
+        """Refuse arguments that do not fit together; read or copy the transformer."""
         if self.name not in get_args(WorldName):
             raise UnknownNameError("world", self.name, get_args(WorldName))
         if (self.name == "grounded") != (self.transformer is not None):
@@ -56,17 +56,17 @@ class EnvWorld:
 
     @property
     def inner(self) -> str:
-        """The world that computes the physics."""
+        """Name of the world that computes the physics."""
         return "sim" if self.name == "grounded" else self.name
 
     def make(
         self, of_ground: np.random.SeedSequence, of_noise: np.random.SeedSequence
     ) -> World:
-        """The world of an episode.
+        """The world of one episode.
 
         Args:
           of_ground: seed of a terrain that is given in words.
-          of_noise: seed of the sensors' noise, and of the transformer's.
+          of_noise: seed of the sensors' noise and of the transformer's.
         """
         grounds = [self._ground(of_ground)]
         robot, seeds = self.description, [of_noise]
@@ -90,7 +90,7 @@ class EnvWorld:
 def episode_seeds(
     generator: np.random.Generator,
 ) -> tuple[np.random.SeedSequence, np.random.SeedSequence, np.random.SeedSequence]:
-    """Seeds of an episode's ground, of its noise and of its start pose.
+    """Seeds of an episode's ground, its noise and its start pose.
 
     Args:
       generator: the environment's `np_random`.

@@ -1,8 +1,8 @@
-"""Transitions from Gymnasium environments, with the true last state of each episode.
+"""Transitions of a Gymnasium environment, with the true last state of each episode.
 
-An environment that resets itself answers an episode's last step with the next
-episode's first observation. Taken for a next state that is a jump that no dynamics
-made, and it teaches a forward model a wide spread just where episodes fail.
+An environment that resets itself returns, for an episode's last step, the first
+observation of the next episode. Used as a next state, that is a jump that no dynamics
+has made. A forward model would learn too wide a spread exactly where episodes fail.
 """
 
 from collections.abc import Callable
@@ -17,12 +17,12 @@ from groundwalk.errors import BadValueError
 from sgat.transitions import Transitions
 
 Policy = Callable[[FloatArray], FloatArray]
-"""Observations to actions: (o,) to (a,), or (n, o) to (n, a) for n environments."""
+"""A function of an observation (o,) that gives an action (a,)."""
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 
 
 class _Rows:
-    """Transitions of one environment, as they come."""
+    """Collects transitions of one environment."""
 
     def __init__(self) -> None:
         self.state: list[FloatArray] = []
@@ -34,7 +34,7 @@ class _Rows:
     def add(
         self, state: FloatArray, action: FloatArray, next_state: FloatArray, end: bool
     ) -> None:
-        """Remember one transition; copies, as environments may reuse their arrays."""
+        """Add one transition; arrays are copied, since environments may reuse them."""
         self.state.append(np.array(state, float))
         self.action.append(np.array(action, float))
         self.next_state.append(np.array(next_state, float))
@@ -42,7 +42,7 @@ class _Rows:
         self._episode += end
 
     def to_transitions(self) -> Transitions:
-        """All of them."""
+        """All transitions added so far."""
         return Transitions(
             np.array(self.state),
             np.array(self.action),
@@ -54,13 +54,22 @@ class _Rows:
 def collect(
     env: Environment, policy: Policy, steps: int, rng: np.random.Generator
 ) -> Transitions:
-    """Exactly so many steps of one environment.
+    """Run a policy for an exact number of steps.
 
     Args:
-      env: plain or wrapped. Whether or not a wrapper would reset it, it is reset here.
-      policy: its actions are clipped to the action space, in the data, too.
-      steps: the last episode may be cut off.
-      rng: gives the seed of the first episode; the others follow from it.
+      env: plain or wrapped. It is reset here after each episode, even if a wrapper does
+        so, too.
+      policy: gives the actions; they are clipped to the action space, also in the data.
+      steps: number of transitions; the last episode may be incomplete.
+      rng: gives the seed of the first episode, from which the others follow.
+
+    Raises:
+      BadValueError: the action space is not a Box with one axis.
+
+    Example:
+      >>> env = gymnasium.make("InvertedPendulum-v5")
+      >>> collect(env, lambda observation: np.zeros(1), 100, np.random.default_rng(1)).n
+      100
     """
     low, high = _bounds(env.action_space)
     rows = _Rows()

@@ -14,14 +14,18 @@ from sgat.transformers.transformer import Transformer
 Wrapper: TypeAlias = gym.Wrapper[FloatArray, FloatArray, FloatArray, FloatArray]
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 RewardOf = Callable[[float, FloatArray, FloatArray], float]
-"""The environment's reward, the policy's action and the transformed one to a reward."""
+"""A function that corrects a reward, of: the environment's reward, the policy's
+action (a,), and the transformed action (a,)."""
 
 
 class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
-    """Passes the policy's action through a transformer, then to the environment.
+    """A wrapper that passes each action through a transformer.
 
-    The transformer's state is the observation. `info["transformed_action"]` tells what
-    the environment was given.
+    The transformer's state is the observation. `info["transformed_action"]` is the
+    action (a,) that the environment was given.
+
+    Example:
+      >>> env = GroundedEnv(gymnasium.make("InvertedPendulum-v5"), transformer)
     """
 
     def __init__(
@@ -33,12 +37,15 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
         """Wrap an environment.
 
         Args:
-          env: with Box actions and observations of one axis.
-          transformer: of one robot's actions; it belongs to this environment alone,
-            and one made of its `spec` gets a copy.
-          reward_of: None leaves the reward as it is: the environment's for the
-            transformed action, so that a cost of control is paid for that one. The
-            paper's reward is one of the policy's action; this can put it right.
+          env: with Box actions and Box observations of one axis each.
+          transformer: of one robot's actions. It must belong to this environment alone;
+            an environment that is made again from its `spec` gets a copy.
+          reward_of: corrects the reward. If None, the reward stays the environment's
+            own, which charges control costs for the transformed action; the SGAT
+            paper's reward is that of the policy's action.
+
+        Raises:
+          BadValueError: a space is of another kind.
         """
         gym.utils.RecordConstructorArgs.__init__(
             self, transformer=transformer, reward_of=reward_of
@@ -55,7 +62,7 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[FloatArray, dict[str, Any]]:
-        """Start an episode; a seed is the environment's and the transformer's, too."""
+        """Start an episode; environment and transformer both use the seed."""
         if seed is not None:
             self._seeds = np.random.SeedSequence(seed)
         self._transformer.reset(self._seeds.spawn(1))
@@ -66,7 +73,11 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     def step(
         self, action: FloatArray
     ) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
-        """One step of the environment with the transformed action."""
+        """One step of the environment with the transformed action.
+
+        Args:
+          action: (a,) what the policy asks for, in the environment's units.
+        """
         asked = np.array(action, dtype=float)
         given = self._transformer(self._state, asked[None])[0]
         given = given.astype(self.env.action_space.dtype)

@@ -1,4 +1,4 @@
-"""From a distribution over next states to one over actions, for stochastic sims."""
+"""Inverse model of a stochastic sim: from distributions of next states to actions."""
 
 from pathlib import Path
 from typing import NamedTuple, Self
@@ -11,55 +11,83 @@ from sgat.models.forward_model import ForwardModel
 from sgat.transitions import Transitions
 
 _ROUNDS = 3
+"""Gauss-Newton steps towards the wanted mean; three are enough since models are
+smooth."""
 _FREEDOM = 10.0
-"""How far an action may move for free, in its own standard deviations."""
+"""Weak prior on an action's change, in standard deviations of the training actions:
+directions that no next state depends on stay as the policy wants them."""
 _FINEST = 1e-4
-"""Part of a next state's standard deviation that need not be hit."""
+"""Errors of a next state below this share of its standard deviation do not count."""
 
 
 class ActionDistribution(NamedTuple):
     """Normal distributions over the actions of n robots.
 
     Attributes:
-      mean: (n, a).
-      covariance: (n, a, a), possibly singular.
+      mean: (n, a) in the action's units.
+      covariance: (n, a, a) in the action's units squared; may be singular.
     """
 
     mean: FloatArray
     covariance: FloatArray
 
     def sample(self, z: FloatArray) -> FloatArray:
-        """(n, a) made of standardised noise z (n, a)."""
+        """Samples made from standardised noise.
+
+        Args:
+          z: (n, a) independent standard normal numbers.
+
+        Returns:
+          (n, a) actions.
+        """
         values, vectors = np.linalg.eigh(self.covariance)
         root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
         return np.asarray(self.mean + (root @ z[..., None])[..., 0])
 
 
 class DistributionalInverse:
-    """The actions after which a stochastic sim has the wanted next-state distribution.
+    """Finds actions after which a stochastic sim has a wanted next-state distribution.
 
-    A sim that is itself noisy adds its own spread to whatever the action does. So the
-    actions must not be those that the sim may have taken to get to the wanted states,
-    p(a | s, s') averaged over them: with the sim's noise on top they would scatter too
-    far. The moments must fit after the sim's step: with f the sim's mean next state,
-    S its covariance and B = df/da, wanted mean m and covariance C are met by
+    A noisy sim adds its own spread to the effect of an action. If actions were sampled
+    from p(a | s, s') for wanted next states s', the sim's noise would come on top and
+    the next states would scatter too far. Instead, the moments after the sim's step are
+    matched. Let f be the sim's mean next state, S its covariance and B = df/da. A
+    wanted mean m and a wanted covariance C are met by
 
         f(s, a*) = m  and  B cov(a) B^T = C - S.
 
-    f and S are a forward model of the sim. a* is the least change of the policy's
-    action that meets m, by Gauss-Newton steps weighted with (C + S)^-1. Where the sim
-    is noisier than what is wanted, cov(a) loses its negative part: no action can help.
-    As nothing is averaged over actions, none is shrunk as by a least-squares inverse.
+    f and S are a forward model of the sim. a* is the smallest change of the policy's
+    action that meets m, found by Gauss-Newton steps with the weights (C + S)^-1. Where
+    the sim is noisier than wanted, C - S has negative parts, which are dropped: no
+    action can remove noise. Unlike a least-squares inverse, this does not average over
+    actions and so does not make them too small.
+
+    Example:
+      >>> inverse = DistributionalInverse().fit(sim_transitions, seed)
+      >>> actions = inverse.predict(state, action, *forward.moments(state, action))
     """
 
     def __init__(self, config: ForwardConfig | None = None) -> None:
-        """Only remember what to fit: by default a full covariance."""
+        """Prepare a model; `fit` or `load` gives it its network.
+
+        Args:
+          config: network and distribution of the sim's forward model; by default with a
+            full covariance.
+        """
         self.sim = ForwardModel(
             ForwardConfig(head="full") if config is None else config
         )
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn the sim's dynamics from at least two of its episodes."""
+        """Learn the sim's dynamics.
+
+        Args:
+          transitions: of the sim, at least two episodes.
+          seed: of the training; the same seed gives the same bits.
+
+        Returns:
+          This model.
+        """
         self.sim.fit(transitions, seed)
         return self
 
@@ -70,13 +98,16 @@ class DistributionalInverse:
         mean: FloatArray,
         covariance: FloatArray,
     ) -> ActionDistribution:
-        """Actions for the wanted next states.
+        """Distributions of actions that lead to wanted next states.
 
         Args:
-          state: (n, s).
-          action: (n, a) what the policy would do; the answer is near it.
-          mean: (n, p) of the wanted next state.
-          covariance: (n, p, p) of the wanted next state.
+          state: (n, s) states.
+          action: (n, a) actions that the policy asks for; the answer is close to them.
+          mean: (n, p) wanted mean of the next state.
+          covariance: (n, p, p) wanted covariance of the next state.
+
+        Returns:
+          Normal distributions over (n, a) actions.
         """
         _, own = self.sim.moments(state, action)
         finest = np.diag((_FINEST * self.sim.outcome_scale) ** 2)
@@ -89,16 +120,20 @@ class DistributionalInverse:
         return ActionDistribution(found, _positive(pull @ (covariance - own) @ pull.mT))
 
     def score(self, transitions: Transitions) -> float:
-        """Mean log-likelihood of the sim's model, as of `ForwardModel.score`."""
+        """Mean log-likelihood under the sim's model; see `ForwardModel.score`."""
         return self.sim.score(transitions)
 
     def save(self, path: Path) -> None:
-        """Write everything to one file."""
+        """Write the model to one file."""
         self.sim.save(path)
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read back what `save` has written, to the same bits."""
+        """Read a file of `save`; every answer is equal to the last bit.
+
+        Raises:
+          BadModelError: the file holds no forward model.
+        """
         inverse = cls()
         inverse.sim = ForwardModel.load(path)
         return inverse
@@ -106,7 +141,7 @@ class DistributionalInverse:
     def _pull(
         self, state: FloatArray, action: FloatArray, precision: FloatArray
     ) -> FloatArray:
-        """(n, a, p) how much the action changes per miss of the next state."""
+        """(n, a, p) change of the action per error of the next state."""
         effect = self.sim.action_effect(state, action)
         weighted = effect.mT @ precision
         free = np.diag((_FREEDOM * self.sim.action_scale(action.shape[1])) ** -2.0)
@@ -114,6 +149,6 @@ class DistributionalInverse:
 
 
 def _positive(symmetric: FloatArray) -> FloatArray:
-    """(n, a, a) without what is negative in it."""
+    """(n, a, a) symmetric matrices without their negative eigenvalues."""
     values, vectors = np.linalg.eigh((symmetric + symmetric.mT) / 2)
     return np.asarray((vectors * np.maximum(values, 0.0)[:, None, :]) @ vectors.mT)

@@ -1,4 +1,4 @@
-"""Which network and which distribution a forward model is."""
+"""Settings of a forward model: its network, and the distribution that it predicts."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -9,22 +9,30 @@ from sgat.models.mixture_head import MixtureHead
 from sgat.models.network_config import NetworkConfig
 
 HeadName = Literal["gaussian", "mixture", "low-rank", "full"]
+"""Families of distributions that a forward model can predict; see `ForwardConfig`."""
 
 
 @dataclass(frozen=True)
 class ForwardConfig(NetworkConfig):
-    """A network and the distribution that it describes.
+    """Network and distribution of a forward model.
 
     Attributes:
-      head: "gaussian": independent dimensions, the paper's; "full" or "low-rank":
-        with a covariance; "mixture": more than one outcome, the paper's footnote.
-      components: of a mixture.
-      rank: of the low-rank part of a covariance.
-      beta: of the beta-NLL for the Gaussian head; 0 is the plain likelihood, 0.5 keeps
-        the mean learning where the spread is large (Seitzer et al. 2022).
-      members: networks in the ensemble, each with its own bootstrapped episodes. A
-        robot keeps one for an episode: what is not known of the world does not
-        change from tick to tick (TSinf of Chua et al. 2018).
+      head: "gaussian": normal, with independent dimensions, as in the SGAT paper;
+        "full" or "low-rank": normal with a covariance; "mixture": several normal
+        distributions, for dynamics with more than one outcome.
+      components: number of components of a mixture.
+      rank: number of columns of the low-rank part of a covariance.
+      beta: exponent of the beta-NLL loss of the Gaussian head. 0 is the plain
+        likelihood; with 0.5 the mean is learned as well where the spread is large
+        (Seitzer et al. 2022).
+      members: number of networks in the ensemble, each fitted to its own bootstrap
+        sample of the episodes. A robot keeps one network for a whole episode, because
+        what is unknown about a world does not change from tick to tick (TS-infinity of
+        Chua et al. 2018).
+
+    Example:
+      >>> ForwardConfig(head="full").head
+      'full'
     """
 
     head: HeadName = "gaussian"
@@ -34,7 +42,7 @@ class ForwardConfig(NetworkConfig):
     members: int = 1
 
     def __post_init__(self) -> None:
-        """Refuse what is no distribution."""
+        """Refuse values that describe no distribution."""
         super().__post_init__()
         if self.head not in get_args(HeadName):
             raise UnknownNameError("head", self.head, get_args(HeadName))
@@ -50,7 +58,7 @@ class ForwardConfig(NetworkConfig):
             )
 
     def make_head(self, dimensions: int) -> Head:
-        """The distribution over so many numbers."""
+        """The family of distributions over this number of dimensions."""
         match self.head:
             case "gaussian":
                 return GaussianHead(dimensions, self.beta)

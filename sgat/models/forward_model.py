@@ -1,4 +1,4 @@
-"""The real world's dynamics as a distribution over next states."""
+"""Forward model: the distribution over the next states of a world."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -22,22 +22,40 @@ from sgat.transitions import Transitions
 
 _KIND = "forward"
 _GOLDEN = (5**0.5 - 1) / 2
+"""Golden ratio minus 1: its multiples modulo 1 are evenly spread from 0 to 1."""
 
 
 class ForwardModel:
     """p(s' | s, a), learned from transitions.
 
-    What is learned is the change of the state, scaled in each dimension. Fit it to the
-    real world for GAT and SGAT.
+    The network predicts the change of the state, scaled in each dimension. GAT and SGAT
+    fit it to the real world.
+
+    Example:
+      >>> model = ForwardModel(ForwardConfig(head="full")).fit(transitions, seed)
+      >>> mean = model.predict(state, action)
     """
 
     def __init__(self, config: ForwardConfig | None = None) -> None:
-        """Only remember what to fit."""
+        """Prepare a model; `fit` or `load` gives it its networks.
+
+        Args:
+          config: networks and distribution; one network and independent normal
+            distributions by default.
+        """
         self.config = ForwardConfig() if config is None else config
         self._fitted: ScaledNetwork | None = None
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn from at least two episodes; the same seed gives the same bits."""
+        """Learn from transitions.
+
+        Args:
+          transitions: of at least two episodes.
+          seed: of the training; the same seed gives the same bits.
+
+        Returns:
+          This model.
+        """
         head = self.config.make_head(transitions.outcomes)
         self._fitted = ScaledNetwork.fit(
             np.hstack([transitions.state, transitions.action]),
@@ -53,29 +71,36 @@ class ForwardModel:
 
     @property
     def outcomes(self) -> int:
-        """Columns of a next state."""
+        """Number of columns of a next state."""
         return len(self._network.targets.mean)
 
     @property
     def scalings(self) -> tuple[Scaling, Scaling]:
-        """Units of a state beside an action, and of a next state's change."""
+        """Scalings of the (s + a) inputs and of the (p) changes of the state."""
         return self._network.inputs, self._network.targets
 
     @property
     def outcome_scale(self) -> FloatArray:
-        """(p,) standard deviation of what it was fitted to, 1 for a constant column."""
+        """(p,) standard deviations of the training changes; 1 for constant columns."""
         return self._network.targets.scale
 
     def action_scale(self, actions: int) -> FloatArray:
-        """(actions,) standard deviation of those it was fitted to, or 1 if constant."""
+        """(actions,) standard deviations of the training actions; 1 for constant ones.
+
+        Args:
+          actions: number of columns of an action.
+        """
         return self._network.inputs.scale[-actions:]
 
     def predict(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, p) mean next state: what GAT uses.
+        """Mean next state, as GAT uses it.
 
         Args:
-          state: (n, s).
-          action: (n, a).
+          state: (n, s) states.
+          action: (n, a) actions.
+
+        Returns:
+          (n, p) in the state's units; the mean over all networks of an ensemble.
         """
         means = [self._head.mean(raw, np) for raw in self._each(state, action)]
         return self._next_state(state, np.mean(means, axis=0))
@@ -83,7 +108,15 @@ class ForwardModel:
     def moments(
         self, state: FloatArray, action: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Mean (n, p) and covariance (n, p, p) of the next state, over all members."""
+        """Mean and covariance of the next state, over all networks of an ensemble.
+
+        Args:
+          state: (n, s) states.
+          action: (n, a) actions.
+
+        Returns:
+          (n, p) means in the state's units and (n, p, p) covariances in their squares.
+        """
         head, every = self._head, list(self._each(state, action))
         means = np.array([head.mean(raw, np) for raw in every], dtype=float)
         off = means - means.mean(axis=0)
@@ -96,12 +129,15 @@ class ForwardModel:
     def sample(
         self, state: FloatArray, action: FloatArray, stream: NoiseStream
     ) -> FloatArray:
-        """(n, p) a next state for each robot: what SGAT uses.
+        """One sampled next state for each robot, as SGAT uses it.
 
         Args:
-          state: (n, s).
-          action: (n, a).
-          stream: noise of the n robots, of as many dimensions as a next state has.
+          state: (n, s) states.
+          action: (n, a) actions.
+          stream: noise of the n robots, with as many dimensions as a next state.
+
+        Returns:
+          (n, p) in the state's units.
         """
         z, choice = stream.draw()
         member = (stream.member() * self.config.members).astype(np.intp)
@@ -109,7 +145,15 @@ class ForwardModel:
         return self._next_state(state, head.sample(head.parts(raw, np), z, choice))
 
     def action_effect(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, p, a) derivative of the mean next state by the action."""
+        """Derivative of the mean next state with respect to the action.
+
+        Args:
+          state: (n, s) states.
+          action: (n, a) actions.
+
+        Returns:
+          (n, p, a) in the state's units per unit of the action.
+        """
         actions = action.shape[1]
         network = self._network
         x = network.inputs.to_scaled(np.hstack([state, action]))
@@ -121,9 +165,11 @@ class ForwardModel:
         return np.asarray(np.mean(slopes, axis=0) * units)
 
     def scaled_change(self) -> Callable[[Tensor], Tensor]:
-        """The mean change as a function that torch can differentiate.
+        """The mean change of the state as a function that torch can differentiate.
 
-        It takes (n, s + a) states beside actions and gives (n, p), both scaled.
+        Returns:
+          A function of (n, s + a) scaled states and actions; its result is the (n, p)
+          scaled change.
         """
         network = self._network.network
         layers = zip(network.weights, network.biases, strict=True)
@@ -136,9 +182,13 @@ class ForwardModel:
         return change
 
     def score(self, transitions: Transitions) -> float:
-        """Mean log-likelihood per transition and dimension, in units of the state.
+        """Mean log-likelihood per transition and dimension.
 
-        More is better. A density has a unit: positive values are no mistake.
+        Larger is better. A density has the inverse of the state's unit, so positive
+        values are possible.
+
+        Args:
+          transitions: (s, a, s') that the model was not fitted to.
         """
         head = self._head
         y = torch.tensor(self._network.targets.to_scaled(transitions.change))
@@ -153,11 +203,17 @@ class ForwardModel:
         return (float(mixture.mean()) - float(units)) / self.outcomes
 
     def residuals(self, transitions: Transitions) -> FloatArray:
-        """(N, p) standardised: the noise that `sample` would have needed.
+        """Standardised residuals: the noise for which `sample` gives the real states.
 
-        White and normal if the model were right. Of an ensemble's members each episode
-        has one, as when sampling. Which component of a mixture a next state is
-        taken to come from follows a fixed, evenly spread sequence.
+        White and standard normal if the model is right. In an ensemble each episode
+        belongs to one network, as in sampling. Which component of a mixture a next
+        state is assigned to follows a fixed sequence that is evenly spread.
+
+        Args:
+          transitions: N of them, preferably not those that the model was fitted to.
+
+        Returns:
+          (N, p) without a unit.
         """
         _, index = np.unique(transitions.episode, return_inverse=True)
         member = index % self.config.members
@@ -168,12 +224,12 @@ class ForwardModel:
         return self._head.residuals(parts, y, choice)
 
     def save(self, path: Path) -> None:
-        """Write everything to one file."""
+        """Write the model to one file."""
         write_model(path, _KIND, self.config, self._network)
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read back what `save` has written, to the same bits.
+        """Read a file of `save`; every answer is equal to the last bit.
 
         Raises:
           BadModelError: the file holds no forward model.
@@ -216,10 +272,10 @@ class ForwardModel:
 
 
 def _stages(head: Head) -> list[Stage]:
-    """First the mean alone, then the likelihood, then that more finely.
+    """Three stages of training: the mean, the likelihood, the same more finely.
 
-    A likelihood that has yet to find its mean takes the miss for spread, which then
-    keeps the mean from learning.
+    A likelihood that starts with a wrong mean explains the error by a large spread, and
+    the large spread then keeps the mean from improving.
     """
 
     def loss(raw: Tensor, y: Tensor) -> Tensor:

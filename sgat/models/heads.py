@@ -1,8 +1,8 @@
-"""What a network's last layer means: the parameters of a distribution.
+"""Heads: how a network's raw outputs become the parameters of a distribution.
 
-Everything here is in scaled units. The parameters are taken out of the raw outputs
-with torch while training and with NumPy afterwards: `xp` is the one or the other, and
-only what both know by the same name is used.
+All numbers are in scaled units. The parameters are computed with torch during training
+and with NumPy afterwards: the argument `xp` is one of the two modules, and only
+functions that both have under the same name are used.
 """
 
 from abc import ABC, abstractmethod
@@ -17,20 +17,24 @@ from groundwalk.arrays import FloatArray
 from sgat.models.network import Float32Array
 
 Parts: TypeAlias = tuple[Any, ...]
-"""The parameters of n distributions."""
+"""The parameters of n distributions, as arrays or tensors; see `parts` of each head."""
 
 LOG_VARIANCE = (-7.0, 4.0)
-"""Bounds of a log-variance in scaled units: standard deviations of 0.03 to 7.
+"""Bounds of a log-variance in scaled units: standard deviations from 0.03 to 7.
 
-Without them a network's spread away from its data is whatever it extrapolates to, and
-a sampled state can be anything. A lower least variance makes covariances that are
-nearly singular so stiff that the large variances are learned badly: with -10, those of
-noise on a single action came out a third too wide.
-"""
+Without bounds a network extrapolates to any spread away from its data, and a sampled
+state could be anything. A smaller least variance makes nearly singular covariances so
+stiff that large variances are learned badly: with -10 the standard deviation of noise
+on a single action was learned a third too large."""
 
 
 def bounded(raw: Any, xp: Any) -> Any:
-    """Raw numbers softly bounded to `LOG_VARIANCE`, with slope 1 in the middle."""
+    """Softly limit raw numbers to `LOG_VARIANCE`, with slope 1 in the middle.
+
+    Args:
+      raw: any shape.
+      xp: numpy or torch.
+    """
     low, high = LOG_VARIANCE
     middle, half = (low + high) / 2, (high - low) / 2
     return middle + half * xp.tanh((raw - middle) / half)
@@ -49,70 +53,107 @@ class Head(ABC):
     @property
     @abstractmethod
     def width(self) -> int:
-        """How many raw outputs describe one distribution."""
+        """Number of raw outputs that describe one distribution."""
 
     @abstractmethod
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """The parameters that the raw outputs (..., width) stand for."""
+        """The parameters that raw outputs (..., width) stand for.
+
+        Args:
+          raw: outputs of the network.
+          xp: numpy or torch, the kind of `raw`.
+        """
 
     @abstractmethod
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) log p(y) of y (..., d), by torch's own distribution."""
+        """(...) log p(y), in scaled units, computed by torch's own distributions.
+
+        Args:
+          parts: parameters as torch tensors.
+          y: (..., d) values.
+        """
 
     def loss(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) what training makes small: the negative log-likelihood."""
+        """(...) the loss in training: by default the negative log-likelihood.
+
+        Args:
+          parts: parameters as torch tensors.
+          y: (..., d) values.
+        """
         return -self.log_density(parts, y)
 
     def mean(self, raw: Any, xp: Any) -> Any:
-        """(..., d) of raw outputs (..., width); as a rule they start with it."""
+        """(..., d) mean; in most families it is the first d raw outputs.
+
+        Args:
+          raw: (..., width) outputs of the network.
+          xp: numpy or torch, the kind of `raw`.
+        """
         return raw[..., : self.dimensions]
 
     def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """(n, d, a) derivative of the mean, of the raw outputs' (n, width, a)."""
+        """(n, d, a) derivative of the mean with respect to the action.
+
+        Args:
+          raw: (n, width) outputs of the network.
+          slope: (n, width, a) derivative of the outputs.
+        """
         return slope[:, : self.dimensions]
 
     @abstractmethod
     def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d)."""
+        """(n, d, d) covariances of n distributions."""
 
     @abstractmethod
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) made of standardised residuals z (n, d) and uniform choices (n,)."""
+        """(n, d) samples.
+
+        Args:
+          parts: parameters of n distributions, as arrays.
+          z: (n, d) standardised noise.
+          choice: (n,) uniform numbers from 0 to 1 that choose a mixture's component.
+        """
 
     @abstractmethod
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) the z that `sample` would have made the (n, d) y of."""
+        """(n, d) standardised noise for which `sample` would give the values y.
+
+        Args:
+          parts: parameters of n distributions, as arrays.
+          y: (n, d) values.
+          choice: (n,) uniform numbers from 0 to 1 that choose a mixture's component.
+        """
 
 
 @dataclass(frozen=True)
 class GaussianHead(Head):
-    """Independent normal distributions: the paper's.
+    """Independent normal distributions, as in the SGAT paper.
 
     Attributes:
-      beta: weight of each dimension's loss by variance^beta, without its gradient:
-        where the spread is large the mean still learns (Seitzer et al. 2022, eq. 5).
-        0 is the likelihood itself.
+      beta: each dimension's loss is weighted by variance^beta, without a gradient
+        through the weight, so that the mean is learned where the spread is large, too
+        (Seitzer et al. 2022, eq. 5). 0 is the plain likelihood.
     """
 
     beta: float = 0.0
 
     @property
     def width(self) -> int:
-        """Mean and log-variance."""
+        """Raw outputs: d means and d log-variances."""
         return 2 * self.dimensions
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Mean and standard deviation, (..., d) each."""
+        """Means and standard deviations, (..., d) each; see `Head.parts`."""
         mean, log_variance = raw[..., : self.dimensions], raw[..., self.dimensions :]
         return mean, xp.exp(bounded(log_variance, xp) / 2)
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """See `Head`."""
+        """(...) sum of the dimensions' log-densities; see `Head.log_density`."""
         density: Tensor = self._log_densities(parts, y).sum(dim=-1)
         return density
 
     def loss(self, parts: Parts, y: Tensor) -> Tensor:
-        """See `Head` and `beta`."""
+        """(...) negative log-likelihood, weighted as `beta` says; see `Head.loss`."""
         weight = parts[1].detach() ** (2 * self.beta)
         loss: Tensor = -(weight * self._log_densities(parts, y)).sum(dim=-1)
         return loss
@@ -125,28 +166,28 @@ class GaussianHead(Head):
         return densities
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """See `Head`."""
+        """(n, d, d) diagonal covariances."""
         return np.asarray(parts[1][..., None] ** 2 * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """See `Head`."""
+        """(n, d) mean plus noise times standard deviation; see `Head.sample`."""
         return np.asarray(parts[0] + parts[1] * z)
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """See `Head`."""
+        """(n, d) deviation from the mean over its spread; see `Head.residuals`."""
         return np.asarray((y - parts[0]) / parts[1])
 
 
 class FullHead(Head):
-    """One normal distribution with any covariance L L^T."""
+    """One normal distribution with any covariance L L^T, L lower triangular."""
 
     @property
     def width(self) -> int:
-        """Mean, log-variances on L's diagonal, and what is below it."""
+        """Raw outputs: means, log-variances for L's diagonal, entries below it."""
         return self.dimensions * (self.dimensions + 3) // 2
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Mean (..., d) and the lower triangle L (..., d, d)."""
+        """Means (..., d) and lower triangles L (..., d, d); see `Head.parts`."""
         d = self.dimensions
         factor = xp.zeros((*raw.shape[:-1], d, d), dtype=raw.dtype)
         diagonal, (row, column) = np.arange(d), np.tril_indices(d, -1)
@@ -155,21 +196,21 @@ class FullHead(Head):
         return raw[..., :d], factor
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """See `Head`."""
+        """(...) log-density with the covariance L L^T; see `Head.log_density`."""
         mean, factor = parts
         normal = td.MultivariateNormal(mean, scale_tril=factor, validate_args=False)
         return normal.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """See `Head`."""
+        """(n, d, d) covariances L L^T."""
         return np.asarray(parts[1] @ parts[1].swapaxes(-1, -2))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """See `Head`."""
+        """(n, d) mean plus L z; see `Head.sample`."""
         return np.asarray(parts[0] + (parts[1] @ z[..., None])[..., 0])
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """See `Head`."""
+        """(n, d) solution z of L z = y - mean; see `Head.residuals`."""
         return np.linalg.solve(parts[1], (y - parts[0])[..., None])[..., 0]
 
 
@@ -178,24 +219,24 @@ class LowRankHead(Head):
     """One normal distribution with the covariance U U^T + D, D diagonal.
 
     Attributes:
-      rank: columns of U, the number of disturbances that move all dimensions at once.
+      rank: number of columns of U: disturbances that move all dimensions at once.
     """
 
     rank: int = 2
 
     @property
     def width(self) -> int:
-        """Mean, log-variances of D, and U."""
+        """Raw outputs: means, log-variances of D, and the entries of U."""
         return self.dimensions * (2 + self.rank)
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Mean (..., d), U (..., d, rank) and D's diagonal (..., d)."""
+        """Means (..., d), U (..., d, rank) and D's diagonal (..., d)."""
         d = self.dimensions
         factor = raw[..., 2 * d :].reshape((*raw.shape[:-1], d, self.rank))
         return raw[..., :d], factor, xp.exp(bounded(raw[..., d : 2 * d], xp))
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """See `Head`."""
+        """(...) log-density with this covariance; see `Head.log_density`."""
         mean, factor, variance = parts
         normal = td.LowRankMultivariateNormal(
             mean, factor, variance, validate_args=False
@@ -203,18 +244,18 @@ class LowRankHead(Head):
         return normal.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """See `Head`."""
+        """(n, d, d) covariances U U^T + D."""
         _, factor, variance = parts
         factor = factor.astype(float)  # the triangle of a nearly singular matrix
         shared = factor @ factor.swapaxes(-1, -2)
         return np.asarray(shared + variance[..., None] * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """See `Head`."""
+        """(n, d) mean plus a Cholesky factor times z; see `Head.sample`."""
         return FullHead(self.dimensions).sample(self._triangular(parts), z, choice)
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """See `Head`."""
+        """(n, d) noise by a Cholesky factor; see `Head.residuals`."""
         return FullHead(self.dimensions).residuals(self._triangular(parts), y, choice)
 
     def _triangular(self, parts: Parts) -> Parts:

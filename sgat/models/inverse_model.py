@@ -1,4 +1,4 @@
-"""Which action of the sim leads from one state to another."""
+"""Inverse model: the action of the sim that leads from one state to another."""
 
 from pathlib import Path
 from typing import Self
@@ -20,18 +20,34 @@ _KIND = "inverse"
 class InverseModel:
     """a = f(s, s') of a deterministic sim, by least squares.
 
-    It sees the state and the state's change. Where several actions lead to the same
-    next state, or the sim is noisy, it answers their mean, which is smaller than any
+    The network sees the state and its change. Where several actions lead to the same
+    next state, or the sim is noisy, it answers their mean, which is smaller than each
     of them: give it data with varied actions.
+
+    Example:
+      >>> inverse = InverseModel().fit(sim_transitions, seed)
+      >>> action = inverse.predict(state, wanted_next_state)
     """
 
     def __init__(self, config: NetworkConfig | None = None) -> None:
-        """Only remember what to fit."""
+        """Prepare a model; `fit` or `load` gives it its network.
+
+        Args:
+          config: shape and training of the network.
+        """
         self.config = NetworkConfig() if config is None else config
         self._fitted: ScaledNetwork | None = None
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn from at least two episodes; the same seed gives the same bits."""
+        """Learn from transitions of the sim.
+
+        Args:
+          transitions: of at least two episodes.
+          seed: of the training; the same seed gives the same bits.
+
+        Returns:
+          This model.
+        """
         self._fitted = ScaledNetwork.fit(
             np.hstack([transitions.state, transitions.change]),
             transitions.action,
@@ -44,11 +60,14 @@ class InverseModel:
         return self
 
     def predict(self, state: FloatArray, next_state: FloatArray) -> FloatArray:
-        """(n, a) actions.
+        """Actions that lead to the next states.
 
         Args:
-          state: (n, s).
-          next_state: (n, p), as wide as in the transitions.
+          state: (n, s) states.
+          next_state: (n, p) wanted next states, with the columns of the training data.
+
+        Returns:
+          (n, a) actions.
         """
         change = next_state - state[:, : next_state.shape[1]]
         member = np.zeros(len(state), np.intp)
@@ -56,17 +75,21 @@ class InverseModel:
         return self._network.targets.from_scaled(scaled)
 
     def score(self, transitions: Transitions) -> FloatArray:
-        """(a,) share of each action's variance that is told, at most 1."""
+        """(a,) share of each action's variance that is predicted, at most 1.
+
+        Args:
+          transitions: of the sim, which the model was not fitted to.
+        """
         predicted = self.predict(transitions.state, transitions.next_state)
         return r_squared(predicted, transitions.action)
 
     def save(self, path: Path) -> None:
-        """Write everything to one file."""
+        """Write the model to one file."""
         write_model(path, _KIND, self.config, self._network)
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read back what `save` has written, to the same bits.
+        """Read a file of `save`; every answer is equal to the last bit.
 
         Raises:
           BadModelError: the file holds no inverse model.

@@ -1,4 +1,4 @@
-"""A mixture of normal distributions: for dynamics with more than one outcome."""
+"""Head for a mixture of normal distributions: dynamics with more than one outcome."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -12,22 +12,25 @@ from sgat.models.heads import Head, Parts, bounded
 from sgat.models.network import Float32Array
 
 _LARGEST_LOGIT = 8.0
-"""Weights differ by at most e^16: no component is ever lost for good."""
+"""Bound of the logits: weights differ by at most e^16, so that no component is lost for
+good during training."""
 
 
 @dataclass(frozen=True)
 class MixtureHead(Head):
-    """Mixture of independent normal distributions (Bishop 1994; the paper's footnote).
+    """Mixture of normal distributions with independent dimensions (Bishop 1994).
+
+    The SGAT paper mentions it in a footnote.
 
     Attributes:
-      components: how many.
+      components: k, the number of normal distributions.
     """
 
     components: int = 3
 
     @property
     def width(self) -> int:
-        """Logits, and mean and log-variance of each component."""
+        """Raw outputs: k logits, then k means and k log-variances of d numbers."""
         return self.components * (1 + 2 * self.dimensions)
 
     def parts(self, raw: Any, xp: Any) -> Parts:
@@ -40,7 +43,7 @@ class MixtureHead(Head):
         return weights, rest[..., 0, :, :], xp.exp(bounded(rest[..., 1, :, :], xp) / 2)
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """See `Head`."""
+        """(...) log-density of the mixture; see `Head.log_density`."""
         weights, means, deviations = parts
         mixture = td.MixtureSameFamily(
             td.Categorical(weights, validate_args=False),
@@ -50,12 +53,12 @@ class MixtureHead(Head):
         return mixture.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
     def mean(self, raw: Any, xp: Any) -> Any:
-        """Of the components' means."""
+        """(..., d) weighted mean of the components' means; see `Head.mean`."""
         weights, means, _ = self.parts(raw, xp)
         return (weights[..., None] * means).sum(-2)
 
     def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """By the weights and by the components' means."""
+        """(n, d, a) derivative through weights and means; see `Head.mean_slope`."""
         k, d = self.components, self.dimensions
         weights, means, _ = self.parts(raw, np)
         logits = slope[:, :k] / np.cosh(raw[:, :k, None] / _LARGEST_LOGIT) ** 2
@@ -66,7 +69,7 @@ class MixtureHead(Head):
         return np.asarray(by_weight + by_mean)
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """Within the components and between their means."""
+        """(n, d, d) covariance within the components plus that of their means."""
         weights, means, deviations = parts
         off = means - (weights[..., None] * means).sum(axis=-2, keepdims=True)
         between = np.einsum("...k,...ki,...kj->...ij", weights, off, off)
@@ -74,16 +77,16 @@ class MixtureHead(Head):
         return np.asarray(between + within[..., None] * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """Of the component that the uniform choice falls on."""
+        """(n, d) sample of the component that `choice` picks; see `Head.sample`."""
         weights, means, deviations = parts
         chosen = _pick(weights, choice)
         return _rows(means, chosen) + _rows(deviations, chosen) * z
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """Of a component drawn by its probability of having made y.
+        """(n, d) noise of one component for each row; see `Head.residuals`.
 
-        Taking the most probable one would make the residuals of overlapping
-        components look too small.
+        The component is drawn by its probability of having produced y. Taking the most
+        probable one would make the residuals of overlapping components look too small.
         """
         weights, means, deviations = parts
         z = (y[..., None, :] - means) / deviations
@@ -94,11 +97,21 @@ class MixtureHead(Head):
 
 
 def _pick(weights: FloatArray, choice: FloatArray) -> IntArray:
-    """(n,) the component on whose part of 0 to 1 the choice (n,) falls."""
+    """(n,) the component in whose share of 0 to 1 the uniform number falls.
+
+    Args:
+      weights: (n, k) that sum to 1.
+      choice: (n,) uniform numbers.
+    """
     passed = np.cumsum(weights, axis=-1) <= choice[:, None]
     return np.asarray(np.minimum(passed.sum(axis=-1), weights.shape[-1] - 1))
 
 
 def _rows(values: FloatArray, chosen: IntArray) -> FloatArray:
-    """(n, d) of the (n, k, d) values, the chosen (n,) component's."""
+    """(n, d) the chosen component's values.
+
+    Args:
+      values: (n, k, d).
+      chosen: (n,) component of each row.
+    """
     return values[np.arange(len(values)), chosen]

@@ -1,4 +1,4 @@
-"""Models in files: plain tensors and JSON, so that reading one runs no code."""
+"""Model files: plain tensors and JSON, so that reading a file runs no code in it."""
 
 import io
 import json
@@ -25,10 +25,10 @@ def write_model(
     """Write one model into one file.
 
     Args:
-      path: the file; its folder is made if it is not there.
-      kind: what `read_model` must ask for.
-      config: how the network was made.
-      network: its numbers.
+      path: the file; its folder is made if it does not exist.
+      kind: name of the kind of model, for which `read_model` must ask.
+      config: settings with which the network was made.
+      network: the fitted numbers.
     """
     header = {"format": _FORMAT, "kind": kind, "config": asdict(config)}
     content = io.BytesIO()
@@ -39,13 +39,18 @@ def write_model(
 def read_model(
     path: Path, kind: str, config_type: type[Config]
 ) -> tuple[Config, ScaledNetwork]:
-    """Read back, to the same bits, what `write_model` has written.
+    """Read a file of `write_model`; the numbers are equal to the last bit.
 
-    Only tensors and plain values are read (torch's `weights_only`); of whatever else
-    a file may hold, nothing is run.
+    Only tensors and plain values are read (torch's `weights_only`). Nothing else that a
+    file may contain is run.
+
+    Args:
+      path: the file.
+      kind: kind of model that the file must hold.
+      config_type: class of its settings.
 
     Raises:
-      BadModelError: there is no such file, or it holds no sound model of this kind.
+      BadModelError: the file is missing, damaged, or holds another kind of model.
     """
     try:
         file = io.BytesIO(path.read_bytes())

@@ -1,4 +1,4 @@
-"""Small fully connected networks, evaluated in NumPy: no framework on the fast path."""
+"""Small fully connected networks, evaluated in NumPy, which is fast for few rows."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +13,11 @@ Float32Array = npt.NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """Members of equal shape, each a chain of tanh layers with a linear last one.
+    """Networks of equal shape (members), each a chain of tanh layers and a linear one.
 
     Attributes:
-      weights: of each layer (members, inputs, outputs).
-      biases: of each layer (members, 1, outputs).
+      weights: for each layer (members, inputs, outputs).
+      biases: for each layer (members, 1, outputs).
     """
 
     weights: tuple[Float32Array, ...]
@@ -25,21 +25,26 @@ class Network:
 
     @property
     def members(self) -> int:
-        """How many networks."""
+        """Number of networks."""
         return len(self.weights[0])
 
     @property
     def inputs(self) -> int:
-        """Width of what goes in."""
+        """Number of input columns."""
         return int(self.weights[0].shape[1])
 
     @property
     def outputs(self) -> int:
-        """Width of what comes out."""
+        """Number of output columns."""
         return int(self.weights[-1].shape[2])
 
     def member(self, which: int, x: FloatArray) -> Float32Array:
-        """(n, outputs) of one member for the (n, inputs) x."""
+        """(n, outputs) answers of one network.
+
+        Args:
+          which: its number.
+          x: (n, inputs).
+        """
         values: Any = x.astype(np.float32)
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             values = np.tanh(values @ weight[which] + bias[which])
@@ -47,7 +52,13 @@ class Network:
         return last
 
     def slope(self, which: int, x: FloatArray, inputs: int) -> Float32Array:
-        """(n, outputs, inputs) derivative of one member by the last so many inputs."""
+        """(n, outputs, inputs) derivative of one network by its last inputs.
+
+        Args:
+          which: number of the network.
+          x: (n, all inputs).
+          inputs: number of last input columns to differentiate by.
+        """
         values: Any = x.astype(np.float32)
         slope: Any = np.eye(self.inputs, dtype=np.float32)[-inputs:]
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
@@ -57,7 +68,12 @@ class Network:
         return last
 
     def mixed(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs), each row by the member that the (n,) `member` names."""
+        """(n, outputs) answers, each row by its own network.
+
+        Args:
+          x: (n, inputs).
+          member: (n,) number of the network for each row.
+        """
         if self.members == 1:
             return self.member(0, x)
         result = np.empty((len(x), self.outputs), np.float32)

@@ -1,4 +1,4 @@
-"""The shape of a network, and how it is trained."""
+"""Shape and training of a network."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,17 @@ class NetworkConfig:
     """Shape and training of a network.
 
     Attributes:
-      hidden: width of each hidden layer; two of 64 in the paper.
-      epochs: at most this many passes through the data at each learning rate.
-      batch: transitions in a step of the optimiser.
-      learning_rate: of Adam at first; a tenth of it refines the result.
+      hidden: width of each hidden layer; two of 64 in the SGAT paper.
+      epochs: largest number of passes through the data at each learning rate.
+      batch: transitions in one step of the optimiser.
+      learning_rate: first learning rate of Adam; a tenth of it refines the result.
       weight_decay: decoupled from the gradient, as in AdamW.
-      patience: epochs without a better held-out loss before stopping.
-      validation_share: of the episodes, held out to decide when to stop.
+      patience: epochs without a better held-out loss after which training stops.
+      validation_share: share of the episodes that is held out to decide when to stop.
+
+    Example:
+      >>> NetworkConfig(hidden=(32,)).epochs
+      200
     """
 
     hidden: tuple[int, ...] = (64, 64)
@@ -28,7 +32,7 @@ class NetworkConfig:
     validation_share: float = 0.2
 
     def __post_init__(self) -> None:
-        """Refuse what cannot train."""
+        """Refuse settings with which nothing can be trained."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
         if not self.hidden or min(self.hidden) < 1:
             raise BadValueError(f"hidden is {self.hidden}; give each layer's width")

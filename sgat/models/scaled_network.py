@@ -1,4 +1,4 @@
-"""A network together with the units of what goes in and comes out."""
+"""A network together with the scalings of its inputs and outputs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ from sgat.transitions import held_out_rows
 
 @dataclass(frozen=True, eq=False)
 class ScaledNetwork:
-    """Raw outputs for inputs in their own units.
+    """A network whose inputs are in their own units; its outputs are raw.
 
     Attributes:
-      inputs: units of what goes in.
-      targets: units of what it was trained to tell.
-      network: between scaled numbers.
+      inputs: scaling of the inputs.
+      targets: scaling of the values that the network was trained to predict.
+      network: computes with scaled numbers.
     """
 
     inputs: Scaling
@@ -43,12 +43,20 @@ class ScaledNetwork:
         seed: np.random.SeedSequence,
         members: int = 1,
     ) -> Self:
-        """Learn of y (N, d) by x (N, inputs); the rows belong to episodes (N,).
+        """Train networks to predict y from x.
 
-        The network has so many outputs; the stages say what they are to mean.
+        Several members differ in their first weights and in their data: each learns
+        from its own bootstrap sample of the episodes.
 
-        Several members differ in their first weights and in the episodes that they
-        learn from: each has its own bootstrap sample of them.
+        Args:
+          x: (N, inputs).
+          y: (N, d).
+          episode: (N,) number of the episode of each row.
+          outputs: number of raw outputs of a network.
+          stages: losses to train with; they define what the raw outputs mean.
+          config: shape and training.
+          seed: of everything random; the same seed gives the same bits.
+          members: number of networks.
         """
         rng = np.random.default_rng(seed)
         held_out = held_out_rows(episode, config.validation_share, rng)
@@ -67,7 +75,12 @@ class ScaledNetwork:
         return cls(inputs, targets, network)
 
     def raw(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs) for the (n, inputs) x, each row by its (n,) member."""
+        """(n, outputs) raw outputs.
+
+        Args:
+          x: (n, inputs) in their own units.
+          member: (n,) number of the network for each row.
+        """
         if x.ndim != 2 or x.shape[1] != self.network.inputs:
             raise BadValueError(
                 f"a model of {self.network.inputs} inputs was given the shape {x.shape}"
@@ -75,7 +88,7 @@ class ScaledNetwork:
         return self.network.mixed(self.inputs.to_scaled(x), member)
 
     def to_tensors(self) -> dict[str, Tensor]:
-        """Everything, by name."""
+        """All numbers as tensors by name, for a file."""
         arrays = {
             f"{name}.{field}": value
             for name in ("inputs", "targets")
@@ -88,7 +101,11 @@ class ScaledNetwork:
 
     @classmethod
     def from_tensors(cls, tensors: dict[str, Tensor]) -> Self:
-        """The network of `to_tensors`; ValueError where the shapes do not fit."""
+        """The network that `to_tensors` has described.
+
+        Raises:
+          ValueError: the shapes do not fit together.
+        """
         arrays = {name: tensor.numpy() for name, tensor in tensors.items()}
         inputs, targets = (
             Scaling(
@@ -115,9 +132,9 @@ class ScaledNetwork:
 def _sample_weights(
     episode: IntArray, members: int, rng: np.random.Generator
 ) -> FloatArray:
-    """(members, N) how often each member's bootstrap sample holds each episode.
+    """(members, N) how often each bootstrap sample contains each row's episode.
 
-    A single member learns from all.
+    A single member learns from all episodes once.
     """
     names, index = np.unique(episode, return_inverse=True)
     if members == 1:

@@ -1,4 +1,4 @@
-"""Numbers of any unit made comparable: mean 0 and standard deviation 1."""
+"""Scaling of columns to mean 0 and standard deviation 1."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -9,16 +9,17 @@ from groundwalk.arrays import BoolArray, FloatArray
 from sgat.models.network import Float32Array
 
 _CONSTANT = 1e-9
-"""A spread below this part of the largest value is rounding: the column is constant."""
+"""A column whose spread is below this share of its largest value is constant: the
+spread is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scaling:
     """Mean and scale of each column.
 
-    Dividing a constant column by its tiny spread would blow up whatever is new about
-    it later, so its scale is 1; and as nothing is known of how it varies, scaled
-    numbers turn back into its constant.
+    A constant column keeps the scale 1: divided by its tiny spread, any later change
+    would become huge. Since its variation is unknown, scaled numbers are turned back
+    into the constant.
 
     Attributes:
       mean: (d,) of each column.
@@ -39,14 +40,14 @@ class Scaling:
         return cls(mean, np.where(varies, spread, 1.0), varies)
 
     def to_scaled(self, values: FloatArray) -> FloatArray:
-        """(n, d) values without their units."""
+        """(n, d) scaled numbers of (n, d) values in their units."""
         return (values - self.mean) / self.scale
 
     def from_scaled(self, scaled: FloatArray | Float32Array) -> FloatArray:
-        """(n, d) scaled numbers as values."""
+        """(n, d) values in their units of (n, d) scaled numbers."""
         return np.asarray(self.mean + self.spread * scaled)
 
     @property
     def spread(self) -> FloatArray:
-        """(d,) value of a scaled 1: the scale, but 0 for a constant column."""
+        """(d,) change of a value per scaled unit; 0 for constant columns."""
         return self.scale * self.varies

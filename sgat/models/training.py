@@ -1,4 +1,4 @@
-"""Fitting networks with Adam, early stopping and nothing global."""
+"""Training of small networks: Adam, early stopping, no global random numbers."""
 
 import contextlib
 import itertools
@@ -13,25 +13,33 @@ from sgat.models.network import Network
 from sgat.models.network_config import NetworkConfig
 
 Loss = Callable[[Tensor, Tensor], Tensor]
-"""Raw outputs (members, n, outputs) and targets (n, d) to losses (members, n)."""
+"""A function of raw outputs (members, n, outputs) and targets (n, d) that gives losses
+(members, n).
+"""
 
 _LARGEST_GRADIENT = 10.0
-"""Norm to which a member's gradient is cut: one outlier must not undo an epoch."""
+"""Norm to which a member's gradient is cut, so that one outlier cannot undo an
+epoch."""
 
 
 def squared_error(raw: Tensor, y: Tensor) -> Tensor:
-    """(members, n) of outputs that start with what is to be told."""
+    """(members, n) squared errors of the first d outputs.
+
+    Args:
+      raw: (members, n, outputs).
+      y: (n, d) targets.
+    """
     return (raw[..., : y.shape[-1]] - y).square().sum(dim=-1)
 
 
 class Stage(NamedTuple):
-    """A part of training; each goes on from the best weights of the one before.
+    """A part of training; each stage starts from the best weights of the one before.
 
     Attributes:
-      loss: what is made small.
-      score: what is watched on held-out episodes: the loss without whatever only
-        helps it to learn.
-      rate: share of the learning rate.
+      loss: is minimised.
+      score: is watched on held-out episodes: the loss without terms that only help
+        learning.
+      rate: factor on the learning rate.
     """
 
     loss: Loss
@@ -40,14 +48,19 @@ class Stage(NamedTuple):
 
 
 class Examples(NamedTuple):
-    """Scaled inputs (n, inputs) and targets (n, d)."""
+    """Training data in scaled units.
+
+    Attributes:
+      x: (n, inputs).
+      y: (n, d).
+    """
 
     x: Tensor
     y: Tensor
 
     @classmethod
     def of(cls, x: FloatArray, y: FloatArray) -> Self:
-        """Examples from NumPy's arrays."""
+        """Examples from NumPy arrays (n, inputs) and (n, d)."""
         return cls(*(torch.tensor(array, dtype=torch.float32) for array in (x, y)))
 
 
@@ -60,19 +73,20 @@ def train(
     config: NetworkConfig,
     generator: torch.Generator,
 ) -> Network:
-    """Fit several networks side by side.
+    """Train several networks side by side.
 
-    The result depends on the arguments alone: all randomness is the generator's, and
-    one thread computes whatever the machine has.
+    The result depends only on the arguments: all random numbers come from the
+    generator, and a single thread computes.
 
     Args:
       outputs: width of the last layer.
-      stages: what to train for, one after the other.
-      examples: n, to learn from.
-      weights: (members, n) how much each network minds each example.
-      held_out: to decide when a stage ends; the best weights for them are kept.
-      config: see there.
-      generator: of the first weights and of the order of the examples.
+      stages: losses, one after the other.
+      examples: n rows to learn from.
+      weights: (members, n) weight of each row in each network's loss.
+      held_out: rows that decide when a stage ends; the weights that are best for them
+        are kept.
+      config: shape of the networks, and settings of the optimiser.
+      generator: draws the first weights and the order of the rows.
     """
     sizes = [examples.x.shape[1], *config.hidden, outputs]
     minds = torch.tensor(weights, dtype=torch.float32)
@@ -93,7 +107,7 @@ def train(
 
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
-    """Let torch compute with one thread inside: faster for small networks."""
+    """Let torch use one thread within the block, which is faster for small networks."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
@@ -117,7 +131,12 @@ def _first_parameters(
 
 
 def raw_outputs(parameters: Sequence[Tensor], x: Tensor) -> Tensor:
-    """(members, n, outputs): what `Network` computes, with gradients."""
+    """(members, n, outputs): the same as `Network` computes, with gradients.
+
+    Args:
+      parameters: weight, bias, weight, bias ..., each with a first axis of members.
+      x: (n, inputs) scaled inputs.
+    """
     values = x.expand(len(parameters[0]), *x.shape)
     for weight, bias in zip(parameters[:-2:2], parameters[1:-2:2], strict=True):
         values = torch.tanh(torch.baddbmm(bias, values, weight))
@@ -132,7 +151,7 @@ def _epochs(
     config: NetworkConfig,
     generator: torch.Generator,
 ) -> Iterator[None]:
-    """Each step is one pass through the examples, in random order."""
+    """Each step of this iterator is one pass through the examples in random order."""
     rate = stage.rate * config.learning_rate
     optimiser = torch.optim.AdamW(
         parameters, lr=rate, weight_decay=config.weight_decay, fused=True
@@ -153,7 +172,7 @@ def _epochs(
 
 
 def _cut_gradients(parameters: list[Tensor]) -> None:
-    """Shorten each member's gradient to the largest norm: members stay independent."""
+    """Shorten each member's gradient to the largest norm; members stay independent."""
     gradients = [p.grad for p in parameters if p.grad is not None]
     squares = torch.stack([g.square().sum(dim=(1, 2)) for g in gradients])
     norm = squares.sum(dim=0).sqrt()
@@ -164,12 +183,12 @@ def _cut_gradients(parameters: list[Tensor]) -> None:
 
 @torch.no_grad()
 def _means(score: Loss, parameters: list[Tensor], examples: Examples) -> Tensor:
-    """(members,) mean score."""
+    """(members,) mean score over the examples."""
     return score(raw_outputs(parameters, examples.x), examples.y).mean(dim=1)
 
 
 class _BestWeights:
-    """Each member's parameters at its own best epoch."""
+    """Keeps each member's parameters of its own best epoch."""
 
     def __init__(self, parameters: list[Tensor]) -> None:
         self._parameters = parameters
@@ -178,7 +197,7 @@ class _BestWeights:
         self.epochs_without_better = 0
 
     def look(self, score: Tensor) -> None:
-        """Keep the parameters of the members that have become better."""
+        """Keep the parameters of those members whose score has become better."""
         better = score < self._score
         self._score = torch.where(better, score, self._score)
         for best, now in zip(self._best, self._parameters, strict=True):
@@ -190,6 +209,6 @@ class _BestWeights:
 
     @torch.no_grad()
     def restore(self) -> None:
-        """Put the best parameters back."""
+        """Put the best parameters back into the networks."""
         for best, now in zip(self._best, self._parameters, strict=True):
             now.copy_(best)

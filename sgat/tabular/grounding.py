@@ -14,9 +14,15 @@ def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMd
 
     Args:
       sim: a deterministic simulator.
-      forward: (S, A, S) the forward model: probabilities of the real next states.
-      samples: whether next states are sampled (SGAT), or the likeliest one is taken
-        (GAT).
+      forward: (S, A, S) forward model: probabilities of the real next states.
+      samples: whether the transformer samples next states (SGAT) or takes the most
+        likely one (GAT).
+
+    Raises:
+      BadValueError: the sim is not deterministic.
+
+    Example:
+      >>> sgat = grounded_sim(sim, real.transition, samples=True)
     """
     transformer = action_transformer(sim, forward, samples)
     transition = np.einsum("sab,sbn->san", transformer, sim.transition)
@@ -26,18 +32,19 @@ def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMd
 def action_transformer(
     sim: FiniteMdp, forward: FloatArray, samples: bool
 ) -> FloatArray:
-    """(S, A, A) with which probability an action becomes which action.
+    """(S, A, A) probability that an action becomes another action.
 
-    g(s, a) = f_inv(s, f_real(s, a)). For finite states GAT's deterministic forward
-    model is the likeliest next state, the first of equally likely ones: a mean of
-    states has no meaning here, and the paper speaks of the likeliest. Next states that
-    no action of the sim leads to cannot be imitated: the others' probabilities are
-    scaled up for them, and an action stays as it is where none is left.
+    g(s, a) = f_inv(s, f_real(s, a)). For finite states, GAT's deterministic forward
+    model is the most likely next state (the first of equally likely ones), since a mean
+    of states has no meaning. Next states that no action of the sim leads to cannot be
+    imitated: the probabilities of the other ones are scaled up. If none is left, the
+    action stays as it is.
 
     Args:
       sim: a deterministic simulator.
-      forward: as in `grounded_sim`.
-      samples: as in `grounded_sim`.
+      forward: (S, A, S) probabilities of the real next states.
+      samples: whether next states are sampled (SGAT) or the most likely one is taken
+        (GAT).
     """
     inverse = inverse_model(sim)
     wanted = np.where((inverse != NONE)[:, np.newaxis], forward, 0)

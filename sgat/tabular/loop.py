@@ -1,4 +1,4 @@
-"""Algorithm 1 of the paper in finite worlds: ground, plan, and again."""
+"""Algorithm 1 of the SGAT paper in finite worlds: ground, plan, and repeat."""
 
 from dataclasses import dataclass
 
@@ -15,16 +15,18 @@ from sgat.tabular.rollouts import roll_out
 
 @dataclass(frozen=True)
 class TabularLoop:
-    """How the loop of grounding and planning runs.
+    """Settings of the loop of grounding and planning.
 
     Attributes:
-      episodes: in the real world at each grounding step; all data is kept.
-      exploration: chance of a random action at each of their steps.
-      known_after: real transitions of a state and action before they are believed;
-        see `counted_forward_model`.
-      gain: in the newly grounded sim a policy improves if its return rises by more.
-      calm_steps: grounding steps in a row without such a gain end the loop.
-      most_steps: grounding steps after which it ends in any case.
+      episodes: real episodes in each grounding step; the data of all steps are kept.
+      exploration: probability of a random action at each step of these episodes.
+      known_after: number of real transitions of a state and action from which its
+        counted probabilities are used; see `counted_forward_model`.
+      gain: a new policy is an improvement if its return in the grounded sim is larger
+        by more than this.
+      calm_steps: the loop ends after this number of grounding steps in a row without an
+        improvement.
+      most_steps: the loop ends after this number of grounding steps in any case.
     """
 
     episodes: int = 10_000
@@ -49,13 +51,13 @@ class TabularLoop:
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """Where the loop came to rest.
+    """Result of the loop.
 
     Attributes:
-      policy: (S,) the last policy.
-      steps: grounding steps that it took.
-      transitions: in the real world, of all steps.
-      calm: whether it came to rest by itself.
+      policy: (S,) action in each state: the last policy.
+      steps: number of grounding steps.
+      transitions: number of real transitions in all steps.
+      calm: whether the loop ended because nothing improved any more.
     """
 
     policy: IntArray
@@ -71,17 +73,21 @@ def ground_until_calm(
     loop: TabularLoop,
     generator: np.random.Generator,
 ) -> Settled:
-    """Ground the sim with real data and plan in it, until that gains nothing more.
+    """Ground the sim with real data and plan in it, until nothing improves.
 
-    The inverse model needs no data: one look at each action of a deterministic sim
-    shows all of it.
+    The inverse model needs no data: a deterministic sim's table contains it.
 
     Args:
-      sim: a deterministic simulator; its optimum is the first policy.
-      real: the world that episodes are played in; nothing else of it is used.
-      samples: SGAT, or GAT; see `grounded_sim`.
-      loop: how much data, and when to stop.
-      generator: of the real world's luck.
+      sim: a deterministic simulator; its optimal policy is the first one.
+      real: the world in which episodes are played. Its table is not looked at
+        otherwise.
+      samples: True for SGAT, False for GAT; see `grounded_sim`.
+      loop: how much data is collected, and when to stop.
+      generator: draws the real world's outcomes.
+
+    Example:
+      >>> settled = ground_until_calm(sim, real, True, TabularLoop(), rng)
+      >>> settled.policy
     """
     policy = policy_iteration(sim)
     counts = np.zeros(sim.transition.shape, np.intp)

@@ -8,19 +8,25 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 
 ROUNDING = 1e-9
+"""Largest error of a sum of probabilities that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class FiniteMdp:
-    """A finite world: S states, A actions, undiscounted episodes.
+    """A finite world with S states, A actions and undiscounted episodes.
 
     Attributes:
-      transition: (S, A, S) probability of each next state. Those of states that end
-        an episode are never used.
-      reward: (S,) what entering a state pays, any price of the step included. The
-        paper's R(a, s') without its first argument, which its tables do not need.
+      transition: (S, A, S) probability of each next state. Rows of states that end an
+        episode are never used.
+      reward: (S,) reward for entering a state, costs of the step included. It is the
+        paper's R(a, s') without the action, which the paper's examples do not need.
       ends: (S,) whether an episode ends in a state.
-      start: the state in which episodes begin.
+      start: state in which episodes begin.
+
+    Example:
+      >>> stay_or_go = np.array([[[1.0, 0.0], [0.0, 1.0]], [[0.0, 1.0], [0.0, 1.0]]])
+      >>> FiniteMdp(stay_or_go, np.array([-1.0, 5.0]), np.array([False, True])).states
+      2
     """
 
     transition: FloatArray
@@ -29,7 +35,7 @@ class FiniteMdp:
     start: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse tables that do not fit together, and what are no probabilities."""
+        """Refuse tables of different sizes, and rows that are no probabilities."""
         states, _, after = shape = self.transition.shape
         if not states == after == len(self.reward) == len(self.ends):
             raise BadValueError(
@@ -44,10 +50,10 @@ class FiniteMdp:
 
     @property
     def states(self) -> int:
-        """How many states there are."""
+        """S, the number of states."""
         return int(self.transition.shape[0])
 
     @property
     def actions(self) -> int:
-        """How many actions there are in every state."""
+        """A, the number of actions in every state."""
         return int(self.transition.shape[1])

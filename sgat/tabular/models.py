@@ -1,4 +1,4 @@
-"""The two models of a grounding in finite worlds: forward of real, inverse of sim."""
+"""Models in finite worlds: forward of the real world, inverse of the sim."""
 
 import numpy as np
 
@@ -7,22 +7,25 @@ from groundwalk.errors import BadValueError
 from sgat.tabular.mdp import FiniteMdp
 
 NONE = -1
+"""In an inverse model: no action leads to this state."""
 
 
 def counted_forward_model(
     counts: IntArray, sim: FiniteMdp, known_after: int = 1
 ) -> FloatArray:
-    """(S, A, S) probabilities of the real next states: the shares that were seen.
+    """(S, A, S) probabilities of the real next states: the observed shares.
 
-    The maximum of the likelihood for a categorical distribution. Where too little was
-    seen the sim is believed, that is, actions are not transformed there. A sim that
-    errs on the bright side then draws its policies to where real data is missing
-    (known states of R-max: Brafman and Tennenholtz 2002).
+    This maximises the likelihood of a categorical distribution. Where too few
+    transitions were seen, the sim's table is used, which means that actions are not
+    transformed there. If the sim is too optimistic there, policies planned in it go to
+    these states and collect the missing data (like the known states of R-max: Brafman
+    and Tennenholtz 2002).
 
     Args:
-      counts: (S, A, S) how often each transition was seen in the real world.
+      counts: (S, A, S) number of times that each transition was seen in the real world.
       sim: the simulator.
-      known_after: transitions that must have been seen of a state and action.
+      known_after: number of transitions of a state and action from which the shares are
+        used.
     """
     seen = counts.sum(axis=-1, keepdims=True)
     shares: FloatArray = np.where(
@@ -32,9 +35,9 @@ def counted_forward_model(
 
 
 def inverse_model(sim: FiniteMdp) -> IntArray:
-    """(S, S) the action that leads from a state to another one in the sim.
+    """(S, S) the sim's action that leads from a state to another one.
 
-    Where several do, the first one; `NONE` where none does.
+    The first one if several do; `NONE` if none does.
 
     Raises:
       BadValueError: the sim is not deterministic.

@@ -9,28 +9,32 @@ from groundwalk.arrays import FloatArray, IntArray
 from sgat.tabular.mdp import FiniteMdp
 
 GOES_ON = 1 - 1e-7
-"""Chance that an episode goes on after any step, while planning.
+"""Probability that an episode continues after a step, while planning.
 
-There is no discounting, so a policy that never ends has no finite value where steps
-cost something. This gives it one, of ten million steps: hopeless, yet finite. Policies
-that end are hardly touched: a return of 100 after 20 steps changes by 2e-4.
-"""
+Without discounting, a policy that never ends has no finite value where steps cost
+something. With this probability it has one, of ten million steps on average: very
+low, but finite. Policies that end are hardly affected: a return of 100 after 20
+steps changes by 2e-4."""
 
 TIE = 1e-8
-"""Actions whose values differ by a smaller part than this are equally good."""
+"""Actions are equally good if their values differ by less than this share."""
 
 
 def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray:
-    """An optimal policy (S,), by Howard's policy iteration with exact solves.
+    """(S,) an optimal policy, by Howard's policy iteration with exact solutions.
 
-    An action changes only where another one is better by more than rounding, so each
-    round improves the policy and the search ends. Of equally good actions the first
-    counts; steps should cost something, or the first may be to stay forever.
+    An action changes only if another one is better by more than rounding, so each round
+    improves the policy and the search ends. Of equally good actions the first is taken.
+    Steps should cost something; otherwise staying forever can be as good as anything.
 
     Args:
       mdp: the world to plan in.
-      policy: (S,) where to begin; the first action everywhere by default. The answer
-        does not depend on it.
+      policy: (S,) where to start, by default the first action in every state. The
+        result does not depend on it.
+
+    Example:
+      >>> policy_iteration(stay_or_go)
+      array([1, 0])
     """
     if policy is None:
         policy = np.zeros(mdp.states, np.intp)
@@ -49,7 +53,11 @@ def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray
 def policy_values(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
     """(S,) expected sum of rewards from each state on; 0 where episodes end.
 
-    Solves v = P (r + g v), the rows of P being those of the policy's actions.
+    Solves v = P (r + g v), where the rows of P belong to the policy's actions.
+
+    Args:
+      mdp: the world.
+      policy: (S,) actions.
     """
     steps = _steps(mdp, policy)
     system = np.eye(mdp.states) - GOES_ON * steps
@@ -57,7 +65,12 @@ def policy_values(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
 
 
 def action_values(mdp: FiniteMdp, values: FloatArray) -> FloatArray:
-    """(S, A) value of an action now and values (S,) as they are afterwards."""
+    """(S, A) value of taking an action now.
+
+    Args:
+      mdp: the world.
+      values: (S,) values of the states afterwards.
+    """
     after: FloatArray = mdp.transition @ (mdp.reward + GOES_ON * values)
     after[mdp.ends] = 0
     return after
@@ -69,8 +82,8 @@ def expected_return(mdp: FiniteMdp, policy: IntArray, step_limit: int) -> float:
     Args:
       mdp: the world.
       policy: (S,) actions.
-      step_limit: episodes that have not ended are cut after so many steps, which
-        makes the sum finite for policies that never end.
+      step_limit: number of steps after which an episode is cut, so that the sum is
+        finite for policies that never end.
     """
     steps = _steps(mdp, policy)
     now = steps @ mdp.reward
@@ -81,6 +94,6 @@ def expected_return(mdp: FiniteMdp, policy: IntArray, step_limit: int) -> float:
 
 
 def _steps(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
-    """(S, S) next states under a policy; none from where episodes end."""
+    """(S, S) probabilities of next states; 0 from states that end an episode."""
     steps = mdp.transition[np.arange(mdp.states), policy]
     return np.where(mdp.ends[:, np.newaxis], 0, steps)

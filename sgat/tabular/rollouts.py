@@ -1,4 +1,4 @@
-"""Many episodes in a finite world at once: their returns, and their transitions."""
+"""Many episodes in a finite world at once: their returns and their transitions."""
 
 from dataclasses import dataclass
 
@@ -8,17 +8,17 @@ from groundwalk.arrays import FloatArray, IntArray
 from sgat.tabular.mdp import FiniteMdp
 
 STEP_LIMIT = 1000
-"""After so many steps an episode is cut: a policy may be one that never ends."""
+"""Steps after which an episode is cut, since a policy may never end."""
 
 
 @dataclass(frozen=True, eq=False)
 class TabularRollouts:
-    """What n episodes came to.
+    """Results of n episodes.
 
     Attributes:
-      returns: (n,) sum of rewards of each.
-      cut: how many had not ended at the step limit.
-      counts: (S, A, S) how often each transition was seen.
+      returns: (n,) sum of rewards of each episode.
+      cut: number of episodes that were cut at the step limit.
+      counts: (S, A, S) number of times that each transition was seen.
     """
 
     returns: FloatArray
@@ -44,19 +44,23 @@ def roll_out(
     exploration: float = 0.0,
     step_limit: int = STEP_LIMIT,
 ) -> TabularRollouts:
-    """Play episodes, each with its own luck.
+    """Play episodes side by side.
 
-    Generators of the same state give policies common random numbers: step k of episode
-    i draws the same numbers whatever was done before, and equal probabilities of next
-    states lead to equal ones.
+    Policies that are given generators of the same state have common random numbers:
+    step k of episode i uses the same numbers whatever happened before, and equal
+    probabilities of next states lead to equal next states.
 
     Args:
       mdp: the world.
       policy: (S,) action in each state.
-      episodes: how many.
-      generator: where luck and exploration come from.
-      exploration: chance, at each step, of a random action instead of the policy's.
-      step_limit: of each episode.
+      episodes: number of episodes.
+      generator: draws outcomes and exploration.
+      exploration: probability, at each step, of a random action instead of the
+        policy's.
+      step_limit: steps after which an episode is cut.
+
+    Example:
+      >>> roll_out(mdp, policy, 100, np.random.default_rng(1)).mean
     """
     chances = mdp.transition.cumsum(axis=-1)
     chances /= chances[..., -1:]  # exactly 1 at the end, above any number drawn

@@ -1,4 +1,4 @@
-"""Noise added to actions: a noisy real world, or the noise envelope around the sim."""
+"""Noise added to actions: a noisy real world, or the noise envelope around a sim."""
 
 from collections.abc import Sequence
 
@@ -10,20 +10,26 @@ from sgat.noise import NoiseStream, WhiteNoise
 
 
 class ActionNoise:
-    """a + N(0, deviation^2), then clipped; takes an action transformer's place.
+    """Adds normal noise to actions and clips the sum; used like an action transformer.
 
-    Around a sim it is the action noise envelope (Jakobi 1995), which needs no data but
-    a guess of the deviation. Around a copy of the sim it makes the paper's NoisySim
-    and NoisyReal, whose ideal transformed action it tells.
+    Around a sim this is the action noise envelope (Jakobi 1995), which needs no data
+    but a guess of the deviation. Around a copy of the sim it makes the SGAT paper's
+    NoisySim and NoisyReal, for which the ideal transformed action is then known.
+
+    Example:
+      >>> noisy = GroundedEnv(env, ActionNoise(0.1, low, high))
     """
 
     def __init__(self, deviation: float, low: FloatArray, high: FloatArray) -> None:
-        """Remember how much.
+        """Choose the noise.
 
         Args:
-          deviation: standard deviation, in the action's own units.
+          deviation: standard deviation, in the action's units.
           low: (a,) least action.
           high: (a,) largest action.
+
+        Raises:
+          BadValueError: the deviation is negative or not finite.
         """
         if not 0 <= deviation < np.inf:
             raise BadValueError(f"deviation is {deviation}; it must not be negative")
@@ -32,11 +38,23 @@ class ActionNoise:
         self._stream: NoiseStream | None = None
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode of n robots, each with noise from its own seed."""
+        """Start an episode.
+
+        Args:
+          seeds: n seeds of the robots' noise.
+        """
         self._stream = NoiseStream(WhiteNoise(len(self._low)), seeds)
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) noisy actions, of the policy's (n, a); the states do not matter."""
+        """Noisy actions of one tick; call it once per tick.
+
+        Args:
+          state: (n, s) states, which are not used.
+          action: (n, a) actions that the policy asks for.
+
+        Returns:
+          (n, a) actions within the bounds.
+        """
         if self._stream is None or self._stream.n != len(action):
             raise BadValueError(f"reset with {len(action)} seeds before they act")
         noise, _ = self._stream.draw()

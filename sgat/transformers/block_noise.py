@@ -1,4 +1,4 @@
-"""Noise as it really was: blocks of consecutive residuals."""
+"""Noise made of recorded residuals: blocks of consecutive ticks."""
 
 import numpy as np
 
@@ -10,18 +10,25 @@ from sgat.noise import CHUNK_TICKS, Generators
 class BlockNoise:
     """Blocks of consecutive standardised residuals, all dimensions together.
 
-    The moving block bootstrap (Kuensch 1989). Memory, tails and correlation across
-    dimensions are the data's, but nothing is remembered from one block to the next:
-    a correlation at a lag of k ticks shrinks by 1 - k / block.
+    This is the moving block bootstrap (Kuensch 1989). Memory, tails and correlations
+    across dimensions are those of the data. Nothing is remembered from one block to the
+    next: a correlation over k ticks shrinks by the factor 1 - k / block.
+
+    Example:
+      >>> law = BlockNoise(forward.residuals(real), real.episode, ticks=50)
     """
 
     def __init__(self, residuals: FloatArray, episode: IntArray, ticks: int) -> None:
-        """Find the blocks; none crosses an episode's end.
+        """Find all blocks; none goes beyond the end of an episode.
 
         Args:
-          residuals: (N, d) of a forward model, best on data that it was not fitted to.
-          episode: (N,) as in `Transitions`.
+          residuals: (N, d) of a forward model, preferably on data that it was not
+            fitted to.
+          episode: (N,) number of the episode of each row; see `Transitions`.
           ticks: length of a block.
+
+        Raises:
+          BadValueError: no episode is as long as a block.
         """
         starts = np.arange(max(len(residuals) - ticks + 1, 0))
         if ticks >= 1:
@@ -37,11 +44,11 @@ class BlockNoise:
 
     @property
     def dimensions(self) -> int:
-        """How many numbers a tick has."""
+        """d, the numbers that are drawn for a robot at each tick."""
         return int(self._residuals.shape[1])
 
     def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """See `NoiseLaw`; always whole blocks."""
+        """Noise of the next ticks, in whole blocks; see `NoiseLaw.chunk`."""
         blocks = -(-CHUNK_TICKS // self.ticks)
         picks = [g.integers(len(self._starts), size=blocks) for g in generators]
         starts = self._starts[np.stack(picks, axis=1)]
@@ -50,9 +57,9 @@ class BlockNoise:
 
 
 def _standardised(residuals: FloatArray, starts: IntArray, ticks: int) -> FloatArray:
-    """(N, d) with mean 0 and variance 1 as the blocks draw them.
+    """(N, d) residuals with mean 0 and variance 1, as blocks draw them.
 
-    Rows near an episode's end are in fewer blocks than the others.
+    Rows near the end of an episode are contained in fewer blocks than the others.
     """
     edges = np.zeros(len(residuals) + 1)
     np.add.at(edges, starts, 1.0)

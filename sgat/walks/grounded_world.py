@@ -12,7 +12,14 @@ from worlds import Observation, World
 
 
 class GroundedWorld(WorldWrapper):
-    """The world inside, made to behave like the one that the transformer knows."""
+    """A world that behaves like the one that the transformer has learned.
+
+    Each command passes through the transformer before the world inside gets it.
+
+    Example:
+      >>> senses = leg_senses(robots.get("nao"))
+      >>> world = GroundedWorld(sim, senses, transformer, seeds)
+    """
 
     def __init__(
         self,
@@ -24,24 +31,32 @@ class GroundedWorld(WorldWrapper):
         """Put a transformer before a world.
 
         Args:
-          world: the sim.
-          senses: what the transformer's models look at.
-          transformer: of actions as `WalkSenses.action` gives them.
-          seeds: one per robot, for the transformer's noise.
+          world: the sim, with n robots.
+          senses: make the states that the transformer's models see.
+          transformer: changes actions as `WalkSenses.action` defines them.
+          seeds: n seeds of the transformer's noise.
         """
         super().__init__(world)
         self._senses, self._transformer = senses, transformer
         self._seeds = list(seeds)
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground; see `World.reset`."""
+        """Put every robot on its ground; see `World.reset`.
+
+        Args:
+          pose_rad: (n, joints) joint positions [rad].
+        """
         observation = self.world.reset(pose_rad)
         self._senses.reset(observation)
         self._transformer.reset(self._seeds)
         return observation
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance by one tick with the transformed command; see `World.step`."""
+        """Advance by one tick with the transformed command; see `World.step`.
+
+        Args:
+          command_rad: (n, joints) position targets [rad].
+        """
         senses = self._senses
         action = self._transformer(senses.state(), senses.action(command_rad))
         transformed_rad = senses.command(action, command_rad)

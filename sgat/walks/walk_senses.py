@@ -1,7 +1,8 @@
-"""The state of a walking robot as the models of a grounding see it.
+"""States of a walking robot as the models of a grounding see them.
 
-All of it is measured on board. The ground disturbs the torso first, so gyroscope and
-tilt belong to what is predicted; the commands of the last ticks carry the latency.
+All columns come from sensors on board. The ground disturbs the torso first, so
+gyroscope and tilt are predicted, too; the commands of the last ticks let a model learn
+the latency.
 """
 
 from collections import deque
@@ -14,32 +15,48 @@ from robots import Description, biped
 from worlds import TICK_S, Observation
 
 HISTORY_TICKS = 5
-"""Commands looked at, the newest included: 50 ms, more than the latency of 36 ms."""
+"""Number of commands in a state and action, the newest included: 50 ms, more than
+the real world's latency of 36 ms."""
 
 ACCELEROMETER_WEIGHT = 0.002
-"""Share of the accelerometer in the tilt at every tick: a time constant of 5 s. With
-half a second the steps' accelerations leak in: the error is as large as the tilt."""
+"""Weight of the accelerometer in the tilt at every tick, which gives a time constant
+of 5 s. With half a second, the accelerations of the steps cause errors as large
+as the tilt."""
 
 
 class WalkSenses:
-    """Turns what n robots measure into states, tick by tick.
+    """Turns the measurements of n robots into states and actions, tick by tick.
 
-    A state's columns, for j grounded joints: joint positions (j), gyroscope (3) and
-    tilt (2), which a next state has as well; then context: the last change of the
-    joints (j), and the HISTORY_TICKS - 1 commands before the newest, the oldest first,
-    relative to where the joints are now (j each). An action is the newest command,
-    relative to the same.
+    For j grounded joints, a state has these columns. Outcomes, which a next state has
+    as well: joint positions (j) [rad], gyroscope (3) [rad/s] and tilt (2), the first
+    two components of the up axis in the torso frame. Context: the last change of the
+    joint positions (j) [rad], and the HISTORY_TICKS - 1 commands before the newest,
+    oldest first, relative to the present joint positions (j each) [rad]. An action is
+    the newest command, relative to the present joint positions (j) [rad].
+
+    Attributes:
+      joints: columns of (n, joints) arrays that are grounded.
+      outcomes: number of columns of a next state.
+      sim_columns: number of first columns that matter in a world without latency: all
+        but the commands.
+
+    Example:
+      See `leg_senses`.
     """
 
     def __init__(self, joints: Sequence[int]) -> None:
-        """Say which columns of (n, joints) arrays are grounded."""
+        """Choose the joints.
+
+        Args:
+          joints: columns of (n, joints) arrays that are grounded.
+        """
         self.joints = list(joints)
         self.outcomes = len(self.joints) + 5
         self.sim_columns = self.outcomes + len(self.joints)
         """State columns that matter in a world without latency: no commands."""
 
     def reset(self, observation: Observation) -> None:
-        """Start a rollout: the robots stand upright and still."""
+        """Start a rollout with robots that stand upright and still."""
         self._last_rad = observation.position_rad[:, self.joints]
         self._up = np.tile([0.0, 0.0, 1.0], (len(self._last_rad), 1))
         self._past: deque[FloatArray] = deque(maxlen=HISTORY_TICKS - 1)
@@ -47,7 +64,7 @@ class WalkSenses:
         self.observe(observation)
 
     def observe(self, observation: Observation) -> None:
-        """Take in what was measured at a tick."""
+        """Use the measurements of a tick."""
         self._change_rad = observation.position_rad[:, self.joints] - self._last_rad
         self._last_rad = observation.position_rad[:, self.joints]
         self._rate_rad_s = observation.gyroscope_rad_s
@@ -56,20 +73,23 @@ class WalkSenses:
         )
 
     def state(self) -> FloatArray:
-        """(n, s) at the last tick observed."""
+        """(n, s) states at the last observed tick, with the columns of `WalkSenses`."""
         past = [command - self._last_rad for command in self._past]
         return np.hstack([self.outcome(), self._change_rad, *past])
 
     def outcome(self) -> FloatArray:
-        """(n, p) the part of the state that is predicted."""
+        """(n, p) the first columns of the states, which models predict."""
         return np.hstack([self._last_rad, self._rate_rad_s, self._up[:, :2]])
 
     def advanced(
         self, state: FloatArray, action: FloatArray, outcome: FloatArray
     ) -> FloatArray:
-        """(n, s) the state one tick later, of states, actions and what came of them.
+        """(n, s) states one tick later, for predictions of several ticks.
 
-        For predictions of several ticks: what is not predicted follows from the rest.
+        Args:
+          state: (n, s) states.
+          action: (n, j) actions.
+          outcome: (n, p) predicted next states; the other columns follow from them.
         """
         j = len(self.joints)
         moved = outcome[:, :j] - state[:, :j]
@@ -78,17 +98,30 @@ class WalkSenses:
         return np.hstack([outcome, moved, *later])
 
     def action(self, command_rad: FloatArray) -> FloatArray:
-        """(n, j) what a command (n, joints) asks of the grounded joints."""
+        """(n, j) actions that commands stand for [rad].
+
+        Args:
+          command_rad: (n, joints) position targets [rad].
+        """
         return np.asarray(command_rad[:, self.joints] - self._last_rad)
 
     def command(self, action: FloatArray, command_rad: FloatArray) -> FloatArray:
-        """The command (n, joints) that does an action; other joints as they were."""
+        """(n, joints) commands [rad] that carry out actions.
+
+        Args:
+          action: (n, j) actions [rad].
+          command_rad: (n, joints) position targets [rad], which the other joints keep.
+        """
         changed = command_rad.copy()
         changed[:, self.joints] = action + self._last_rad
         return changed
 
     def remember(self, command_rad: FloatArray) -> None:
-        """Take in the command that was given at this tick."""
+        """Add the command of this tick to the history.
+
+        Args:
+          command_rad: (n, joints) position targets [rad].
+        """
         self._past.append(command_rad[:, self.joints])
 
 
@@ -99,6 +132,10 @@ def leg_senses(description: Description) -> WalkSenses:
 
     Raises:
       BadValueError: the robot has no two legs.
+
+    Example:
+      >>> len(leg_senses(robots.get("nao")).joints)
+      12
     """
     legs = biped(description)
     return WalkSenses([*legs.left_leg, *legs.right_leg])
@@ -107,14 +144,15 @@ def leg_senses(description: Description) -> WalkSenses:
 def tilted(
     up: FloatArray, rate_rad_s: FloatArray, force_m_s2: FloatArray
 ) -> FloatArray:
-    """The world's up axis in the torso frame one tick on, by a complementary filter.
+    """(n, 3) up axis of the world in the torso frame, one tick later.
 
-    d(up)/dt = up x rate, drawn towards the accelerometer's direction where it has one.
+    A complementary filter: d(up)/dt = up x rate, corrected towards the direction of the
+    accelerometer where that measures anything.
 
     Args:
       up: (n, 3) unit vectors.
-      rate_rad_s: (n, 3) gyroscope.
-      force_m_s2: (n, 3) accelerometer.
+      rate_rad_s: (n, 3) gyroscope [rad/s].
+      force_m_s2: (n, 3) accelerometer [m/s^2].
     """
     turned = up + TICK_S * np.cross(up, rate_rad_s)
     length = np.linalg.norm(force_m_s2, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""A world whose transitions are noted for the models to learn from."""
+"""A world that records transitions for the models of a grounding."""
 
 import numpy as np
 
@@ -10,17 +10,24 @@ from sgat.walks.world_wrapper import WorldWrapper
 from worlds import End, Observation, World
 
 EXPLORATION_MEMORY = 0.9
-"""Lag-1 correlation of the exploration: about ten ticks, so that the torso feels it."""
+"""Correlation of the exploration noise from one tick to the next: it lasts about ten
+ticks, long enough to move the torso."""
 
 SETTLING_TICKS = 5
-"""Ticks after the start that are not noted: the history is made up there."""
+"""Ticks at the start that are not recorded, because the history of commands is made
+up there."""
 
 
 class WatchedWorld(WorldWrapper):
-    """The world inside, with noise on the commands if asked, and a notebook.
+    """Records transitions of the world inside, with noise on the commands if asked.
 
-    Data of one gait hardly show what an action does: every action comes at its own
-    phase of the step. Noise that lasts for some ticks shows it.
+    Data of a gait alone hardly show the effect of an action, because every action comes
+    at its own phase of the step. Noise that lasts for several ticks shows it.
+
+    Example:
+      >>> world = WatchedWorld(sim, leg_senses(robots.get("nao")))
+      >>> walk_trials(world, gaits, rules)
+      >>> world.transitions()
     """
 
     def __init__(
@@ -30,14 +37,13 @@ class WatchedWorld(WorldWrapper):
         exploration_rad: float | FloatArray = 0.0,
         seed: np.random.SeedSequence | None = None,
     ) -> None:
-        """Begin to watch.
+        """Wrap a world.
 
         Args:
-          world: the world to learn about.
-          senses: what the models shall look at.
-          exploration_rad: standard deviation of the noise on the commands of the
-            grounded joints, one number or one per robot (n, 1); the noise grows to
-            it from none at the start.
+          world: the world to learn about, with n robots.
+          senses: make the states and actions that are recorded.
+          exploration_rad: standard deviation [rad] of the noise on the commands of the
+            grounded joints: one number, or (n, 1). The noise grows to it from zero.
           seed: of that noise.
 
         Raises:
@@ -53,7 +59,11 @@ class WatchedWorld(WorldWrapper):
         self._generator = np.random.default_rng(seed)
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground; see `World.reset`. Notes begin anew."""
+        """Put every robot on its ground and forget all transitions; see `World.reset`.
+
+        Args:
+          pose_rad: (n, joints) joint positions [rad].
+        """
         observation = self.world.reset(pose_rad)
         self._senses.reset(observation)
         self._noise = np.zeros((self.n, len(self._senses.joints)))
@@ -62,7 +72,11 @@ class WatchedWorld(WorldWrapper):
         return observation
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance by one tick, with noise on the command; see `World.step`."""
+        """Advance by one tick, with noise on the command; see `World.step`.
+
+        Args:
+          command_rad: (n, joints) position targets [rad].
+        """
         senses, walking = self._senses, self.active
         self._noise = self._next_noise()
         state = senses.state()
@@ -79,7 +93,11 @@ class WatchedWorld(WorldWrapper):
         return observation
 
     def transitions(self) -> Transitions:
-        """Everything noted since the last reset, robot by robot."""
+        """All transitions since the last reset, robot by robot.
+
+        Raises:
+          BadValueError: the walk was no longer than `SETTLING_TICKS`.
+        """
         noted = self._rows[SETTLING_TICKS:]
         if not noted:
             raise BadValueError(

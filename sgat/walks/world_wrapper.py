@@ -1,4 +1,4 @@
-"""A world around a world."""
+"""Base class of worlds that wrap another world."""
 
 from groundwalk.arrays import BoolArray, FloatArray
 from robots import Description
@@ -6,10 +6,18 @@ from worlds import End, Observation, Truth, World, WorldOptions
 
 
 class WorldWrapper:
-    """Passes everything on to the world inside; subclasses change what they must."""
+    """Passes every call on to the world inside; subclasses override what they change.
+
+    Example:
+      See `GroundedWorld`.
+    """
 
     def __init__(self, world: World) -> None:
-        """Remember the world inside."""
+        """Wrap a world.
+
+        Args:
+          world: the world inside.
+        """
         self.world = world
 
     @property
@@ -19,12 +27,12 @@ class WorldWrapper:
 
     @property
     def n(self) -> int:
-        """How many robots there are."""
+        """Number of robots."""
         return self.world.n
 
     @property
     def options(self) -> WorldOptions:
-        """How the world inside computes."""
+        """Options of the world inside."""
         return self.world.options
 
     @property
@@ -34,25 +42,37 @@ class WorldWrapper:
 
     @property
     def active(self) -> BoolArray:
-        """(n,) robots whose rollout goes on."""
+        """(n,) whether each robot's rollout continues."""
         return self.world.active
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground; see `World.reset`."""
+        """Put every robot on its ground; see `World.reset`.
+
+        Args:
+          pose_rad: (n, joints) joint positions [rad].
+        """
         return self.world.reset(pose_rad)
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance the active robots by one tick; see `World.step`."""
+        """Advance the active robots by one tick; see `World.step`.
+
+        Args:
+          command_rad: (n, joints) position targets [rad].
+        """
         return self.world.step(command_rad)
 
     def stop(self, robots: BoolArray) -> None:
-        """Take robots out of the batch; see `World.stop`."""
+        """Take robots out of the batch; see `World.stop`.
+
+        Args:
+          robots: (n,) mask.
+        """
         self.world.stop(robots)
 
     def truth(self) -> Truth:
-        """Where the robots really are."""
+        """True poses and contacts of the robots; see `World.truth`."""
         return self.world.truth()
 
     def close(self) -> None:
-        """Give back what the world inside holds."""
+        """Release the resources of the world inside."""
         self.world.close()

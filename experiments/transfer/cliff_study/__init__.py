@@ -1,1 +1,1 @@
-"""Cliff walking: the tabular study of the SGAT paper."""
+"""Cliff walking: the SGAT paper's study in a finite world."""

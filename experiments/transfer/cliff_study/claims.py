@@ -1,4 +1,4 @@
-"""What the paper says of cliff walking, held against the returns."""
+"""The paper's claims on cliff walking, checked against the returns."""
 
 from collections.abc import Sequence
 
@@ -6,10 +6,11 @@ from experiments.transfer.claims import Claim
 from experiments.transfer.cliff_study.study import GAT, OPTIMUM, SGAT, Row
 
 ROUNDING = 1e-9
+"""Differences of returns up to this are rounding."""
 
 
 def check_claims(rows: Sequence[Row]) -> list[Claim]:
-    """The claims that these noise values can show, each with its tightest number."""
+    """The claims that these noise values can show, with their critical numbers."""
     ends = [row for row in rows if row["noise"] in (0, 1)]
     between = [row for row in rows if row["noise"] not in (0, 1)]
     claims = []
@@ -59,6 +60,6 @@ def _optimal(rows: Sequence[Row]) -> Claim:
 
 
 def _more(row: Row, method: str, other: str, value: str) -> float:
-    """How much more one method returns than another."""
+    """Return of one method minus that of another."""
     methods = row["methods"]
     return float(methods[method][value] - methods[other][value])

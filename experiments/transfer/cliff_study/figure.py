@@ -1,4 +1,4 @@
-"""A picture of cliff walking: returns over noise, and two ways along the cliff."""
+"""The figure of cliff walking: returns over noise, and two paths along the cliff."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,22 +21,23 @@ STYLES: dict[str, dict[str, Any]] = {
     GAT: {"color": "#d55e00", "marker": "^"},
     SGAT: {"color": "#0072b2", "marker": "o"},
 }
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
+"""Lines of the methods, in colours that colour-blind people can distinguish (Okabe
+and Ito)."""
 
 CLIFF_COLOUR, GOAL_COLOUR = "#f4c7b8", "#bfe3d0"
 
 
 def draw_cliff(rows: Sequence[Row], grid: tuple[int, int], path: Path) -> None:
-    """Draw into a PNG file; see `cliff_figure`."""
+    """Draw `cliff_figure` into a PNG file."""
     write_figure(cliff_figure(rows, grid), path)
 
 
 def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":
-    """Returns of all methods above; below, ways of GAT and SGAT through the grid.
+    """Returns of all methods above; below, the paths of GAT and SGAT.
 
     Args:
-      rows: noise values with what came of each method; at least one.
-      grid: its rows and columns.
+      rows: the results for each noise value; at least one.
+      grid: number of rows and columns.
     """
     from matplotlib.figure import Figure
 
@@ -48,7 +49,7 @@ def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":
 
 
 def _gap(row: Row) -> float:
-    """How much more SGAT's policy returns."""
+    """Return of SGAT's policy minus that of GAT's."""
     return float(row["methods"][SGAT]["exact"] - row["methods"][GAT]["exact"])
 
 

@@ -1,4 +1,4 @@
-"""The sims of the Gymnasium studies, and the noisy, heavier worlds that are real."""
+"""Domains of the Gymnasium studies: a sim, and noisy, heavier real worlds."""
 
 from dataclasses import dataclass
 from typing import TypeAlias

@@ -1,4 +1,4 @@
-"""A picture of a Gymnasium study: returns on real of each method, over noise."""
+"""Figure of a Gymnasium study: each method's return on real, over noise."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,22 +19,22 @@ COLOURS = {
     SGAT_FULL: "#0072b2",
     ANE: "#e69f00",
 }
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
+"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
 OTHER_COLOUR = "#009e73"
 LINE_COLOUR = "#b2182b"
 GROUP_WIDTH = 0.8
 
 
 def draw_returns(rows: Sequence[Row], path: Path) -> None:
-    """Draw into a PNG file; see `returns_figure`."""
+    """Draw `returns_figure` into a PNG file."""
     write_figure(returns_figure(rows), path)
 
 
 def returns_figure(rows: Sequence[Row]) -> "Figure":
-    """Bars of the methods over noise, a dashed line for training on real.
+    """Bars for the methods over noise, a dashed line for training on real.
 
     Args:
-      rows: at least one; each setting has axes of its own.
+      rows: results from `rows_of`, at least one; each setting has its own axes.
     """
     from matplotlib.figure import Figure
 

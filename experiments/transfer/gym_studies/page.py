@@ -49,14 +49,14 @@ def write_gym_page(
     what: tuple[str, GymStudy],
     result: dict[str, Any],
 ) -> None:
-    """Write `result.md` into the run's folder, which has the figure already.
+    """Write `result.md` and `report.html` into the run's folder.
 
     Args:
-      folder: the run.
-      title: what was asked.
-      figure: its file.
-      what: the size's name, and the study.
-      result: its rows and claims.
+      folder: of the run; the figure is in it already.
+      title: the study's question.
+      figure: file name of the figure.
+      what: name of the size, and the study.
+      result: rows and claims, as in `result.json`.
     """
     size, study = what
     rows = result["rows"]

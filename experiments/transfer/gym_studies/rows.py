@@ -1,4 +1,4 @@
-"""Cells of a Gymnasium study brought together: returns over seeds, and claims."""
+"""Results of a Gymnasium study over all seeds: returns, tables and claims."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,20 +10,25 @@ from experiments.transfer.gym_studies.study import GAT, REAL, SGAT, SGAT_FULL, C
 from groundwalk.arrays import FloatArray
 
 WAYS = ("deterministic", "stochastic")
+"""How a policy is tried: with its mean action, or with random actions."""
 NUMBERS = (
     "real_steps", "envelope", "forward_log_likelihood", "inverse_r_squared",
     "action_bias", "action_spread", "noise_ratio",
 )  # fmt: skip
 
 Row = dict[str, Any]
-"""A `setting`, a `noise`, and what came of each of its `methods`."""
+"""Results in one real world: a `setting`, a `noise`, and numbers of each of its
+`methods`."""
 
 
 def rows_of(cells: Sequence[Cell]) -> list[Row]:
-    """A row for each setting and noise, in the cells' order.
+    """A row for each setting and noise, in the order of the cells.
 
-    Returns are means over seeds with their standard errors, and those of each seed;
-    everything else that the cells of a method tell is averaged.
+    Returns are means over seeds with their standard errors, and the values of each
+    seed. All other numbers of a method's cells are averaged.
+
+    Args:
+      cells: results of single seeds.
     """
     worlds = dict.fromkeys((cell["setting"], cell["noise"]) for cell in cells)
     rows = []
@@ -50,13 +55,13 @@ def _over_seeds(cells: Sequence[Cell]) -> dict[str, Any]:
 
 
 def _mean(values: FloatArray) -> dict[str, float]:
-    """With its standard error."""
+    """Mean and standard error of the mean."""
     error = values.std(ddof=1) / np.sqrt(len(values))
     return {"mean": float(values.mean()), "standard_error": float(error)}
 
 
 def check_claims(rows: Sequence[Row]) -> list[Claim]:
-    """What should be true of deterministic policies, where the methods tell it."""
+    """The claims that these methods can show, about deterministic policies."""
     claims = []
     for setting in dict.fromkeys(row["setting"] for row in rows):
         row = max(
@@ -73,7 +78,7 @@ def check_claims(rows: Sequence[Row]) -> list[Claim]:
 
 
 def _more_than_gat(row: Row, sampled: str) -> Claim:
-    """What the paper claims, of a setting's noisiest world."""
+    """The paper's main claim, in a setting's noisiest world."""
     sgat, gat = (row["methods"][name][WAYS[0]] for name in (sampled, GAT))
     more = _mean(np.subtract(sgat["returns"], gat["returns"]))
     return Claim(
@@ -84,7 +89,7 @@ def _more_than_gat(row: Row, sampled: str) -> Claim:
 
 
 def _below_real(row: Row) -> Claim:
-    """Whether the training on real was long enough to be an upper line."""
+    """Whether the training on real was long enough to be an upper bound."""
     found = {name: method[WAYS[0]] for name, method in row["methods"].items()}
     best = max(found, key=lambda name: float(found[name]["mean"]))
     return Claim(
@@ -96,10 +101,10 @@ def _below_real(row: Row) -> Claim:
 
 
 def returns_table(rows: Sequence[Row], way: str) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows: mean returns with their standard errors over seeds.
+    """Headings and rows of mean returns, with standard errors over seeds.
 
     Args:
-      rows: of `rows_of`.
+      rows: from `rows_of`.
       way: how the policies were tried, one of `WAYS`.
     """
     names = list(rows[0]["methods"])
@@ -112,7 +117,11 @@ def returns_table(rows: Sequence[Row], way: str) -> tuple[list[str], list[list[s
 
 
 def measures_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows: what each method took, and how good its models are."""
+    """Headings and rows of numbers on how each policy was found.
+
+    Args:
+      rows: from `rows_of`.
+    """
     texts = []
     for row in rows:
         for name, method in row["methods"].items():

@@ -1,4 +1,4 @@
-"""TRPO policies for Gymnasium environments: trained, kept, and tried out."""
+"""TRPO policies for Gymnasium environments: training, files, and trials."""
 
 import io
 from collections.abc import Callable
@@ -21,23 +21,23 @@ if TYPE_CHECKING:
 MakeEnvironment: TypeAlias = Callable[[], Environment]
 
 ENVIRONMENTS = 8
-"""Side by side in one training: the policy answers all of them in one call."""
+"""Environments side by side in one training: the policy answers all in one call."""
 
 
 @dataclass(frozen=True)
 class TrpoConfig:
-    """TRPO's parameters; the network is 64 x 64 tanh, observations are not scaled.
+    """Parameters of TRPO; the network is 64 x 64 tanh, observations are not scaled.
 
     Attributes:
-      batch: steps between two updates, of all environments together.
-      gamma: discount.
-      gae_lambda: of the advantages.
-      max_kl: trust region.
-      cg_steps: of the conjugate gradients.
-      cg_damping: of the Fisher matrix.
+      batch: steps between two updates, in all environments together.
+      gamma: discount factor per step.
+      gae_lambda: decay of the generalised advantage estimate.
+      max_kl: trust region: largest mean KL divergence of an update.
+      cg_steps: largest number of conjugate-gradient steps.
+      cg_damping: added to the diagonal of the Fisher matrix.
       value_epochs: passes of the value function through a batch.
-      value_rate: its learning rate.
-      value_batch: its minibatch.
+      value_rate: learning rate of the value function.
+      value_batch: size of the value function's minibatches.
     """
 
     batch: int
@@ -51,7 +51,7 @@ class TrpoConfig:
     value_batch: int
 
     def __post_init__(self) -> None:
-        """Refuse batches that do not divide."""
+        """Refuse batches that cannot be divided evenly."""
         if self.batch % ENVIRONMENTS or self.batch % self.value_batch:
             raise BadValueError(
                 f"batch is {self.batch}; {ENVIRONMENTS} environments and minibatches "
@@ -59,7 +59,7 @@ class TrpoConfig:
             )
 
     def to_keywords(self) -> dict[str, Any]:
-        """As the library calls them."""
+        """The parameters under the names of sb3-contrib's TRPO."""
         return {
             "n_steps": self.batch // ENVIRONMENTS,
             "gamma": self.gamma,
@@ -80,17 +80,17 @@ def train(
     seed: int,
     start: Path | None = None,
 ) -> "TRPO":
-    """A policy after at least so many steps of training.
+    """A policy after at least a given number of steps of training.
 
-    Stable-Baselines draws from torch's and NumPy's global generators, and seeds them:
-    call this in a process of its own.
+    Stable-Baselines draws from the global generators of torch and NumPy, and seeds
+    them: call this in a process of its own.
 
     Args:
-      make: a new environment.
-      config: of TRPO.
-      timesteps: of all environments together, rounded up to whole batches.
-      seed: of everything.
-      start: file of the policy to go on from; None for random weights.
+      make: makes a new environment.
+      config: parameters of TRPO.
+      timesteps: steps in all environments together, rounded up to whole batches.
+      seed: of everything random.
+      start: file of the policy to start from; None for random weights.
     """
     from sb3_contrib import TRPO
     from stable_baselines3.common.vec_env import DummyVecEnv
@@ -105,14 +105,14 @@ def train(
 
 
 def save(model: "TRPO", path: Path) -> None:
-    """Write a policy, the file at once."""
+    """Write a policy into a file, which appears complete or not at all."""
     content = io.BytesIO()
     model.save(content)
     write_bytes(path, content.getvalue())
 
 
 def load(path: Path) -> "TRPO":
-    """Read what `save` has written. Runs what the file says: only for own files."""
+    """Read a file of `save`. It can run code of the file: use own files only."""
     from sb3_contrib import TRPO
 
     return TRPO.load(path, device="cpu")
@@ -120,11 +120,11 @@ def load(path: Path) -> "TRPO":
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """What came of some episodes.
+    """Results of some episodes.
 
     Attributes:
-      returns: (episodes,) undiscounted.
-      steps: of all episodes together.
+      returns: (episodes,) undiscounted sums of rewards.
+      steps: number of steps in all episodes together.
     """
 
     returns: FloatArray
@@ -138,13 +138,13 @@ def evaluate(
     seed: int,
     deterministic: bool,
 ) -> Trials:
-    """Episodes of a policy, all side by side.
+    """Try a policy in episodes that run side by side.
 
     Args:
       model: the policy.
-      make: a new environment.
-      episodes: how many.
-      seed: of the environments' luck and of the policy's.
+      make: makes a new environment.
+      episodes: number of episodes.
+      seed: of the environments and of the policy's random actions.
       deterministic: whether the policy takes its mean action instead of a random one.
     """
     from stable_baselines3.common.utils import set_random_seed
@@ -172,7 +172,14 @@ def exploring(
     exploration: float,
     rng: np.random.Generator,
 ) -> Policy:
-    """The random policy, with a share of its actions drawn evenly from the space."""
+    """The policy with random actions, of which a share is drawn evenly from the space.
+
+    Args:
+      model: the policy.
+      space: of the actions.
+      exploration: share of evenly drawn actions, from 0 to 1.
+      rng: decides which actions are evenly drawn.
+    """
     space.seed(int(rng.integers(2**31)))
 
     def act(observation: FloatArray) -> FloatArray:

@@ -1,1 +1,1 @@
-"""The studies of gaits for the NAO on uneven real ground."""
+"""Studies of gaits for the NAO on uneven real ground."""

@@ -1,4 +1,4 @@
-"""A picture of predicted against real fall rates and speeds."""
+"""Figure of predicted against real fall rates and speeds."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,10 +13,11 @@ if TYPE_CHECKING:
 FIGURE = "transfer_nao_falls.png"
 
 PANELS = (("fall_rate", "fall rate", 1.0), ("speed_cm_s", "speed [cm/s]", 40.0))
+"""For each row of panels: key of the results, label, and end of the axes."""
 
 
 def draw_falls(state: Mapping[str, Any], path: Path) -> None:
-    """Draw into a PNG file; see `falls_figure`."""
+    """Draw `falls_figure` into a PNG file."""
     write_figure(falls_figure(state), path)
 
 
@@ -24,7 +25,8 @@ def falls_figure(state: Mapping[str, Any]) -> "Figure":
     """A column for each grounding: fall rates above, speeds below.
 
     Args:
-      state: fall rates and speeds of each gait, for "real" and every grounding.
+      state: fall rates and speeds [cm/s] of each gait, for "real" and for each
+        grounding.
     """
     from matplotlib.figure import Figure
 

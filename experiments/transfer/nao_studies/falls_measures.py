@@ -1,4 +1,4 @@
-"""How good the walking robot's groundings are, before any gait is tried in them."""
+"""Measures of the groundings' models, before any gait is tried in a grounded sim."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ MEASURED = (SGAT, ENSEMBLE)
 """Groundings whose models are measured: those that predict a distribution."""
 
 ROWS = 500
-"""Largest number of states at which transformed actions are looked at."""
+"""Largest number of states at which transformed actions are examined."""
 
 TICK_MS = 10
 """Control tick [ms]."""
@@ -132,7 +132,7 @@ def measure_rows(measures: Measures) -> list[list[str]]:
 
 
 def draw_measures(measures: Measures, path: Path) -> None:
-    """Draw into a PNG file; see `measures_figure`."""
+    """Draw `measures_figure` into a PNG file."""
     write_figure(measures_figure(measures), path)
 
 

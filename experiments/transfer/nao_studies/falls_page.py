@@ -21,7 +21,9 @@ from groundwalk.arrays import FloatArray
 from sgat.transformers.catalogue import grounding
 
 GOAL = 0.7
+"""Correlation of predicted and real fall rates that is aimed for."""
 MEASURES = "measures"
+"""Key of the models' measures in the run's results."""
 HEADINGS = (
     "grounding",
     "falls: correlation",
@@ -32,10 +34,17 @@ HEADINGS = (
 )
 
 Row = dict[str, Any]
+"""Numbers of one grounding: its name, and correlation and errors of falls and
+speeds."""
 
 
 def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
-    """How well each grounding predicts, against the stage "real"."""
+    """How well each grounding predicts falls and speeds.
+
+    Args:
+      state: fall rates and speeds [cm/s] of each gait, for "real" and for each
+        grounding.
+    """
     real = {name: np.array(values) for name, values in state["real"].items()}
     rows: list[Row] = []
     for name in GROUNDINGS:
@@ -53,14 +62,19 @@ def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
 
 
 def correlation(predicted: FloatArray, real: FloatArray) -> float | None:
-    """Pearson's; None where one of them does not vary."""
+    """Pearson's correlation; None if one of the two does not vary.
+
+    Args:
+      predicted: (gaits,) values.
+      real: (gaits,) values.
+    """
     if predicted.std() == 0 or real.std() == 0:
         return None
     return float(np.corrcoef(predicted, real)[0, 1])
 
 
 def table_of(rows: Sequence[Row]) -> list[list[str]]:
-    """The rows as text."""
+    """The cells of the page's table, as text."""
     table = []
     for row in rows:
         falls, speed = row["fall_rate"], row["speed_cm_s"]
@@ -78,9 +92,13 @@ def table_of(rows: Sequence[Row]) -> list[list[str]]:
 
 
 def correlation_interval(r: float, pairs: int) -> tuple[float, float]:
-    """95 % interval of a correlation seen on so many pairs (Fisher 1921).
+    """95 % interval of a correlation (Fisher 1921).
 
     atanh(r) is nearly normal with the standard deviation 1 / sqrt(pairs - 3).
+
+    Args:
+      r: the observed correlation.
+      pairs: number of pairs that it was computed from.
     """
     if pairs <= 3:
         return -1.0, 1.0
@@ -92,13 +110,13 @@ def correlation_interval(r: float, pairs: int) -> tuple[float, float]:
 def write_falls_page(
     folder: RunFolder, rows: Sequence[Row], state: Mapping[str, Any], trials: int
 ) -> None:
-    """Write `result.md`.
+    """Write `result.md` and `report.html`.
 
     Args:
-      folder: the run.
-      rows: of `prediction_rows`.
-      state: what they were made of.
-      trials: of each gait in the real world.
+      folder: of the run.
+      rows: from `prediction_rows`.
+      state: the results that the rows were made from.
+      trials: number of real walks of each gait.
     """
     count = len(state["real"]["fall_rate"])
     by_name = {row["grounding"]: row["fall_rate"]["correlation"] or 0.0 for row in rows}

@@ -1,4 +1,4 @@
-"""A picture of the NAO study: how fast each gait is, and how often it falls."""
+"""Figure of the NAO study: how fast each gait is, and how often it falls."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,16 +12,20 @@ if TYPE_CHECKING:
 
 FIGURE = "transfer_nao.png"
 COLOURS = ("0.6", "#56b4e9", "#0072b2")
-"""Of the steps 0, 1 and 2."""
+"""Colours of the grounding steps 0, 1 and 2."""
 
 
 def draw_cells(cells: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Draw into a PNG file; see `cells_figure`."""
+    """Draw `cells_figure` into a PNG file."""
     write_figure(cells_figure(cells), path)
 
 
 def cells_figure(cells: Sequence[Mapping[str, Any]]) -> "Figure":
-    """A row for each cell: speed with its spread, share of falls with its interval."""
+    """A row for each cell: speed with its spread, share of falls with its interval.
+
+    Args:
+      cells: results of the study; see `NaoStudy`.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.0, 0.4 * len(cells) + 1.2), dpi=160)

@@ -19,15 +19,19 @@ from terrain import Flat, Lumps, configuration, parse
 
 CELLS = "cells"
 DIAGNOSED = "diagnosed"
+"""Marks methods that use the sim corrected by a diagnosis."""
 DIAGNOSED_SIM = f"{DIAGNOSED} sim"
 HEADINGS = ("method", "step", "speed [cm/s]", "falls", "95 % interval", "real walks")
 GOAL_SPEED_CM_S, GOAL_FALLS, SIGNIFICANT = 18.0, 0.1, 0.05
+"""The aim of the study: speed [cm/s] and share of falls that a gait must reach, from
+the SGAT paper; and the p value below which a difference is called significant."""
 
 Cell = Mapping[str, Any]
+"""Result of one method after one grounding step; see `NaoStudy`."""
 
 
 def table_of(cells: Sequence[Cell]) -> list[list[str]]:
-    """The cells as text."""
+    """The cells of the page's table, as text."""
     rows = []
     for cell in sorted(cells, key=lambda cell: cell["step"]):
         low, high = wilson(cell["falls"], cell["trials"])
@@ -45,9 +49,14 @@ def table_of(cells: Sequence[Cell]) -> list[list[str]]:
 
 
 def more_falls_p(often: Cell, seldom: Cell) -> float:
-    """Fisher's exact test: how likely the difference is if both fall as often.
+    """Fisher's exact test: p value of the difference in falls.
 
-    One-sided: the first falls more often (Fisher 1922; the paper counts ten trials).
+    One-sided: the first cell falls more often (Fisher 1922). The null hypothesis is
+    that both fall equally often.
+
+    Args:
+      often: cell that seems to fall more often.
+      seldom: the other cell.
     """
     from scipy.stats import fisher_exact
 
@@ -58,9 +67,14 @@ def more_falls_p(often: Cell, seldom: Cell) -> float:
 
 
 def faster_p(fast: Cell, slow: Cell) -> float:
-    """Welch's test: how likely the difference in speed is if both are as fast.
+    """Welch's test: p value of the difference in speed.
 
-    One-sided: the first is faster (Welch 1947).
+    One-sided: the first cell is faster (Welch 1947). The null hypothesis is that both
+    are equally fast.
+
+    Args:
+      fast: cell that seems to be faster.
+      slow: the other cell.
     """
     from scipy.stats import ttest_ind_from_stats
 
@@ -74,9 +88,9 @@ def faster_p(fast: Cell, slow: Cell) -> float:
 
 
 def claims_of(cells: Sequence[Cell]) -> list[Claim]:
-    """What the paper's table says, and whether it came out so.
+    """The claims of the SGAT paper's table, checked on the study's cells.
 
-    There are none if a method that is spoken of was not tried.
+    There are none if a method that they are about was not tried.
     """
     at = {(cell["method"], cell["step"]): cell for cell in cells}
     if all((name, 1) in at for name in (NONE, DIAGNOSED_SIM)):
@@ -124,12 +138,12 @@ def _better_than_nominal(diagnosed: Cell, nominal: Cell) -> Claim:
 def write_nao_page(
     folder: RunFolder, cells: Sequence[Cell], planned: int, course: RealCourse
 ) -> None:
-    """Write `result.md`.
+    """Write `result.md` and `report.html`.
 
     Args:
-      folder: the run.
-      cells: what is known so far.
-      planned: how many cells there shall be.
+      folder: of the run.
+      cells: results so far.
+      planned: number of cells that the study will have.
       course: on which gaits were tried.
     """
     trials = cells[0]["trials"]
@@ -189,7 +203,7 @@ def _own_groundings(cells: Sequence[Cell]) -> list[str]:
 
 
 def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
-    """What the real world has that the model lacks, and what a diagnosis does to it."""
+    """Lines on hidden physics of the real world, and on what a diagnosis does."""
     if not course.hidden:
         return []
     found = any(DIAGNOSED in cell["method"] for cell in cells)
@@ -203,7 +217,7 @@ def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
 
 
 def answer_of(cells: Sequence[Cell]) -> list[str]:
-    """The best gait beside the one of the sim as it is, and the goal."""
+    """The best gait beside the one tuned in the plain sim, and whether it is good."""
     best = max(cells, key=_earned)
     step = f", step {best['step']}" if best["step"] else ""
     good = "It reaches" if _is_good(best) else "It does not reach"
@@ -231,5 +245,5 @@ def _walked(cell: Cell) -> str:
 
 
 def _earned(cell: Cell) -> float:
-    """Speed less 15 cm/s a fall: the paper's reward."""
+    """Speed minus the SGAT paper's 15 cm/s for each fall, per trial."""
     return float(cell["speed_mean"] - 15 * cell["falls"] / cell["trials"])
