@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from diagnosis.replay.hermite import hermite
+from diagnosis.replay.tape import hermite
 from groundwalk.arrays import FloatArray
 
 

@@ -1,4 +1,4 @@
-"""A batch of simulations, one per variant and run."""
+"""A batch of simulations, one for each variant and run."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,10 +15,14 @@ from groundwalk.arrays import FloatArray
 
 
 class ReplayBatch:
-    """n variants times R runs, variant by variant.
+    """Simulations of n variants in R runs, variant by variant.
 
     Attributes:
-      laws: what drives the simulations; not MuJoCo's own.
+      laws: servos, friction and forces of the simulations.
+      n: number of simulations, n R.
+      count: number of runs R.
+      qpos: live (n R, nq) positions, as MuJoCo has them.
+      qvel: live (n R, nv) velocities.
     """
 
     def __init__(
@@ -28,7 +32,14 @@ class ReplayBatch:
         step_s: float,
         threads: int,
     ) -> None:
-        """Put every simulation into the state that its run starts from."""
+        """Put every simulation into the state that its run starts from.
+
+        Args:
+          runs: R parts of recordings.
+          variants: n variants of the robot.
+          step_s: time step of the physics.
+          threads: threads of the batch.
+        """
         from mujoco.batch import Batch
 
         plant = variants.plant
@@ -43,7 +54,7 @@ class ReplayBatch:
         self.laws.begin()
 
     def step(self) -> None:
-        """One step of physics; what blows up becomes NaN."""
+        """Take one step of physics; a simulation that diverges gets NaN positions."""
         from mujoco.batch import SimulationError
 
         try:
@@ -56,10 +67,11 @@ class ReplayBatch:
         return np.asarray(self._batch.bind(name))
 
     def _start(self, runs: Sequence[Run], variants: Variants) -> None:
+        """Set positions and velocities, and the ground that the soles stand on."""
         n, plant = self.n // self.count, self.plant
         measured = np.tile([run.position_rad for run in runs], (n, 1))
         velocity = np.tile([run.velocity_rad_s for run in runs], (n, 1))
-        # what is measured now, the joints have left behind
+        # late sensors show where the joints were, so they are further on by now
         late_s = np.repeat(variants.signals.sensor_delay_s, self.count)[:, None]
         start = measured + late_s * velocity - self.laws.joints["offset_rad"]
         self.qpos[:, plant.qpos], self.qvel[:, plant.dofs] = start, velocity
@@ -75,7 +87,7 @@ class ReplayBatch:
 
 
 def _servo(trace: Trace) -> Servo:
-    """A trace's servo; where torques drive it only the motor's back-EMF is left."""
+    """A trace's servo; only its motor's back-EMF where torques drive the joints."""
     if trace.command_rad is not None:
         return trace.servo
     none = np.zeros_like(trace.servo.kp_nm_rad)

@@ -1,10 +1,10 @@
-"""Bumps that nobody has measured: the ground is where soles stood on it.
+"""Uneven ground for replays: it is where recorded soles stood on it.
 
-How high an uneven ground is says nothing of where its bumps are, but a robot that
-stands still has felt them. Recorded base and joints say where each point of a loaded
-sole is when a window begins; if that is off the model's plane by more than what is not
-known of the start, ground of sufficient height is taken to be there, and nowhere else.
-Where a foot is put down later is not known in advance.
+The height of bumps does not say where they are, but a robot that stands has felt them.
+The recorded base and joints say where each point of a loaded sole is when a window
+begins. Where that is off the model's plane by more than the start state is uncertain,
+the ground is taken to be there, as far as its height allows. Where a foot steps later
+is not known in advance; there the ground is flat.
 """
 
 from collections.abc import Sequence
@@ -22,28 +22,29 @@ if TYPE_CHECKING:
     from diagnosis.plant.plant import Plant
 
 DOUBT_M = 6e-4
-"""So far from the plane a sole may seem to be though it stands on it: three times
-what cameras and encoders do not know."""
+"""Distance [m] from the plane below which a sole counts as standing on it: three times
+the uncertainty from motion capture and encoders."""
 
 LOADED = 0.05
-"""Share of the weight on both feet that a foot carries at least if it stands."""
+"""Smallest share of the force on both feet with which a foot counts as standing."""
 
 ABOVE_M = 0.005
-"""Without foot sensors: a foot stands if it is no higher above the lower one."""
+"""Height [m] above the lower foot up to which a foot counts as standing, where foot
+forces are not recorded."""
 
 
 def conform(
     batch: Any, plant: "Plant", runs: Sequence[Run], height_m: FloatArray
 ) -> None:
-    """Raise or lower the ground under loaded soles to where they are.
+    """Raise or lower the ground under loaded soles to where these are.
 
-    The points of the soles move, not the ground: it is one plane for all of them.
+    The ground stays one plane; the points of the soles are moved instead.
 
     Args:
-      batch: N simulations of a plant, put into the states that their runs start from.
-      plant: with a plane as ground.
-      runs: of each simulation.
-      height_m: (N,) that the ground may differ from the plane by, at most.
+      batch: N simulations, in the states that their runs start from.
+      plant: robot model with a plane as ground.
+      runs: the run of each simulation.
+      height_m: (N,) largest distance of the ground from the plane.
     """
     import mujoco
 
@@ -63,7 +64,7 @@ def conform(
         bump = np.where(np.abs(above[i]) > DOUBT_M, bump, 0.0) * stands[:, i, None]
         down = np.einsum("nij,ni->nj", bodies[:, model.body(foot).id], -normal)
         places[:, geoms] += bump[:, :, None] * down[:, None]
-    # the tree of boxes that collisions are looked for in is around the old places
+    # MuJoCo's tree of bounding boxes still surrounds the old places of the soles
     flags = np.asarray(batch.expand("opt.disableflags"))
     flags[:] |= int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
     batch.forward()
@@ -76,7 +77,15 @@ def _above(
     at: FloatArray,
     turns: FloatArray,
 ) -> FloatArray:
-    """(N, geoms) height of the lowest point of each over the plane."""
+    """(N, geoms) height of each geom's lowest point above the plane [m].
+
+    Args:
+      model: of the simulations.
+      geoms: of a foot.
+      floor: number of the plane's geom.
+      at: (N, ngeom, 3) positions of all geoms.
+      turns: (N, ngeom, 3, 3) their orientations.
+    """
     import mujoco
 
     normal = turns[:, floor, :, 2]
@@ -89,10 +98,10 @@ def _above(
 
 
 def _stands(runs: Sequence[Run], lowest: FloatArray) -> BoolArray:
-    """(N, feet) which feet carry the robot as a run begins.
+    """(N, feet) flags of the feet that carry the robot as its run begins.
 
     Args:
-      runs: of each simulation.
+      runs: the run of each simulation.
       lowest: (N, feet) height of each foot's lowest point.
     """
     forces = [run.trace.foot_force_n for run in runs]

@@ -1,4 +1,4 @@
-"""What traces tell servos to do, on the steps of a replay."""
+"""Commands and torques of recordings, at the steps of a replay."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,10 +12,15 @@ from groundwalk.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Values that hold from one row of a trace to the next, as their integral.
+    """Values that each hold from one row of a trace to the next.
 
-    A step of a replay takes the mean over its time, so that a command which changes
-    within a step does so at its own time, and a delay need not be whole steps.
+    A step of a replay uses the mean over its duration. So a command may change within a
+    step, and a delay need not be a whole number of steps.
+
+    Attributes:
+      time_s: (T,) times of the rows.
+      values: (T, j) values from each row on.
+      integral: (T, j) integral of the values from the first row to each row.
     """
 
     time_s: FloatArray
@@ -24,46 +29,52 @@ class Held:
 
     @classmethod
     def of(cls, time_s: FloatArray, values: FloatArray) -> "Held":
-        """Of (T,) times and (T, j) values; a missing value is the one before it."""
+        """Hold (T, j) values from (T,) times on; the one before fills a missing one."""
         values = filled(values)
         steps = np.diff(time_s)[:, None] * values[:-1]
         integral = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
         return cls(time_s, values, integral)
 
     def mean(self, start_s: FloatArray, step_s: float) -> FloatArray:
-        """(..., j) means over `start_s` (...) to `start_s + step_s`.
+        """(..., j) means from `start_s` to `start_s + step_s`.
 
-        Before the first row its value holds, after the last row the last one does.
+        The first value also holds before the first row, the last one for ever.
+
+        Args:
+          start_s: (...) times.
+          step_s: duration.
         """
         end_s = start_s + step_s
         return (self._at(end_s) - self._at(start_s)) / step_s
 
     def at(self, time_s: FloatArray) -> FloatArray:
-        """(..., j) values that hold from `time_s` (...) on."""
+        """(..., j) values at (...) times."""
         return np.asarray(self.values[self._row(time_s)])
 
     def _at(self, time_s: FloatArray) -> FloatArray:
+        """(..., j) integral from the first row to (...) times."""
         row = self._row(time_s)
         since = (time_s - self.time_s[row])[..., None]
         return np.asarray(self.integral[row] + since * self.values[row])
 
     def _row(self, time_s: FloatArray) -> IntArray:
+        """(...) numbers of the rows whose values hold at (...) times."""
         row = np.searchsorted(self.time_s, time_s, side="right") - 1
         return np.clip(row, 0, len(self.time_s) - 1)
 
 
 class Drive:
-    """What drives the rows of a batch: n variants times R runs, variant by variant."""
+    """Commands and torques for n variants times R runs, variant by variant."""
 
     def __init__(self, runs: Sequence[Run], delay_s: FloatArray, step_s: float) -> None:
-        """Find out which runs have position targets, and which torques.
+        """Collect the commands and torques of all runs.
 
         Args:
-          runs: R, all driven the same way.
-          delay_s: (n,) until what is commanded takes effect.
-          step_s: of the replay.
+          runs: R runs, either all with position targets or all with torques.
+          delay_s: (n,) time until a command takes effect.
+          step_s: time step of the replay.
         """
-        # variants without a delay of their own share their commands
+        # variants with the same delay share their commands
         self._delays_s, self._which = np.unique(delay_s, return_inverse=True)
         self._step_s = step_s
         traces = [run.whole or run.trace for run in runs]
@@ -73,7 +84,11 @@ class Drive:
         self._variants, self._joints = len(delay_s), traces[0].position_rad.shape[1]
 
     def at(self, now_s: FloatArray) -> tuple[FloatArray | None, FloatArray | None]:
-        """(B, n R, j) position targets and torques of (B, R) steps; None for none."""
+        """(B, n R, j) mean targets and torques of B steps; None where there are none.
+
+        Args:
+          now_s: (B, R) times at which the steps begin.
+        """
 
         def mean(held: Held, late_s: FloatArray) -> FloatArray:
             return held.mean(late_s, self._step_s)
@@ -84,13 +99,21 @@ class Drive:
         )
 
     def ends(self, now_s: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """(B, n R, j) position targets as (B, R) steps begin and end; None for none."""
+        """(B, n R, j) first and last targets of B steps; None where there are none.
+
+        Args:
+          now_s: (B, R) times at which the steps begin.
+        """
         before = self._all(self._commands, now_s, Held.at)
         after = self._all(self._commands, now_s + self._step_s, Held.at)
         return None if before is None or after is None else (before, after)
 
     def added(self, now_s: FloatArray) -> FloatArray | None:
-        """(B, n R, j) torques beside the servos' own in (B, R) steps; None for none."""
+        """(B, n R, j) known torques beside the servos' in B steps; None if none.
+
+        Args:
+          now_s: (B, R) times at which the steps begin.
+        """
         if not any(self._added):
             return None
         nothing = np.zeros((len(now_s), self._joints))
@@ -106,6 +129,7 @@ class Drive:
         now_s: FloatArray,
         take: Callable[[Held, FloatArray], FloatArray],
     ) -> FloatArray | None:
+        """(B, n R, j) values taken at (B, R) times, late as each variant has it."""
         late_s = now_s[None] - self._delays_s[:, None, None]
         columns = [
             take(one, late_s[:, :, k]) for k, one in enumerate(held) if one is not None
@@ -118,18 +142,19 @@ class Drive:
 
 
 def _held(trace: Trace, values: FloatArray | None) -> Held | None:
+    """Values (T, j) of a trace as they hold; None without values."""
     return None if values is None else Held.of(trace.time_s, values)
 
 
 def _command_rad(trace: Trace) -> FloatArray | None:
-    """What servos follow, where there are any."""
+    """(T, j) position targets; None where servos do not hold the joints."""
     return None if trace.unheld else trace.command_rad
 
 
 def _torque_nm(trace: Trace) -> FloatArray | None:
-    """What drives joints that no servo holds.
+    """(T, j) torques on joints that no servo holds; None where servos hold them.
 
-    The torque target if there is one, else what was measured.
+    The torque targets if there are any, else the measured torques.
     """
     if not trace.unheld:
         return None

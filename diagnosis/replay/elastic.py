@@ -9,11 +9,16 @@ from groundwalk.arrays import BoolArray, FloatArray
 
 
 class ElasticJoints:
-    """The motors of joints whose links hang on springs, (n, j) each.
+    """Motors that drive their links through springs, arrays (rows, j).
 
-    J w' = servo(command, angle) - (kd + emf) w - K (angle - q) - D (w - q'): Spong
-    1987. The motor is stepped implicitly, as it may be light and its spring stiff; the
-    link is MuJoCo's, its actuator is the spring.
+    Motor: J w' = servo(command, angle) - (kd + emf) w - K (angle - q) - D (w - q')
+    (Spong 1987), stepped implicitly, as it may be light and its spring stiff. MuJoCo
+    simulates the link; the spring is its actuator.
+
+    Attributes:
+      soft: flags of the joints that have a spring.
+      stiffness: K [N m/rad]; 1 where there is no spring.
+      damping: D [N m s/rad].
     """
 
     def __init__(
@@ -24,7 +29,7 @@ class ElasticJoints:
         servo: Mapping[str, FloatArray],
         inertia: FloatArray,
     ) -> None:
-        """Motors at rest where their links are."""
+        """Take the springs and motors; see `of`. Motors start where their links are."""
         self.soft, self.stiffness, self.damping = soft, stiffness, damping
         self._servo, self._inertia = servo, inertia
         self._angle: FloatArray | None = None
@@ -37,7 +42,13 @@ class ElasticJoints:
         servo: Mapping[str, FloatArray],
         inertia: FloatArray,
     ) -> Self | None:
-        """Of `Joints` and servos, rows as the batch has them; None if none is soft."""
+        """Motors of all joints that have a spring in some simulation; None without any.
+
+        Args:
+          joints: arrays of `Joints`, with a row for each simulation.
+          servo: numbers of the servos, see `BatchServos`.
+          inertia: (rows, j) of the rotors [kg m^2].
+        """
         soft = np.isfinite(joints["spring_nm_rad"])
         if not soft.any():
             return None
@@ -52,12 +63,18 @@ class ElasticJoints:
         step_s: float,
         torque_nm: FloatArray | float = 0.0,
     ) -> FloatArray:
-        """Controls for the springs, after one step of the motors.
+        """(rows, j) targets of the springs, after one step of the motors.
 
-        So that a stiff spring makes the error of a rigid joint at the same step, the
-        servo acts on the motor's angle before the step, as MuJoCo's does, and the
-        spring on both ends' speeds after it. Speeds that are not known yet are
-        extrapolated from the last two.
+        The servo acts on the motor's angle before the step, as MuJoCo's servos do, and
+        the spring on the speeds of both ends after it, extrapolated from the last two
+        steps. So a stiff spring has the same integration error as a rigid joint.
+
+        Args:
+          asked_rad: (rows, j) position targets of the servos.
+          position_rad: (rows, j) of the links.
+          velocity_rad_s: (rows, j) of the links.
+          step_s: time step.
+          torque_nm: (rows, j) further torque on the motors.
         """
         if self._angle is None:
             self._angle, self._speed = position_rad.copy(), velocity_rad_s.copy()
@@ -78,7 +95,7 @@ class ElasticJoints:
     def _stepped(
         self, asked_rad: FloatArray, momentum: FloatArray, h: float
     ) -> FloatArray:
-        """Speeds of the motors after a step, with servos that may be at their limit."""
+        """(rows, j) speeds of the motors after a step, if need be at their limits."""
         servo = self._servo
         kp, kd, limit = servo["kp"], servo["kd"], servo["limit"]
         inner = servo["emf"] + self.damping
@@ -92,7 +109,11 @@ class ElasticJoints:
         return np.asarray(np.where(np.abs(wanted) > limit, bound, free))
 
     def seen(self, position_rad: FloatArray) -> FloatArray:
-        """(n, j) what encoders on the motors' side see, of the links' positions."""
+        """(rows, j) angles on the motors' side, where the encoders sit.
+
+        Args:
+          position_rad: (rows, j) of the links.
+        """
         if self._angle is None:
             return position_rad
         return np.where(self.soft, self._angle, position_rad)

@@ -6,15 +6,20 @@ from typing import Any
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.replay.columns import columns
+from diagnosis.replay.servos import columns
 from groundwalk.arrays import FloatArray
 
 SOLIMP_FRICTION = (0.999, 0.9999, 0.001, 0.5, 2.0)
-"""Dry friction must hold: with MuJoCo's own default a tenth of it is viscous."""
+"""MuJoCo impedance of dry friction. It is close to 1, so that a joint at rest stays
+there; with MuJoCo's default a tenth of dry friction behaves as viscous friction."""
 
 
 class BatchFriction:
-    """MuJoCo's friction loss, by speed and load where a variant asks for that."""
+    """MuJoCo's friction loss; it follows speed and load where a variant says so.
+
+    Attributes:
+      varies: whether any friction depends on speed or load, so that `follow` is needed.
+    """
 
     def __init__(
         self,
@@ -28,14 +33,13 @@ class BatchFriction:
 
         Args:
           batch: a `mujoco.batch.Batch`.
-          plant: that it simulates.
-          joints: `Joints`, rows as the batch has them.
-          damping_nm_s_rad: (rows, j) all that the integrator has implicitly.
-          step_s: of the physics.
+          plant: the simulated robot.
+          joints: arrays of `Joints`, with a row for each simulation.
+          damping_nm_s_rad: (rows, j) all damping that is integrated implicitly.
+          step_s: time step of the physics.
         """
         self._joints, self._dofs = joints, columns(plant.dofs)
         self.varies = bool(joints["stribeck_nm"].any() or joints["load_share"].any())
-        """Whether `follow` has anything to do."""
         self._torque_nm = np.asarray(batch.expand("dof_frictionloss"))
         self._torque_nm[:, self._dofs] += joints["coulomb_nm"]
         self._least_nm = self._torque_nm[:, self._dofs].copy()
@@ -47,7 +51,12 @@ class BatchFriction:
         np.asarray(batch.expand("dof_solref"))[:] = solref
 
     def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
-        """Set the torques for (rows, j) speeds and torques that drive the joints."""
+        """Set the friction of one step.
+
+        Args:
+          velocity_rad_s: (rows, j) of the joints.
+          driven_nm: (rows, j) torques that pass through the gears.
+        """
         joints = self._joints
         speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
         more = joints["stribeck_nm"] * np.exp(-(speed**2))
@@ -58,7 +67,7 @@ class BatchFriction:
 def stops_in_a_step(
     damping_nm_s_rad: FloatArray, inertia_kg_m2: FloatArray, step_s: float
 ) -> FloatArray:
-    """(..., 2) `solref` of friction that can stop a joint within one step.
+    """(..., 2) MuJoCo's `solref` for friction that can stop a joint within one step.
 
     MuJoCo's friction asks for the acceleration -rate * velocity as if there were no
     damping; the integrator that follows has damping implicitly, and gives only
@@ -68,9 +77,9 @@ def stops_in_a_step(
     friction has none of, and a damping.)
 
     Args:
-      damping_nm_s_rad: all that is viscous at the joints.
-      inertia_kg_m2: of the joints with what they carry.
-      step_s: of the physics.
+      damping_nm_s_rad: (...) all damping at the joints.
+      inertia_kg_m2: (...) of the joints with the links they carry.
+      step_s: time step of the physics.
     """
     rate_1_s = 1 / step_s + damping_nm_s_rad / inertia_kg_m2
     damping = -SOLIMP_FRICTION[1] * rate_1_s

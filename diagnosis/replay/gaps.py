@@ -1,4 +1,4 @@
-"""Play between the motors and joints of a batch of simulations."""
+"""Gaps (backlash) between motors and joints in a batch of simulations."""
 
 from collections.abc import Mapping
 
@@ -7,15 +7,17 @@ import numpy as np
 from groundwalk.arrays import BoolArray, FloatArray
 
 LEAST_DRAG = 1e-9
-"""What has neither stiffness nor damping does not move: nothing is divided by zero."""
+"""Smallest damping [N m s/rad] that is divided by. A motor without stiffness and
+damping does not move."""
 
 
 class BatchGaps:
-    """Motors that turn within their gaps, free of the joint, until they touch it.
+    """Motors that turn freely within their gaps until they touch the joint.
 
-    A motor is without mass, as its inertia is part of the joint's. Free of the joint it
-    follows its command by its own servo, m' = kp (command - m) / (kd + back-EMF), and
-    no torque reaches the joint. It touches at half the gap from the joint's position.
+    A motor has no mass here, since its inertia is part of the joint's. While it is free
+    it follows its command by its own servo, m' = kp (command - m) / (kd + back-EMF),
+    and no torque reaches the joint. It touches at half the gap from the joint's
+    position.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model, with a motor whose damping outweighs its inertia.
@@ -27,29 +29,29 @@ class BatchGaps:
         law: Mapping[str, FloatArray],
         step_s: float,
     ) -> None:
-        """Take the gaps of all variants.
+        """Take the gaps of all simulations.
 
         Args:
-          joints: `Joints`, rows as the batch has them.
-          law: `kp`, `kd`, `limit` and `emf` of the servos, as they are at any time.
-          step_s: of the physics.
+          joints: arrays of `Joints`, with a row for each simulation.
+          law: numbers of the servos, see `BatchServos`; changed as servos fade.
+          step_s: time step of the physics.
         """
         self._half = joints["gap_rad"] / 2
         self._law, self._step_s = law, step_s
         self._motor_rad: FloatArray | None = None
 
     def begin(self) -> None:
-        """Begin, or begin anew: motors are where their commands let them be."""
+        """Forget the motors' angles; they start as near their targets as they can."""
         self._motor_rad = None
 
     def through(
         self, asked_rad: FloatArray, position: FloatArray
     ) -> tuple[FloatArray, BoolArray]:
-        """Targets (rows, j) that give the torque that arrives, and where none does.
+        """Targets (rows, j) with the torque that reaches the joints; flags where none.
 
         Args:
-          asked_rad: position targets.
-          position: of the joints.
+          asked_rad: (rows, j) position targets.
+          position: (rows, j) of the joints [rad].
         """
         half = self._half
         low, high = position - half, position + half
@@ -62,17 +64,19 @@ class BatchGaps:
         return position + arrives, apart
 
     def drag_nm(self, velocity: FloatArray) -> FloatArray:
-        """(rows, j) by which the servo brakes: a joint lacks it while apart from it.
+        """(rows, j) torque by which the servos brake joints that they touch.
+
+        A joint that is apart from its motor lacks this torque.
 
         Args:
-          velocity: of the joints.
+          velocity: (rows, j) of the joints [rad/s].
         """
         law = self._law
         servo_nm = np.clip(law["kd"] * velocity, -law["limit"], law["limit"])
         return np.asarray(servo_nm + law["emf"] * velocity)
 
     def _followed(self, asked_rad: FloatArray, motor_rad: FloatArray) -> FloatArray:
-        """One implicit step of motors that nothing holds, within their torque."""
+        """(rows, j) angles of free motors after one implicit step of limited torque."""
         law = self._law
         drag = np.maximum(law["kd"] + law["emf"], LEAST_DRAG) / self._step_s
         moved = law["kp"] * (asked_rad - motor_rad) / (law["kp"] + drag)

@@ -1,4 +1,4 @@
-"""The laws that effects bring into a batch of simulations, and MuJoCo lacks."""
+"""Servos, gears, friction and forces of a batch: laws of effects that MuJoCo lacks."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,31 +7,34 @@ import numpy as np
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.servo import Servo
-from diagnosis.replay.columns import columns
 from diagnosis.replay.elastic import ElasticJoints
 from diagnosis.replay.friction import BatchFriction
 from diagnosis.replay.gaps import BatchGaps
 from diagnosis.replay.outside_forces import OutsideForces
-from diagnosis.replay.servos import BatchServos, Ends, first_share
+from diagnosis.replay.servos import BatchServos, Ends, columns, first_share
 from groundwalk.arrays import FloatArray
 
 FAST = 1e9
-"""Setpoints as fast as that are at their targets at once [rad/s]."""
+"""Speed [rad/s] at which a set-point reaches its target at once."""
 
 
 class BatchLaws:
-    """What servos, gears and hands do at every step of n variants times R runs."""
+    """Torques and forces at every step of n variants times R runs, variant by variant.
+
+    Attributes:
+      joints: arrays (n R, j) of `Joints`, with a row for each simulation.
+    """
 
     def __init__(
         self, batch: Any, variants: Variants, servos: Sequence[Servo], step_s: float
     ) -> None:
-        """Set the constants of all simulations; their states come later.
+        """Set the constants of all simulations; `begin` follows once they have states.
 
         Args:
           batch: a `mujoco.batch.Batch` of the variants' plant, variant by variant.
-          variants: n.
-          servos: of each of the R runs.
-          step_s: of the physics.
+          variants: n variants.
+          servos: of the R runs.
+          step_s: time step of the physics.
         """
         plant, runs = variants.plant, len(servos)
         self._batch, self._step_s = batch, step_s
@@ -49,22 +52,26 @@ class BatchLaws:
         self._servos = BatchServos(batch, plant, servos, joints, step_s)
         damping = self._servos.damping_nm_s_rad
         self._friction = BatchFriction(batch, plant, joints, damping, step_s)
-        # most variants have none of these laws: they cost nothing then
+        # most variants have none of these laws, which then cost nothing
         self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
         loose = bool(joints["gap_rad"].any())
         self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
+        self._torques = [
+            (effect, np.repeat(values, runs, axis=0))
+            for effect, values in variants.torques.items()
+        ]
         self._setpoint: FloatArray | None = None
-        # what is bound later than the start would know of the start a step late
+        # bind before the first step: a later view would lag by one step
         self._force = self._bind("actuator_force")
         self._applied = self._bind("qfrc_applied")
         self._outside = OutsideForces(batch, variants, runs, step_s)
         self._elastic: ElasticJoints | None = None
 
     def begin(self, asked_rad: FloatArray | None = None) -> None:
-        """Begin, or begin anew, in the state that the simulations are in.
+        """Begin, or begin again, in the state that the simulations are in.
 
         Args:
-          asked_rad: (n R, j) position targets so far; the first ones where None.
+          asked_rad: (n R, j) position targets so far; the first targets where None.
         """
         self._setpoint = None
         if asked_rad is not None:
@@ -84,10 +91,9 @@ class BatchLaws:
         """Set the controls of one step.
 
         Args:
-          asked_rad: (n R, j) position targets, as the encoders have it: the mean over
-            the step.
-          time_s: (R,) now; fading servos need it.
-          ends: targets as the step begins and as it ends, if they jump within it.
+          asked_rad: (n R, j) mean position targets of the step, in measured angles.
+          time_s: (R,) times at which the step begins.
+          ends: first and last targets of the step, if they jump within it.
         """
         asked_rad = asked_rad - self.joints["offset_rad"]
         if ends is not None:
@@ -108,16 +114,20 @@ class BatchLaws:
             asked_rad, apart = self._gaps.through(asked_rad, position)
             free_nm = np.where(apart, self._gaps.drag_nm(velocity), 0.0)
             self._applied[:, self._dofs] = free_nm
+        if self._torques:
+            already = 0.0 if self._gaps is None else self._applied[:, self._dofs]
+            own_nm = self._own_nm(position, velocity, time_s)
+            self._applied[:, self._dofs] = already + own_nm
         if self._elastic is not None:
             asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
         self._servos.limit(asked_rad, position, velocity)
         self._ctrl[:, self._actuators] = asked_rad
 
     def jumps(self, ends: Ends | None) -> list[Ends | None]:
-        """For each of B steps the targets at its ends, where some of them jump.
+        """For each of B steps its first and last targets; None where none jumps.
 
         Args:
-          ends: (B, n R, j) targets as the steps begin and end; None for none.
+          ends: (B, n R, j) first and last targets of the steps; None without targets.
         """
         if ends is None:
             return []
@@ -127,8 +137,13 @@ class BatchLaws:
             for before, after in zip(*ends, strict=True)
         ]
 
-    def push_joints(self, torque_nm: FloatArray) -> None:
-        """Apply (n R, j) torques where no servo drives."""
+    def push_joints(self, torque_nm: FloatArray, time_s: FloatArray) -> None:
+        """Apply torques where no servo drives.
+
+        Args:
+          torque_nm: (n R, j) of the motors.
+          time_s: (R,) times at which the step begins.
+        """
         position, velocity = self.joint_state()
         if self._elastic is not None:
             self._ctrl[:, self._actuators] = self._elastic.drive(
@@ -137,50 +152,69 @@ class BatchLaws:
             torque_nm = np.where(self._elastic.soft, 0.0, torque_nm)
         if self._friction.varies:
             self._rub(velocity, torque_nm)
+        if self._torques:
+            torque_nm = torque_nm + self._own_nm(position, velocity, time_s)
         self._applied[:, self._dofs] = torque_nm
 
     def add_to_joints(self, torque_nm: FloatArray) -> None:
-        """Apply (n R, j) torques beside the servos' own, after `servo`."""
-        loose = self._gaps is not None
-        already = self._applied[:, self._dofs] if loose else 0.0
+        """Add (n R, j) torques to those of the servos, after `servo`."""
+        set_before = self._gaps is not None or bool(self._torques)
+        already = self._applied[:, self._dofs] if set_before else 0.0
         self._applied[:, self._dofs] = already + torque_nm
 
     def push_bodies(self, time_s: FloatArray) -> None:
-        """Apply forces from outside at (R,) times."""
+        """Apply pushes and drag in the step that begins at (R,) times [s]."""
         self._outside.apply(time_s)
 
     def joint_state(self) -> tuple[FloatArray, FloatArray]:
-        """(n R, j) positions and velocities, as they are until the next step."""
+        """Live (n R, j) positions [rad] and velocities [rad/s]."""
         return self._qpos[:, self._columns], self._qvel[:, self._dofs]
 
     def encoder_rad(self) -> FloatArray:
-        """(n R, j) positions on the encoders' side, without offsets."""
+        """(n R, j) positions [rad] where the encoders sit, without their offsets."""
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
-        """Dry friction by speed, and by the torque that the gear carries.
+        """Set dry friction by speed, and by the torque that passes through the gear.
 
-        That is what the motor gives, less what its back-EMF takes; of an elastic joint
-        it is its spring's.
+        That torque is the motor's, less its back-EMF; in an elastic joint the spring's.
+
+        Args:
+          velocity: (n R, j) of the joints.
+          added_nm: (n R, j) torques of motors without a servo.
         """
         driven_nm = self._force[:, self._actuators] + added_nm
         stiff = np.isinf(self.joints["spring_nm_rad"])
         induced_nm = np.where(stiff, self._servos.law["emf"] * velocity, 0.0)
         self._friction.follow(velocity, driven_nm - induced_nm)
 
+    def _own_nm(
+        self, position: FloatArray, velocity: FloatArray, time_s: FloatArray
+    ) -> FloatArray:
+        """(n R, j) torques of the effects that compute them themselves."""
+        times_s = np.tile(time_s, len(position) // len(time_s))[:, None]
+        torques = [
+            effect.torque_nm(values, position, velocity, times_s)
+            for effect, values in self._torques
+        ]
+        return np.asarray(sum(torques, np.zeros_like(velocity)))
+
     def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
+        """(n R, j) targets with the mean torque of targets that jump in a step."""
         velocity = self._qvel[:, self._dofs]
         return self._servos.equal(asked_rad, ends, self.encoder_rad(), velocity)
 
     def _bind(self, name: str) -> FloatArray:
+        """A live view of a field of the simulations."""
         return np.asarray(self._batch.bind(name))
 
     def _expand(self, name: str) -> FloatArray:
+        """A live view of a field of the models, one for each simulation."""
         return np.asarray(self._batch.expand(name))
 
     def _slewed(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
-        """Mean setpoints of a step, on their way to its first and its last target."""
+        """(n R, j) mean set-points of a step, as they move towards its targets."""
         if self._setpoint is None:
             self._setpoint = ends[0].copy()
         most = np.minimum(self.joints["setpoint_speed_rad_s"], FAST) * self._step_s
@@ -194,10 +228,10 @@ class BatchLaws:
         return mean
 
     def _rotors(self) -> FloatArray:
-        """Armatures; those of elastic joints turn beside their links, not with them.
+        """(n R, j) rotor inertias; those of elastic joints are removed from the links.
 
-        To be taken out before `set_const`, which the mass matrix of bodies with one
-        simple joint is from.
+        This must happen before `set_const`, from which the mass matrix of bodies with
+        one simple joint follows.
         """
         armature = self._expand("dof_armature")
         inertia = armature[:, self._dofs].copy()

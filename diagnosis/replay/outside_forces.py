@@ -1,4 +1,4 @@
-"""Pushes and drag on the bodies of a batch."""
+"""Pushes and drag on the bodies in a batch of simulations."""
 
 from typing import TYPE_CHECKING
 
@@ -12,12 +12,19 @@ if TYPE_CHECKING:
 
 
 class OutsideForces:
-    """Forces that effects put on bodies, at their centres of mass."""
+    """Forces that effects apply to bodies, at their centres of mass."""
 
     def __init__(
         self, batch: "Batch", variants: Variants, runs: int, step_s: float
     ) -> None:
-        """Find out which rows have any."""
+        """Find the simulations and bodies that forces act on.
+
+        Args:
+          batch: the simulations, variant by variant, run by run.
+          variants: say which forces there are.
+          runs: number of runs R.
+          step_s: time step of the physics.
+        """
         model = variants.plant.model
         self._step_s, self._runs = step_s, runs
         pushes = [
@@ -38,20 +45,20 @@ class OutsideForces:
         self.begin()
 
     def begin(self) -> None:
-        """Nothing pushes so far."""
+        """Forget the forces of earlier steps."""
         self._share = np.zeros((len(self._row), self._runs))
         self._pushed_n = np.zeros((*self._drag.shape, 3))
         self._last_m: FloatArray | None = None
 
     def apply(self, time_s: FloatArray) -> None:
-        """Set the forces of one step at (R,) times."""
+        """Set the forces of the step that begins at (R,) times [s]."""
         if len(self._row):
             self._push(time_s)
         if self._dragged.size:
             self._resist()
 
     def _push(self, time_s: FloatArray) -> None:
-        """Each push by the share of the step that it lasts; set where that changes."""
+        """Scale each push by the share of the step that it acts; write only changes."""
         begin = np.maximum(time_s, self._start_s[:, None])
         end = np.minimum(time_s + self._step_s, self._end_s[:, None])
         share = np.maximum(end - begin, 0.0) / self._step_s
@@ -66,7 +73,7 @@ class OutsideForces:
         self._force[pushed, bodies, :3] = self._pushed_n[pushed, bodies]
 
     def _resist(self) -> None:
-        """Drag of the bodies' speeds over the last step."""
+        """Apply the drag of the bodies' mean velocities over the last step."""
         rows, bodies = self._dragged
         centres = self._centres.reshape(*self._drag.shape, 3)[rows, bodies]
         if self._last_m is not None:

@@ -1,4 +1,4 @@
-"""Replays: what n variants of a plant do when they get the commands of traces."""
+"""Replays: variants of a robot model driven by the commands of recordings."""
 
 from collections.abc import Sequence
 
@@ -7,13 +7,14 @@ import numpy as np
 from diagnosis.effects.variants import Variants
 from diagnosis.replay.batch import ReplayBatch
 from diagnosis.replay.drive import Drive
-from diagnosis.replay.replayed import Replayed
-from diagnosis.replay.tape import Tape
+from diagnosis.replay.tape import Replayed, Tape
 from diagnosis.traces.windows import Run
 
 STEP_S = 0.002
+"""Time step of the physics, unless another one is asked for."""
+
 BLOCK = 256
-"""Steps whose commands are worked out at once."""
+"""Number of steps whose commands are computed at once; insensitive."""
 
 
 def replay(
@@ -22,10 +23,13 @@ def replay(
     """Drive every variant through every run, all in one batch.
 
     Args:
-      runs: R; each starts from its own state and follows its own trace.
-      variants: n.
-      step_s: of the physics.
-      threads: of the batch.
+      runs: R runs; each starts from its own state and follows its own trace.
+      variants: n variants of the robot model.
+      step_s: time step of the physics.
+      threads: threads of the batch.
+
+    Returns:
+      For each run the predicted measurements of all variants.
     """
     batch = ReplayBatch(runs, variants, step_s, threads)
     start_s = np.array([run.trace.time_s[0] for run in runs])
@@ -43,7 +47,7 @@ def replay(
             if asked is not None:
                 batch.laws.servo(asked[i], now_s[i], jumps[i])
             if pushed is not None:
-                batch.laws.push_joints(pushed[i])
+                batch.laws.push_joints(pushed[i], now_s[i])
             if added is not None:
                 batch.laws.add_to_joints(added[i])
             batch.laws.push_bodies(now_s[i])

@@ -1,23 +1,46 @@
-"""What a batch of simulations did, and what would have been measured of it."""
+"""Notes the states of a batch of simulations, and what would have been measured."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from diagnosis.effects.variants import Variants
 from diagnosis.replay.batch import ReplayBatch
-from diagnosis.replay.columns import columns
-from diagnosis.replay.hermite import hermite
-from diagnosis.replay.replayed import Replayed
+from diagnosis.replay.servos import columns
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray, IntArray
 
 
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """Predicted measurements of n variants in one run, at the T rows of its trace.
+
+    Attributes:
+      position_rad: (n, T, j) measured joint positions.
+      velocity_rad_s: (n, T, j) measured joint velocities.
+      servo_nm: (n, T, j) torques of the servos, without back-EMF.
+      base: (n, T, 13) as `Run.base`; None for a fixed base.
+      gyroscope_rad_s: (n, T, 3).
+    """
+
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+    servo_nm: FloatArray
+    base: FloatArray | None
+    gyroscope_rad_s: FloatArray
+
+
 class Tape:
-    """Joint states of every step; for a floating base also the base's."""
+    """States of the joints and of a floating base after every step."""
 
     def __init__(self, batch: ReplayBatch, steps: int) -> None:
-        """Make room, and note the start."""
+        """Make room, and note the start.
+
+        Args:
+          batch: the simulations, in the state that they start from.
+          steps: number of steps that they will take.
+        """
         self._batch, j = batch, len(batch.plant.joints)
         self._position = np.empty((steps + 1, batch.n, j))
         self._velocity = np.empty((steps + 1, batch.n, j))
@@ -31,7 +54,7 @@ class Tape:
         self._torque[0] = 0.0  # no step has been taken
 
     def note(self, step: int) -> None:
-        """Write down the state after so many steps."""
+        """Note the state after `step` steps."""
         batch = self._batch
         _, self._velocity[step] = batch.laws.joint_state()
         self._position[step] = batch.laws.encoder_rad()
@@ -41,10 +64,16 @@ class Tape:
             self._base[step, :, 7:] = batch.qvel[:, :6]
 
     def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
-        """Interpolate to the rows of the traces, and pass through the sensors."""
+        """Measurements of each run, at the rows of its trace, as its sensors show them.
+
+        Args:
+          runs: that were replayed.
+          variants: say what is wrong with the sensors.
+        """
         return [self._read(k, run, variants) for k, run in enumerate(runs)]
 
     def _read(self, k: int, run: Run, variants: Variants) -> Replayed:
+        """Measurements of run number k."""
         rows = np.arange(variants.n) * self._batch.count + k
         since_s = run.trace.time_s - run.trace.time_s[0]
         now_s = np.tile(since_s, (variants.n, 1))
@@ -63,10 +92,10 @@ class Tape:
         return Replayed(position, velocity, torque, base, gyroscope)
 
     def _torque_at(self, rows: IntArray, since_s: FloatArray) -> FloatArray:
-        """(n, T, j) mean from the row before to the row after.
+        """(n, T, j) mean torque from the row before to the row after.
 
-        A command that jumps makes a stiff servo's torque jump, too. A controller that
-        computes once in a tick holds the mean.
+        With a command that jumps, the torque of a stiff servo jumps as well. A real
+        controller computes once in a tick and holds that torque: the mean.
         """
         total = np.cumsum(self._torque[:, rows], axis=0) * self._batch.step_s
         low, t = self._between(since_s)
@@ -79,9 +108,13 @@ class Tape:
     def _joints_at(
         self, rows: IntArray, time_s: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Positions and velocities in between.
+        """Positions and velocities (n, T, j) between the steps.
 
-        Of (n,) rows at (n, T) times since the start; before it speeds were as then.
+        Before the start the joints are taken to have moved at their first velocities.
+
+        Args:
+          rows: (n,) numbers of simulations.
+          time_s: (n, T) since the start.
         """
         low, t = self._between(time_s)
         row = rows[:, None]
@@ -96,13 +129,38 @@ class Tape:
     def _linear(
         self, values: FloatArray, rows: IntArray, time_s: FloatArray
     ) -> FloatArray:
+        """(n, T, ...) values between the steps, by linear interpolation."""
         low, t = self._between(time_s)
         row = rows[:, None]
         return np.asarray((1 - t) * values[low, row] + t * values[low + 1, row])
 
     def _between(self, time_s: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Steps before times, and how far on the way to the next step."""
+        """Number of the step before each time, and the share of a step since then."""
         last = len(self._position) - 1
         at = np.clip(time_s / self._batch.step_s, 0, last - 1e-9)
         low = at.astype(int)
         return low, (at - low)[..., None]
+
+
+def hermite(
+    before: tuple[FloatArray, FloatArray],
+    after: tuple[FloatArray, FloatArray],
+    step_s: float,
+    share: FloatArray | float,
+) -> tuple[FloatArray, FloatArray]:
+    """Positions by cubic Hermite interpolation, velocities by linear interpolation.
+
+    SciPy's `CubicHermiteSpline` is not used: it wants the same times for all rows.
+
+    Args:
+      before: positions and velocities at one step, of one shape.
+      after: those at the next step.
+      step_s: time between the two.
+      share: of the step that has passed, 0 to 1.
+    """
+    h, t = step_s, share
+    (q0, v0), (q1, v1) = before, after
+    v0, v1 = h * v0, h * v1
+    rise = q1 - q0
+    position = q0 + t * (v0 + t * (3 * rise - 2 * v0 - v1 + t * (v0 + v1 - 2 * rise)))
+    return position, (v0 + t * (v1 - v0)) / h

@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Callable, Sequence
+from contextvars import copy_context
 from typing import Generic, TypeVar
 
 Question = TypeVar("Question")
@@ -78,7 +79,9 @@ def lockstep(
             desk.done()
 
     threads = [
-        threading.Thread(target=run, args=(i,), daemon=True) for i in range(len(tasks))
+        # each thread in a copy of this context, in which a user's effects are known
+        threading.Thread(target=copy_context().run, args=(run, i), daemon=True)
+        for i in range(len(tasks))
     ]
     for thread in threads:
         thread.start()
