@@ -1,4 +1,8 @@
-"""Several fits side by side, whose questions are answered in one batch."""
+"""Runs several optimisers side by side and answers their questions in batches.
+
+SciPy's optimisers ask for one residual after another. Each runs in a thread that waits
+for its answer, so that the residuals of all of them can be computed in one batch.
+"""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -11,7 +15,7 @@ Result = TypeVar("Result")
 
 
 class _Desk(Generic[Question, Answer]):
-    """Where tasks leave their questions, and wait."""
+    """Exchanges questions and answers between the tasks' threads and the caller."""
 
     def __init__(self, tasks: int) -> None:
         self._condition = threading.Condition()
@@ -20,6 +24,7 @@ class _Desk(Generic[Question, Answer]):
         self._answers: dict[int, Answer | BaseException] = {}
 
     def ask(self, task: int, question: Question) -> Answer:
+        """Leave a task's question and wait for its answer."""
         with self._condition:
             self._asked[task] = question
             self._busy -= 1
@@ -31,20 +36,22 @@ class _Desk(Generic[Question, Answer]):
         return answer
 
     def done(self) -> None:
+        """Note that a task has ended."""
         with self._condition:
             self._busy -= 1
             self._condition.notify_all()
 
     def questions(self) -> dict[int, Question]:
-        """Of all tasks, once each of them waits or is done."""
+        """The questions of all tasks, once each of them waits or has ended."""
         with self._condition:
             self._condition.wait_for(lambda: self._busy == 0)
             asked, self._asked = self._asked, {}
             self._busy = len(asked)
-        # in the tasks' order: that of their threads is never the same twice
+        # in the order of the tasks, since that of their threads differs between runs
         return dict(sorted(asked.items()))
 
     def reply(self, answers: dict[int, Answer | BaseException]) -> None:
+        """Wake the waiting tasks with their answers."""
         with self._condition:
             self._answers.update(answers)
             self._condition.notify_all()
@@ -54,17 +61,20 @@ def lockstep(
     tasks: Sequence[Callable[[Callable[[Question], Answer]], Result]],
     answer: Callable[[list[Question]], list[Answer]],
 ) -> list[Result]:
-    """Run tasks that ask questions, and answer those of all tasks together.
+    """Run tasks that ask questions, and answer the questions of all tasks together.
 
-    Each task is an ordinary function, for example a fit by a library's optimiser, that
-    is given a function to ask with. Whenever every task waits, `answer` is called once.
+    A task is a function, for example a fit by an optimiser of SciPy, that is called
+    with a function to ask with. Whenever all tasks wait, `answer` is called once.
 
     Args:
-      tasks: what to run.
-      answer: answers to a list of questions, in its order.
+      tasks: the functions.
+      answer: answers a list of questions, in their order.
 
     Returns:
-      The tasks' results. What a task or `answer` raises is raised here.
+      The results of the tasks, in their order.
+
+    Raises:
+      Exception: whatever the first failing task or `answer` has raised.
     """
     desk: _Desk[Question, Answer] = _Desk(len(tasks))
     results: dict[int, Result] = {}

@@ -1,4 +1,4 @@
-"""Models that are worth a fit, each with values to begin with."""
+"""Proposes the models that are worth a fit, each with values to start from."""
 
 from collections.abc import Sequence
 
@@ -14,38 +14,44 @@ from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray
 
 FEW_JOINTS = 6
-"""Of robots with no more all effects are fitted, each where it looks best."""
+"""For robots with at most this many joints every kind of effect is fitted at its best
+place."""
 
 
 class Candidates:
-    """What to fit next, by guesses of first order and by what is known to be alike."""
+    """Proposes models to fit, by first-order guesses and by similarity of effects."""
 
     def __init__(
         self, fit: Predictor, found: Sequence[Signature], rules: Rules
     ) -> None:
-        """Get ready.
+        """Prepare the guesses.
 
         Args:
-          fit: of the fitting data.
+          fit: predictor of the fitting data.
           found: the signatures of all effects at all places.
-          rules: how many of everything.
+          rules: settings of the search: how many models of each sort are proposed.
         """
         self._fit, self._found, self._rules = fit, found, rules
         self._screen = Screen(fit, found)
 
     def alone(self, residual: FloatArray) -> list[Model]:
-        """Models of one effect; (N,) is what the plant alone leaves."""
+        """Models of one effect.
+
+        Args:
+          residual: (N,) residual of the nominal sim [noise].
+        """
         return self._scanned(self._short(self._screen.singles(residual)))
 
     def larger(
         self, best: Sequence[Judged], near: bool, residual: FloatArray | None
     ) -> list[Model]:
-        """Models with one effect more, none twice but from another start.
+        """Models with one more effect; a structure may occur twice with other values.
 
         Args:
           best: models of one size, the best first.
-          near: whether to try all that is at the best one's place, too.
-          residual: (N,) that the plant alone leaves, if pairs are to be guessed.
+          near: whether to combine the best one with all effects at the same place.
+          residual: (N,) residual of the nominal sim, if pairs are to be guessed; else
+            None.
         """
         starts = self._growths(best)
         if near:
@@ -55,18 +61,18 @@ class Candidates:
         return self._scanned(starts)
 
     def swapped(self, judged: Judged) -> list[Model]:
-        """A model with one effect exchanged for another."""
+        """Variants of a model with one effect replaced by another."""
         return self._scanned(self._swaps(judged))
 
     def promised(self, judged: Judged) -> float:
-        """Log-likelihood that another effect would gain at most, at first order."""
+        """First-order guess of the largest gain [nats] of another effect."""
         guesses = self._screen.singles(judged.fit.residual, judged.fit.jacobian)
         return max((guess.gain for guess in guesses), default=0.0)
 
     def _scanned(self, starts: Sequence[Model]) -> list[Model]:
-        """Candidates with the effect that was added last as large as does best.
+        """Models with the best of several sizes of their last effect.
 
-        Guesses are of first order; a gap or a delay may be far from what they say.
+        First-order guesses are far off for some effects, such as backlash or delays.
         """
         options = [
             (*start[:-1], other) for start in starts for other in self._sizes(start[-1])
@@ -87,7 +93,7 @@ class Candidates:
         return kind.sizes_to_scan(self._fit.plant, placed, self._fit.traces)
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
-        """The best guesses, and the best place of each effect that comes close."""
+        """The best guesses, and the best guess of each other kind of effect."""
         few = len(self._fit.plant.joints) <= FEW_JOINTS
         most = len(all_effects()) if few else self._rules.single_effects
         short = [
@@ -106,10 +112,10 @@ class Candidates:
         return short
 
     def _leading(self, best: Sequence[Judged]) -> list[Judged]:
-        """What grows further: the best on the selection data, and the best on all.
+        """The models to extend: the best on the selection data, and on all data.
 
-        What is believed must do well on the former, but a part of the answer may do
-        well anywhere.
+        A final answer must do well on the selection data; a partial answer may do well
+        only on the fitting data.
         """
         beam = self._rules.beam
         on_all = sorted(best, key=lambda one: one.energy)[:beam]
@@ -118,7 +124,7 @@ class Candidates:
         return list({one.keys: one for one in leading}.values())
 
     def _growths(self, best: Sequence[Judged]) -> list[Model]:
-        """Models of one effect more, none twice."""
+        """Models with one more effect, of different structures."""
         seen: set[frozenset[str]] = set()
         grown: list[Model] = []
         for judged in self._leading(best):
@@ -135,10 +141,10 @@ class Candidates:
         return grown
 
     def _partners(self, judged: Judged) -> list[Model]:
-        """A model of one effect, with all others at the same joint or its body.
+        """A model of one effect, combined with all others at the same joint or body.
 
-        A stiffer servo that carries more: each alone goes the wrong way, and what
-        holds far off at both, no slope at the one tells.
+        Example: a stiffer servo plus a payload. Each alone fits worse, so neither is
+        found by following the gradient of the other.
         """
         near = self._near(judged.model[0].place)
         first = {
@@ -153,7 +159,7 @@ class Candidates:
         ]
 
     def _near(self, place: str) -> set[str]:
-        """A joint and the body that it moves, or the other way round."""
+        """A joint and the body that it moves, whichever of them is given."""
         model = self._fit.plant.model
         bodies = {
             joint: model.body(int(model.joint(joint).bodyid[0])).name
@@ -164,13 +170,13 @@ class Candidates:
         }
 
     def _pairs(self, residual: FloatArray, known: Sequence[Model]) -> list[Model]:
-        """Pairs that are better than their members let think."""
+        """Pairs whose guessed joint gain is largest, without those known already."""
         seen = {keys_of(model) for model in known}
         pairs = self._screen.pairs(residual, self._rules.pairs)
         return [guess.model for guess in pairs if keys_of(guess.model) not in seen]
 
     def _swaps(self, judged: Judged) -> list[Model]:
-        """The model with one effect exchanged for another: what else it may be."""
+        """Variants of a model in which another effect takes the place of one."""
         swaps: dict[frozenset[str], Model] = {}
         rests = [
             tuple(other for other in judged.model if other is not placed)
@@ -189,7 +195,7 @@ class Candidates:
         return list(swaps.values())
 
     def _moved(self, judged: Judged) -> list[Model]:
-        """The model with an effect on a body moved to the next bodies of the chain."""
+        """Variants of a model with an effect moved to a neighbouring body."""
         plant, traces = self._fit.plant, self._fit.traces
         return [
             tuple(
@@ -206,7 +212,7 @@ class Candidates:
 
 
 def grown(model: Model) -> list[Model]:
-    """The model with one effect exchanged for another that contains it."""
+    """Variants of a model with one effect replaced by a more general one."""
     return [
         tuple(grown if other is placed else other for other in model)
         for placed in model

@@ -1,4 +1,4 @@
-"""Values of effects by nonlinear least squares, several structures at a time."""
+"""Fits the values of models by nonlinear least squares, several models at a time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,27 +14,31 @@ from diagnosis.search.batched_tasks import lockstep
 from groundwalk.arrays import BoolArray, FloatArray
 
 STEP = 0.02
-"""Of the differences, as a part of a parameter's scale."""
+"""Step of finite differences in scaled coordinates, which are of order one."""
 
 HOLD = 1e-3
-"""Values that no data show stay where they are: steps would be short without it."""
+"""Weak pull to the start value, so that values which the data do not determine neither
+drift nor shorten the steps."""
 
 MOST_STEPS = 8
+"""Most steps of a fit; most fits converge in fewer."""
 
 TOLERANCE = 1e-4
+"""Relative change of the energy, and of the coordinates, at which a fit ends."""
 
 Ask = Callable[[list[Model]], FloatArray]
+"""Computes the (n, N) residuals of n models."""
 
 
 @dataclass(frozen=True, eq=False)
 class FittedModel:
-    """A model whose values were fitted.
+    """A model with fitted values.
 
     Attributes:
-      model: with the values found.
-      residual: (N,) at the model, in units of noise.
-      jacobian: (N, p) of the residual to the values' scaled coordinates.
-      energy: half the sum of squared residuals: minus the log-likelihood.
+      model: the effects with the values found.
+      residual: (N,) residual of the model, in units of noise.
+      jacobian: (N, p) derivative of the residual by the scaled coordinates.
+      coordinates: conversion between the p values and scaled coordinates.
     """
 
     model: Model
@@ -44,11 +48,11 @@ class FittedModel:
 
     @property
     def energy(self) -> float:
-        """Half the sum of squared residuals: minus the log-likelihood."""
+        """Half the sum of squared residuals [nats]: minus the log-likelihood."""
         return 0.5 * float(self.residual @ self.residual)
 
     def jacobian_of(self, effects: Model) -> FloatArray:
-        """(N, p) the columns of some of the model's effects."""
+        """(N, p) the columns of the Jacobian that belong to some of the effects."""
         kept = [
             any(placed is one for one in effects)
             for placed in self.model
@@ -58,10 +62,15 @@ class FittedModel:
 
 
 class Coordinates:
-    """The values of a model's effects as one vector of numbers of order one."""
+    """Converts the values of a model to a vector of numbers of order one, and back."""
 
     def __init__(self, plant: Plant, model: Model) -> None:
-        """Take structure and scales from a model and its plant."""
+        """Take the structure and the scales from a model.
+
+        Args:
+          plant: nominal robot model.
+          model: effects with any values.
+        """
         self.model = model
         self.parameters: list[Parameter] = [
             parameter
@@ -70,7 +79,7 @@ class Coordinates:
         ]
 
     def of(self, model: Model) -> FloatArray:
-        """(p,) the vector of a model."""
+        """(p,) scaled coordinates of a model's values, clipped to their bounds."""
         values = [value for placed in model for value in placed.values]
         return np.array(
             [
@@ -80,7 +89,7 @@ class Coordinates:
         )
 
     def model_at(self, x: FloatArray) -> Model:
-        """The model of a vector."""
+        """The model with the values of (p,) scaled coordinates."""
         values = [
             self._value(parameter, coordinate)
             for parameter, coordinate in zip(self.parameters, x, strict=True)
@@ -93,7 +102,7 @@ class Coordinates:
         return tuple(placed)
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(p,) least and largest coordinates."""
+        """(p,) smallest and (p,) largest allowed coordinates."""
         low = [self.scaled(i, p.low) for i, p in enumerate(self.parameters)]
         high = [self.scaled(i, p.high) for i, p in enumerate(self.parameters)]
         return np.array(low), np.array(high)
@@ -107,7 +116,7 @@ class Coordinates:
         return min(max(value, parameter.low), parameter.high)
 
     def scaled(self, index: int, value: float) -> float:
-        """The coordinate of a value."""
+        """The scaled coordinate of a value of the parameter with this index."""
         parameter = self.parameters[index]
         if parameter.logarithmic:
             return float(np.log(max(value, 1e-12)))
@@ -115,6 +124,7 @@ class Coordinates:
 
 
 def _scale(parameter: Parameter) -> float:
+    """The size of a parameter, which becomes one in scaled coordinates."""
     size = abs(parameter.typical - parameter.neutral)
     if not np.isfinite(size) or size == 0:
         size = abs(parameter.typical) or parameter.high - parameter.low
@@ -123,11 +133,13 @@ def _scale(parameter: Parameter) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Nudges:
-    """Which values are nudged together, to find a Jacobian by differences.
+    """Which values are changed together to find a Jacobian by finite differences.
 
     Attributes:
-      groups: numbers of the values of each nudge.
-      rows: for each value the rows of the residual that are its own; all where None.
+      groups: indices of the values that are changed together; each group takes one
+        replay.
+      rows: for each value (N,) flags of the rows of the residual that it changes; all
+        rows where None.
     """
 
     groups: Sequence[Sequence[int]]
@@ -135,20 +147,20 @@ class Nudges:
 
     @classmethod
     def apart(cls, predictor: Predictor, model: Model) -> "Nudges":
-        """Every value by itself."""
+        """Nudges that change each value of a model by itself."""
         count = sum(len(placed.values) for placed in model)
         return cls([[i] for i in range(count)])
 
     def steps(self, x: FloatArray, high: FloatArray) -> FloatArray:
-        """(p,) how far each value is nudged, never out of its bounds."""
+        """(p,) changes of the coordinates x (p,), within the upper bounds high (p,)."""
         return np.where(x + STEP <= high, STEP, -STEP)
 
     def nudged(self, x: FloatArray, steps: FloatArray) -> list[FloatArray]:
-        """The points of the differences, one a group."""
+        """The points (p,) at which differences are taken, one for each group."""
         return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
 
     def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
-        """(N, p) from what was seen (1 + groups, N) at a point and at its nudges."""
+        """(N, p) Jacobian from the (1 + groups, N) residuals at a point and its nudges."""
         found = np.zeros((seen.shape[1], len(steps)))
         for own, other in zip(self.groups, seen[1:], strict=True):
             for i in own:
@@ -170,15 +182,20 @@ def fit_all(
     """Fit the values of several models, each from its own start.
 
     Args:
-      predictor: of the data.
-      starts: models with values to begin with.
-      steps: most steps of a fit.
-      nudges_of: which values of a model are nudged together.
-      followed: differences are taken at the start only; from there the Jacobian follows
-        what each step shows, which costs nothing. Good enough to compare models; the
-        Jacobian at the end is none to take intervals from.
-      jacobians: at the starts, if they are `followed` and known from an earlier fit.
-      exactly: residuals are `exact`, for six times the work.
+      predictor: of the data to fit.
+      starts: models with values to start from.
+      steps: most steps of each fit.
+      nudges_of: says which values of a model are changed together in differences.
+      followed: take differences at the start only and update the Jacobian from the
+        residuals of each step (Broyden), which needs no replays. Good enough to compare
+        models, but not for intervals.
+      jacobians: (N, p) Jacobians at the starts from an earlier fit, None where unknown;
+        only used with `followed`.
+      exactly: take out the integration error of each model, which takes six times as
+        long; see `Predictor.exact`.
+
+    Returns:
+      The fitted models, in the order of their starts.
     """
 
     def answer(questions: list[list[Model]]) -> list[FloatArray]:
@@ -203,7 +220,7 @@ def fit_all(
 
 
 class _Course:
-    """Residuals and Jacobians at the points that a fit visits."""
+    """Residuals and Jacobians at the points that a fit visits, each computed once."""
 
     def __init__(
         self, coordinates: Coordinates, nudges: Nudges, followed: bool, ask: Ask
@@ -214,14 +231,14 @@ class _Course:
         self._residuals: dict[bytes, FloatArray] = {}
         self._jacobians: dict[bytes, FloatArray] = {}
         self._last: FloatArray | None = None
-        """Where the newest Jacobian is of."""
+        """Point at which the latest Jacobian was computed."""
 
     def begin(self, x: FloatArray, jacobian: FloatArray) -> None:
-        """Take the Jacobian at a point as known."""
+        """Start from a known Jacobian (N, p) at a point (p,)."""
         self._jacobians[x.tobytes()] = jacobian
 
     def residual(self, x: FloatArray) -> FloatArray:
-        """(N,) at a point."""
+        """(N,) residual at a point (p,)."""
         if x.tobytes() not in self._residuals:
             if self._followed and self._jacobians:
                 model = self._coordinates.model_at(x)
@@ -231,13 +248,14 @@ class _Course:
         return self._residuals[x.tobytes()]
 
     def jacobian(self, x: FloatArray) -> FloatArray:
-        """(N, p) at a point."""
+        """(N, p) Jacobian at a point (p,), whose residual must be known."""
         if x.tobytes() not in self._jacobians:
             self._jacobians[x.tobytes()] = self._updated(x)
         self._last = x.copy()
         return self._jacobians[x.tobytes()]
 
     def _differences(self, x: FloatArray) -> None:
+        """Compute residual and Jacobian at a point by finite differences."""
         far = self._nudges.steps(x, self._high)
         points = (x, *self._nudges.nudged(x, far))
         seen = self._ask([self._coordinates.model_at(point) for point in points])
@@ -245,7 +263,7 @@ class _Course:
         self._jacobians[x.tobytes()] = self._nudges.jacobian(seen, far)
 
     def _updated(self, x: FloatArray) -> FloatArray:
-        """The least change of the last Jacobian that agrees with the step to here.
+        """The latest Jacobian with the smallest change that fits the step to a point.
 
         Broyden 1965, A class of methods for solving nonlinear simultaneous equations.
         """

@@ -1,7 +1,8 @@
-"""Which effects could explain a residual, by first-order guesses that are cheap.
+"""First-order guesses of the effects that could explain a residual.
 
-A signature is linear in the effect's size, so the size that explains most is a
-projection; that of two effects together is least squares.
+A signature is proportional to the size of its effect. The size that explains most of a
+residual is therefore a projection, and the sizes of two effects together follow from
+linear least squares: thousands of guesses need no further replay.
 """
 
 from collections.abc import Sequence
@@ -16,24 +17,24 @@ from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray, IntArray
 
 SHORT, VECTORS_PAIRED = 200, 20
-"""Pairs of effects with one component that are looked at closely; effects with more
-that are paired with all others."""
+"""Number of pairs of effects with a single component that are examined, and number of
+vector effects that are combined with all others."""
 
 LARGEST_STRETCH = 4.0
-"""A signature may be stretched so far before it is no guess any more."""
+"""Largest factor by which the size of a tried effect is extrapolated."""
 
 TINY, SAME = 1e-9, 1e-5
-"""Parts of a signature's power that count as nothing: where a number is not exact, and
-where all the rest of it is what a model can do by itself."""
+"""Relative tolerances: for rounding, and for signatures that lie in the span of the
+model's own Jacobian."""
 
 
 @dataclass(frozen=True)
 class Guess:
-    """How much of a residual some effects explain at first order.
+    """Effects that explain a part of a residual, at first order.
 
     Attributes:
-      model: the effects, with the values that explain most.
-      gain: reduction of half the squared residual.
+      model: the effects with the values that explain most.
+      gain: reduction of half the squared residual [nats].
     """
 
     model: Model
@@ -42,13 +43,14 @@ class Guess:
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """Signatures beside one residual: K products with it, K x K with each other.
+    """Scalar products of K signatures with one residual and with each other.
 
     Attributes:
-      wanted: how much of each the residual asks for.
-      products: of the signatures.
-      ridge: part of their own power that is added, so that nothing is divided by.
-      bounded: whether effects that have one sign keep it.
+      wanted: (K,) products of the signatures with the negative residual.
+      products: (K, K) products of the signatures with each other.
+      ridge: share of each signature's power that is added to the diagonal, so that the
+        equations can always be solved.
+      bounded: whether effects with only one possible sign keep it.
     """
 
     wanted: FloatArray
@@ -58,15 +60,15 @@ class _View:
 
 
 class Screen:
-    """All signatures side by side: what they explain alone, and two at a time."""
+    """Finds the effects, and the pairs of effects, that explain most of a residual."""
 
     def __init__(self, predictor: Predictor, found: Sequence[Signature]) -> None:
-        """Work out all products of signatures once.
+        """Compute the products of all signatures once.
 
         Args:
-          predictor: that the signatures are of.
-          found: at least one. Components of a vector effect go together; other
-            signatures of one effect and place are alternatives.
+          predictor: it computed the signatures.
+          found: at least one signature. Components of a vector effect are combined;
+            other signatures of one effect and place are alternatives.
         """
         self._predictor, self._found = predictor, list(found)
         self._columns = np.zeros((len(found), len(predictor.scored)), np.float32)
@@ -78,13 +80,13 @@ class Screen:
     def singles(
         self, residual: FloatArray, jacobian: FloatArray | None = None
     ) -> list[Guess]:
-        """The best guess of each effect and place, those that explain most first.
+        """The best guess of each effect and place, largest gain first.
 
         Args:
-          residual: (N,) to be explained.
-          jacobian: (N, p) of the model that left it, whose values may change with what
-            is added; None if they may not. Two effects that nearly cancel each other
-            are seen only so.
+          residual: (N,) residual to explain [noise].
+          jacobian: (N, p) Jacobian of the model that leaves the residual. The model's
+            values may then change together with the added effect, without which two
+            effects that nearly cancel each other are not found. None keeps them fixed.
         """
         view = self._view(residual, jacobian)
         best: dict[str, Guess] = {}
@@ -96,13 +98,13 @@ class Screen:
         return sorted(best.values(), key=lambda guess: -guess.gain)
 
     def pairs(self, residual: FloatArray, count: int) -> list[Guess]:
-        """The pairs that explain most together, those that explain most first.
+        """The pairs of effects that explain most together, largest gain first.
 
-        Either may explain nothing alone: two that nearly cancel each other do not.
+        Each effect of a pair may explain nothing alone, if both nearly cancel.
 
         Args:
-          residual: (N,) to be explained.
-          count: how many pairs.
+          residual: (N,) residual to explain [noise].
+          count: largest number of pairs.
         """
         view = self._view(residual)
         best: dict[frozenset[str], Guess] = {}
@@ -114,7 +116,7 @@ class Screen:
         return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
 
     def _promising(self, view: "_View") -> list[tuple[list[int], list[int]]]:
-        """Pairs of groups worth a look."""
+        """Pairs of groups of signatures whose joint gain is worth computing."""
         alone = [group for group in self._groups if len(group) == 1]
         rows = np.array([row for group in alone for row in group], int)
         gain = self._gains_together(view, rows)
@@ -140,9 +142,9 @@ class Screen:
         return pairs
 
     def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
-        """(K, K) gains of two signatures by least squares, above the diagonal.
+        """(K, K) joint gains of two signatures by least squares, above the diagonal.
 
-        0 where an effect would have the sign that it cannot have, and where two
+        A gain is 0 where an effect would need an impossible sign, and where both
         signatures are the same.
         """
         products, wanted = view.products[np.ix_(rows, rows)], view.wanted[rows]
@@ -158,6 +160,7 @@ class Screen:
         return np.where(possible, gain, 0.0)
 
     def _grouped(self) -> list[list[int]]:
+        """Indices of signatures, those of one vector effect's components together."""
         vectors: dict[tuple[str, tuple[float, ...]], list[int]] = {}
         alone = []
         for row, signature in enumerate(self._found):
@@ -173,7 +176,7 @@ class Screen:
     def _view(
         self, residual: FloatArray, jacobian: FloatArray | None = None
     ) -> "_View":
-        """All signatures beside a residual, less what a model's values can do."""
+        """Products of signatures with a residual, without the span of a Jacobian."""
         wanted = -(self._columns @ residual.astype(np.float32)).astype(float)
         if jacobian is None or not jacobian.any():
             return _View(wanted, self._products, TINY)
@@ -184,7 +187,7 @@ class Screen:
         return _View(wanted, self._products - done @ done.T, SAME)
 
     def _guess(self, view: "_View", groups: Sequence[list[int]]) -> Guess | None:
-        """Least squares within what is allowed; None if that explains nothing."""
+        """The best allowed sizes of some effects; None if they explain nothing."""
         rows = [row for group in groups for row in group]
         products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]
         ridge = np.diag(view.ridge * np.diag(self._products)[rows] + 1e-12)
@@ -203,6 +206,7 @@ class Screen:
         return Guess(tuple(model), gain)
 
     def _placed(self, group: list[int], stretch: FloatArray) -> PlacedEffect:
+        """The effect of a group, with the tried sizes multiplied by `stretch`."""
         first = self._found[group[0]].placed
         kind = effect(first.name)
         parts = kind.components

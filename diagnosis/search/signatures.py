@@ -1,8 +1,8 @@
-"""What each effect at each place changes in the predictions, at first order.
+"""Signatures: the first-order change of the predictions by each effect at each place.
 
-Servos are stiff, so what is done at one joint hardly moves the others: an effect is
-tried at all joints in one replay, and each joint's own channel is that joint's
-signature.
+Servos are stiff, so that a change at one joint hardly moves the others. An effect is
+therefore tried at all joints in one replay, and the change in each joint's own channels
+is its signature there.
 """
 
 from collections.abc import Sequence
@@ -21,13 +21,13 @@ from groundwalk.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """What an effect at a place changes, at first order.
+    """The first-order change of the residual by an effect at a place.
 
     Attributes:
-      placed: the effect, with the values that were tried.
-      change: (rows,) of the residual, in units of noise.
-      rows: of the residual: all, or the joint's own channel.
-      two_sided: whether the effect may be there with the other sign.
+      placed: the effect with the values that were tried.
+      change: (rows,) change of the residual [noise].
+      rows: (rows,) indices into the residual: all, or those of the joint's channels.
+      two_sided: whether the effect may also have the opposite sign.
     """
 
     placed: PlacedEffect
@@ -43,14 +43,14 @@ def signatures(
     intervals: Sequence[Interval] = (),
     names: Sequence[str] = (),
 ) -> list[Signature]:
-    """Signatures of all effects at all their places, seen from a model.
+    """Signatures of all effects at all their places when added to a model.
 
     Args:
-      predictor: of the traces.
-      base: the model so far.
-      usage: of the joints.
-      intervals: when something may have pushed.
-      names: of the effects; all where empty.
+      predictor: of the recordings.
+      base: the model that the effects are added to.
+      usage: how the joints were used in the recordings, which sets the sizes tried.
+      intervals: start and duration [s] of possible pushes.
+      names: effects to try; all where empty.
     """
     trials = _trials(predictor, usage, intervals, names or tuple(all_effects()))
     models = [base, *(base + added for added, _ in trials)]
@@ -75,7 +75,7 @@ def _trials(
     intervals: Sequence[Interval],
     names: Sequence[str],
 ) -> list[tuple[Model, bool]]:
-    """Models to try: an effect at all joints at once, or at one other place."""
+    """Models to replay, and whether each has its effect at all joints at once."""
     trials: list[tuple[Model, bool]] = []
     for name in names:
         kind = effect(name)
@@ -105,7 +105,7 @@ def _trials(
 
 
 def tips(plant: Plant) -> frozenset[str]:
-    """Bodies that carry no other."""
+    """Names of the outermost bodies, those that carry no other."""
     model = plant.model
     carrying = {int(parent) for parent in model.body_parentid[1:]}
     every = range(1, model.nbody)
@@ -113,6 +113,6 @@ def tips(plant: Plant) -> frozenset[str]:
 
 
 def _two_sided(predictor: Predictor, placed: PlacedEffect) -> bool:
-    """Whether the effect may be there with the other sign."""
+    """Whether the effect's first value may lie on both sides of its neutral one."""
     first = Coordinates(predictor.plant, (placed,)).parameters[0]
     return first.low < first.neutral < first.high
