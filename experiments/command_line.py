@@ -1,4 +1,4 @@
-"""The command `groundwalk`, and what all its verbs share."""
+"""The command `groundwalk`: its verbs, the reading of their options, their errors."""
 
 import contextlib
 import functools
@@ -12,12 +12,13 @@ from groundwalk.errors import GroundwalkError, UnknownNameError
 
 
 class Verb(NamedTuple):
-    """Where a verb's code is, and what it does in a few words.
+    """A verb of the command line: its code, and a summary of it.
 
     Attributes:
-      module: its file in experiments.
-      config: the dataclass of its options there, or a table of its own verbs.
-      summary: what it does.
+      module: name of its module in experiments.
+      config: name, in this module, of the dataclass of its options or of a table of its
+        own verbs.
+      summary: a few words for the list of verbs.
     """
 
     module: str
@@ -27,39 +28,46 @@ class Verb(NamedTuple):
 
 VERBS = {
     "optimize-gait": Verb(
-        "optimize_gait", "OptimizeGait", "tune a gait in the sim, try it in both worlds"
+        "optimize_gait",
+        "OptimizeGait",
+        "tune a gait in the sim, try it in both worlds",
     ),
-    "evaluate": Verb("evaluate", "Evaluate", "let gaits walk a course of 3 m"),
+    "evaluate": Verb("evaluate", "Evaluate", "measure speed and falls of gaits"),
     "humanoids": Verb("humanoids", "Humanoids", "tune gaits for other humanoids"),
     "terrain-stress": Verb(
-        "terrain_stress", "TerrainStress", "how rough may the ground be for a gait?"
+        "terrain_stress",
+        "TerrainStress",
+        "find the roughest ground that gaits can walk",
     ),
     "transfer": Verb("transfer", "STUDIES", "repeat an experiment of the SGAT paper"),
     "diagnose": Verb(
-        "diagnose", "Diagnose", "say what physics the sim lacks that recordings show"
+        "diagnose", "Diagnose", "find the physics that a sim lacks, from recordings"
     ),
     "real-robots": Verb(
-        "real_robots", "RealRobots", "diagnose recordings of real robots, and judge it"
+        "real_robots",
+        "RealRobots",
+        "diagnose recordings of known real robots",
     ),
     "record": Verb(
-        "record", "Record", "make a recording, with hidden physics if you like"
+        "record", "Record", "make a recording, with hidden physics if wanted"
     ),
     "concealed": Verb(
-        "concealed", "STUDIES", "recordings whose hidden physics must be found"
+        "concealed", "STUDIES", "test the diagnosis on recordings with hidden physics"
     ),
-    "visualize": Verb("visualize", "Visualize", "see rollouts and searches in Rerun"),
+    "visualize": Verb("visualize", "Visualize", "show rollouts and searches in Rerun"),
     "render": Verb("render", "Render", "draw a film strip or a film of walks"),
     "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
-    "list": Verb(
-        "list_names", "List", "show the robots, terrains or gaits that there are"
-    ),
+    "list": Verb("list_names", "List", "list the known robots, terrains or gaits"),
     "doctor": Verb(
-        "doctor", "DoctorConfig", "say what is installed and what is missing"
+        "doctor", "DoctorConfig", "report what is installed and what is missing"
     ),
 }
 
 BAD_INPUT = 2
+"""Exit status after an error that the user can mend."""
+
 INTERRUPTED = 130
+"""Exit status after Ctrl-C, as in shells: 128 + SIGINT."""
 
 
 def main() -> None:
@@ -73,20 +81,20 @@ def choose(
     arguments: Sequence[str],
     kind: str = "verb",
 ) -> None:
-    """Run the verb that the first argument names; only its own code is imported.
+    """Run the verb that the first argument names; import no code but its own.
 
     Args:
-      verbs: by name; a verb may hold further ones, called studies.
-      program: the command so far.
-      arguments: what follows it.
-      kind: what to call the verbs.
+      verbs: the verbs by name; a verb may have verbs of its own, called studies.
+      program: the command so far, for the help.
+      arguments: the words that follow it.
+      kind: "verb" or "study".
     """
     name, *options = arguments or ["--help"]
     if name in ("-h", "--help"):
         print(f"usage: {program} {kind.upper()} [options]\n")
         for known, (_, _, summary) in verbs.items():
             print(f"  {known:18}{summary}")
-        print(f"\n{program} {kind.upper()} --help tells a {kind}'s options")
+        print(f"\n{program} {kind.upper()} --help shows the options of a {kind}")
         return
     verb = _guarded(lambda: _verb(kind, name, verbs))
     module = importlib.import_module(f"experiments.{verb.module}")
@@ -106,18 +114,20 @@ def run_verb(
     """Parse a verb's options, do its work, and exit.
 
     Args:
-      config_type: the verb's configuration; it checks itself.
-      verb: does the work; a whole number that it returns is the exit status.
-      program: the command's name in its help; by default the script's.
+      config_type: dataclass of the verb's options; it checks them itself. Its text
+        `if_interrupted`, if it has one, tells how to continue after Ctrl-C.
+      verb: does the work; an integer that it returns is the exit status.
+      program: name of the command in its help; by default the script's.
       arguments: by default those of the process.
     """
     config = _parse(config_type, program, arguments)
-    status = _guarded(lambda: verb(config))
+    hint = getattr(config_type, "if_interrupted", "")
+    status = _guarded(lambda: verb(config), if_interrupted=hint)
     sys.exit(status if isinstance(status, int) else 0)
 
 
 def one_line(report: str) -> str:
-    """A boxed report of the option parser as one line, without its hints on help."""
+    """Turn the boxed report of the option parser into one line without hints."""
     lines = []
     for line in report.splitlines():
         text = line.strip("│╭╮╰╯─ ")
@@ -137,7 +147,7 @@ def _verb(kind: str, name: str, verbs: Mapping[str, Verb]) -> Verb:
 def _parse(config_type: Any, program: str | None, arguments: list[str] | None) -> Any:
     import tyro
 
-    # Of a class, tyro shows inherited options first; of a call, as the call has them.
+    # tyro shows inherited options of a class first, those of a call in their order.
     config = functools.partial(config_type)
     said = io.StringIO()
     try:
@@ -155,15 +165,19 @@ def _tell(message: str) -> None:
     print(f"groundwalk: {message}", file=sys.stderr)
 
 
-def _guarded(work: Callable[[], Any], tell: Callable[[str], object] = _tell) -> Any:
-    """Turn what a user can mend into one line and exit status 2."""
+def _guarded(
+    work: Callable[[], Any],
+    tell: Callable[[str], object] = _tell,
+    if_interrupted: str = "",
+) -> Any:
+    """Do some work; errors that a user can mend become one line and exit status 2."""
     try:
         return work()
     except (GroundwalkError, OSError) as error:
         tell(str(error))
         sys.exit(BAD_INPUT)
     except KeyboardInterrupt:
-        tell("interrupted; --resume continues a run")
+        tell(f"interrupted{if_interrupted}")
         sys.exit(INTERRUPTED)
 
 

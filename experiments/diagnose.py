@@ -24,7 +24,7 @@ from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import ReportFacts, write_report
-from experiments.reports.origin import command_of
+from experiments.reports.origin import command_of, shown
 from experiments.runs.checkpoint_files import CheckpointFiles
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
@@ -245,7 +245,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
         files[CORRECTED_JSON] = "all effects found, for the option --sim"
     packages = {k: str(v) for k, v in provenance["packages"].items() if v}
     return ReportFacts(
-        robot=config.robot,
+        robot=shown(config.robot),
         base=found.plant.base,
         command=command_of(provenance),
         settings=settings,

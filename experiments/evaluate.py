@@ -33,11 +33,12 @@ class Evaluate(RunOptions):
     """Let gaits walk a course of 3 m: speed with its spread, and falls.
 
     Attributes:
-      gaits: names, or JSON files with a gait such as a run's result.json.
-      worlds: where; sim, real or both.
+      gaits: names (`groundwalk list gaits`), .json files with a gait, or run folders of
+        optimize-gait.
+      worlds: the worlds to walk in: sim, real or both.
       terrain: such as "lumps:amplitude_m=0.008"; each world's own by default.
-      robot: its name, as `groundwalk list robots` shows them, or a URDF (.urdf).
-      trials: of each gait in each world, each on its own ground.
+      robot: name of a robot (`groundwalk list robots`), or a .urdf or .toml file.
+      trials: trials of each gait in each world, each on its own ground.
       threads: processor threads; 0 for all.
     """
 
@@ -50,16 +51,16 @@ class Evaluate(RunOptions):
 
     def __post_init__(self) -> None:
         """Refuse what no run can do, before anything is written."""
+        super().__post_init__()
         robots.get(self.robot)
         if not self.worlds or not (self.gaits or self.resume):
             raise BadValueError("no gaits or no worlds are given; at least one of each")
         load_gaits(self.gaits)
         for world in self.worlds:
             self.study(world)
-        super().__post_init__()
 
     def study(self, world: str) -> Study:
-        """How one world is used."""
+        """How the gaits are evaluated in one world, "sim" or "real"."""
         terrain = self.terrain or worlds.kind(world).terrain
         return Study(world, terrain, self.trials, threads=self.threads)
 

@@ -20,7 +20,7 @@ class Export:
     """Write a robot's model, without any ground, as MJCF or URDF.
 
     Attributes:
-      robot: its name, as `groundwalk list robots` shows them, or a URDF (.urdf).
+      robot: name of a robot (`groundwalk list robots`), or a .urdf or .toml file.
       format: mjcf for MuJoCo, with motors and sensors; urdf for PyBullet and others.
       out: the file to write; standard output by default.
     """
@@ -30,14 +30,14 @@ class Export:
     out: Path | None = None
 
     def __post_init__(self) -> None:
-        """Refuse unknown robots, and to overwrite."""
+        """Refuse unknown robots, and files that exist."""
         robots.get(self.robot)
         if self.out is not None:
             check_new(self.out)
 
 
 def main(config: Export) -> None:
-    """Write the model to where it shall go."""
+    """Write the model to the file, or to standard output."""
     description = robots.get(config.robot)
     if config.format == "urdf":
         text = urdf(description)

@@ -1,5 +1,6 @@
-"""`groundwalk humanoids`: the walk engine's gait on other robots than the NAO."""
+"""`groundwalk humanoids`: tune the gait for other robots than the NAO."""
 
+import contextlib
 import dataclasses
 from dataclasses import dataclass
 from functools import partial
@@ -13,11 +14,10 @@ from experiments.humanoid_study.facts import reach, saturation, sole
 from experiments.humanoid_study.page import (
     PICTURE,
     draw_humanoids,
-    folder_name,
     robot_rows,
     write_humanoids_page,
 )
-from experiments.reports.tables import print_json, print_table
+from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
     CHECKPOINT,
@@ -26,6 +26,7 @@ from experiments.runs.folder import (
     RunFolder,
     open_run,
 )
+from experiments.runs.gait_files import short_name
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run
 from experiments.walking.evaluation import Study, evaluate, keep
@@ -41,19 +42,22 @@ from worlds import Recording, read_recording
 
 VERB = "humanoids"
 WALK = TrialRules(limit_s=5.0, start_spread_rad=0.01)
-"""Five seconds, from a start pose that spreads."""
+"""Walks that are counted: 5 s, from start poses whose joints spread by 0.01 rad."""
 
 SEARCHED = TrialRules(limit_s=5.0, start_spread_rad=0.02)
-"""A search sees few walks of each gait: they shall be harder than those that count."""
+"""Walks in a search. Their start poses spread more than those of the walks that are
+counted, because a search sees only a few walks of each gait."""
 
 START = gaits.get("start").replace(max_forward=0.12)
-"""Slower than the NAO's start: nobody has ever tuned it for these robots."""
+"""Where the searches start: slower [m/s] than the NAO's start gait, which is not tuned
+for these robots."""
 
 WALKS = 3
-"""Of each gait in a generation, from different poses: one may be luck."""
+"""Walks of each gait in a generation, from different poses: one walk may be luck."""
 
 FALL_PENALTY_CM_S = 60.0
-"""For a robot of the NAO's size. It shall rather walk slowly than fall."""
+"""What a fall costs a robot of the NAO's size [cm/s]: more than the fastest walk gains,
+so that the search prefers a slow gait to one that falls."""
 
 
 @dataclass(frozen=True)
@@ -61,11 +65,11 @@ class Humanoids(RunOptions):
     """Tune a gait for each robot in the sim, and count its falls in walks of 5 s.
 
     Attributes:
-      robots: names or files; `groundwalk list robots` shows the names.
+      robots: names (`groundwalk list robots`), or .urdf or .toml files.
       population: gaits tried in each generation.
-      generations: of each search.
-      sigma: spread of the first generation, as a part of each parameter's range.
-      trials: walks in the sim that count, each from its own start pose.
+      generations: number of generations of each search.
+      sigma: spread of the first generation, as a share of each parameter's range.
+      trials: walks in the sim that are counted, each from its own start pose.
       real_trials: walks in the real world, each on its own lumps.
       threads: processor threads; 0 for all.
     """
@@ -84,7 +88,7 @@ class Humanoids(RunOptions):
         """Refuse what no run can do, before anything is written."""
         for name in self.robots:
             robots.get(name)
-        if not self.robots or len({*map(folder_name, self.robots)}) < len(self.robots):
+        if not self.robots or len({*map(short_name, self.robots)}) < len(self.robots):
             raise BadValueError("name at least one robot, and none of them twice")
         check_search(self.population, self.sigma)
         self.studies()
@@ -92,7 +96,7 @@ class Humanoids(RunOptions):
         super().__post_init__()
 
     def studies(self) -> dict[str, Study]:
-        """How a tuned gait is tried in each world."""
+        """How a tuned gait is evaluated, by world."""
         return {
             "sim": Study("sim", "flat", self.trials, WALK, self.threads),
             "real": Study("real", "lumps", self.real_trials, WALK, self.threads),
@@ -100,12 +104,12 @@ class Humanoids(RunOptions):
 
 
 def main(config: Humanoids) -> None:
-    """Tune and try robot by robot; one that is done is not computed again."""
+    """Tune and evaluate robot by robot; a robot that is done is not computed again."""
     folder, config = open_run(VERB, config)
     result: dict[str, Any] = folder.read_json(RESULT) if folder.has(RESULT) else {}
     for name in config.robots:
         if name not in result:
-            own = RunFolder(folder.path / folder_name(name))
+            own = RunFolder(folder.path / short_name(name))
             result[name] = _robot(config, own, robots.get(name))
             folder.write_json(RESULT, result)
             with extra(f"{own.path}: a picture"):
@@ -118,19 +122,20 @@ def main(config: Humanoids) -> None:
         print_json(result)
     else:
         print_table(*robot_rows(result))
+        print_folder(folder.path)
 
 
 def _walk(folder: RunFolder, name: str) -> Recording:
     """The tuned gait's first walk in the sim."""
-    path = folder.path / folder_name(name) / RECORDINGS / "sim_tuned.parquet"
+    path = folder.path / short_name(name) / RECORDINGS / "sim_tuned.parquet"
     return read_recording(path)
 
 
 def _robot(
     config: Humanoids, folder: RunFolder, description: Description
 ) -> dict[str, Any]:
-    """What one robot's search and trials came to, as plain values."""
-    # From its name, so that it does not matter which other robots there are.
+    """Tune one robot's gait and evaluate it; the measures are plain values."""
+    # The seed follows from the name: the other robots of the run make no difference.
     own = [config.seed, *description.name.encode()]
     of_search, of_trials = np.random.SeedSequence(own).spawn(2)
     tuned = _search(config, folder, description, of_search)
@@ -171,13 +176,14 @@ def _rate(
     tried: FloatArray,
     seed: np.random.SeedSequence,
 ) -> FloatArray:
-    """Rewards (n,) [cm/s] of n gaits: see `experiments.walking.tuning.Rater`."""
+    """Rewards (n,) [cm/s] of n gaits, a `Rater` of `experiments.walking.tuning`."""
     study = config.studies()["sim"]
-    # The same poses for all gaits: what differs between them is their own.
+    # The same poses for all gaits, so that only the gaits make a difference.
     poses = seed.spawn(WALKS) * len(tried)
     grounds = [TerrainSpec(*parse(study.terrain)).make()] * len(poses)
     world = study.make_world(description, grounds, poses)
-    trials = walk_trials(world, np.repeat(tried, WALKS, axis=0), SEARCHED, poses)
+    with contextlib.closing(world):
+        trials = walk_trials(world, np.repeat(tried, WALKS, axis=0), SEARCHED, poses)
     penalty = FALL_PENALTY_CM_S * description.scale.speed
     rewards = reward_cm_s(trials, SEARCHED.limit_s, penalty)
     return np.asarray(rewards.reshape(len(tried), WALKS).mean(axis=1))

@@ -1,4 +1,4 @@
-"""`groundwalk list`: the robots, terrains, gaits and hidden effects that there are."""
+"""`groundwalk list`: the known robots, terrains, gaits and hidden effects."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -17,14 +17,14 @@ from walk_engine import PARAMETERS, gaits
 from worlds.hidden import KINDS
 
 UNITS = {"_rad": "rad", "_per_m2": "1/m2", "_m": "m"}
-"""By the ends of parameter names."""
+"""Units of terrain parameters, by the end of their names."""
 
 Table = tuple[list[str], list[list[str]]]
-"""Headings and rows."""
+"""Headings and rows of a printed table."""
 
 
 def robot_table() -> Table:
-    """What distinguishes the robots."""
+    """Mass, leg length and number of joints of every robot."""
     rows = []
     for name in robots.names():
         robot = robots.get(name)
@@ -37,7 +37,7 @@ def robot_table() -> Table:
 
 
 def terrain_table() -> Table:
-    """Every family, its own parameters, and those that all have."""
+    """Every terrain with its own parameters, then the parameters of all terrains."""
     common = dataclasses.fields(Ground)
     known = {field.name for field in common}
     rows = []
@@ -52,7 +52,7 @@ def terrain_table() -> Table:
 
 
 def gait_table() -> Table:
-    """Every parameter, and its value in each gait."""
+    """Every gait parameter, with its value in each gait, its bounds and its meaning."""
     named = {name: gaits.get(name) for name in gaits.names()}
     rows = [
         [
@@ -90,7 +90,7 @@ TABLES = {
 
 @dataclass(frozen=True)
 class List:
-    """Say what robots, terrains, gaits or hidden effects there are.
+    """List the known robots, terrains, gaits or hidden effects.
 
     A terrain is given as its name, or with parameters as in
     lumps:amplitude_m=0.012,x_range_m=-1:8; a gait as its name or as a JSON file; a
@@ -104,7 +104,7 @@ class List:
     kind: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="KIND")]
 
     def __post_init__(self) -> None:
-        """Refuse what there is no list of."""
+        """Refuse anything but the three lists."""
         if self.kind not in TABLES:
             raise UnknownNameError("list", self.kind, TABLES)
 
@@ -115,7 +115,7 @@ def main(config: List) -> None:
 
 
 def _bounds(field: "dataclasses.Field[Parameter]") -> list[str]:
-    """A terrain parameter's name, unit, default and bounds."""
+    """Name, unit, default and bounds of a terrain parameter, as text."""
     unit = next((UNITS[end] for end in UNITS if field.name.endswith(end)), "1")
     default = field.default if isinstance(field.default, tuple) else (field.default,)
     texts = [":".join(f"{value:g}" for value in default)]
@@ -124,7 +124,7 @@ def _bounds(field: "dataclasses.Field[Parameter]") -> list[str]:
 
 
 def _summary(family: type) -> str:
-    """The first line of what it says of itself."""
+    """The first line of a terrain's docstring."""
     return (family.__doc__ or "").partition("\n")[0]
 
 

@@ -1,4 +1,4 @@
-"""`groundwalk record`: a recording of a robot in either world."""
+"""`groundwalk record`: make a recording of a moving robot in either world."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,9 +28,15 @@ from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
 
 ENGINES = {"sim": "mujoco", "real": "bullet"}
+"""Physics engine of each world."""
+
 _RATE_HZ = 100.0
 _JITTER_S = 0.0005
+"""Standard deviation of the time stamps of a recording [s]."""
+
 _REST_S = 0.8
+"""How long a robot stands before it walks [s]."""
+
 _LONGEST_S = 600.0
 Motion = Literal[
     "chirp", "multisine", "steps", "ramps", "squat", "fast_squat", "sway", "walk"
@@ -39,20 +45,20 @@ Motion = Literal[
 
 @dataclass(frozen=True)
 class Record:
-    """Make a recording of a robot that moves, in the sim's or the real world's engine.
+    """Make a recording of a moving robot, in the engine of the sim or the real world.
 
-    Both compute in fine steps. In the air a robot's base is fixed; squats, sway and
-    walks are on its feet.
+    The base of the robot is fixed in the air for chirp, multisine, steps and ramps. For
+    squats, sway and walks the robot stands on its feet.
 
     Attributes:
       out: the file to write, .parquet or .csv.
       robot: pendulum, so101, or a robot of `groundwalk list robots`.
       world: sim is MuJoCo, real is PyBullet.
-      motion: what the robot does.
-      base: fixed or floating; by default what the motion needs.
+      motion: the motion of the robot.
+      base: fixed or floating; by default the one that the motion needs.
       hidden: physics that the model lacks, such as backlash@LKneePitch:gap=0.02 or
         coulomb_friction@LKneePitch:torque=0.2.
-      duration: in seconds.
+      duration: length of the recording [s].
       seed: every random number follows from it.
     """
 
@@ -66,7 +72,7 @@ class Record:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        """Refuse what no recording can be, before anything is computed."""
+        """Refuse impossible recordings before anything is computed."""
         check_new(self.out)
         if self.out.suffix.lower() not in (".parquet", ".csv"):
             raise BadValueError(f"out is {self.out}; a recording is .parquet or .csv")
@@ -83,20 +89,20 @@ class Record:
 
     @property
     def on_feet(self) -> bool:
-        """Whether the motion is one on the ground."""
+        """Whether the robot stands on the ground in this motion."""
         return self.motion not in MOTIONS
 
     def effects(self) -> tuple[Hidden, ...]:
-        """What is hidden, as data."""
+        """The hidden effects, parsed."""
         return tuple(Hidden.parse(text) for text in self.hidden)
 
     def plant(self) -> HiddenPlant:
-        """The robot."""
+        """The robot with its base fixed or floating, as the motion needs it."""
         return hidden_plant(self.robot, floating=self.on_feet)
 
 
 def main(config: Record) -> None:
-    """Let the robot move and write the recording."""
+    """Move the robot and write the recording."""
     plant, effects = config.plant(), config.effects()
     of_motion, of_clock, of_noise, of_ground = np.random.SeedSequence(
         config.seed
@@ -113,7 +119,9 @@ def main(config: Record) -> None:
         plant, effects, ENGINES[config.world], clock, feed, start_rad, of_ground
     )
     if not run.ok:
-        raise GroundwalkError("the robot fell, or its physics blew up: no recording")
+        raise GroundwalkError(
+            "no recording: the robot fell, or its simulation diverged"
+        )
     model = config.robot
     if plant.file is not None:
         model = f"{config.out.stem}.{plant.file[0]}"
@@ -135,7 +143,7 @@ def main(config: Record) -> None:
 def _feed(
     config: Record, plant: HiddenPlant, rng: np.random.Generator
 ) -> tuple[FloatArray, Feed]:
-    """The pose to start from, and the commands."""
+    """The start pose (joints,) [rad], and the function that gives the commands."""
     time_s = np.arange(round(config.duration * _RATE_HZ) + 1) / _RATE_HZ
     description = plant.description
     if config.motion == "walk" and description is not None:

@@ -29,20 +29,20 @@ _BOUNDS = {
 class Render:
     """Draw walks: a film strip (.png), or a film (.gif, .mp4 with the program ffmpeg).
 
-    Nothing but the processor is needed, no display and no driver. Several recordings
-    stand side by side in a film, at the same times, and below each other in a strip.
+    No display and no graphics driver is needed. A film shows several recordings side by
+    side, at the same times; a strip shows them below each other.
 
     Attributes:
       paths: run folders, or recordings (.parquet or .csv).
-      out: the file to write; what it ends with says what is drawn.
-      only: recordings whose name holds one of these words; all by default.
-      start: first moment [s]; by default so that the film shows the fall, or else the
-        middle of the walk.
-      duration: how much is shown [s].
-      frames: pictures of a strip, at even times.
-      rate: pictures a second of a film.
-      width: of each walk's picture in pixels.
-      height: of the same.
+      out: the file to write; its ending decides between strip and film.
+      only: show only recordings whose name contains one of these words.
+      start: time of the first picture [s]; by default such that the fall is shown, or
+        without a fall the middle of the walk.
+      duration: length of the part that is shown [s].
+      frames: number of pictures in a strip, at equal distances in time.
+      rate: pictures per second of a film.
+      width: width of each walk's picture in pixels.
+      height: height of each walk's picture in pixels.
       balance: show forces at the feet, support polygon, ZMP and centre of mass.
     """
 
@@ -58,7 +58,7 @@ class Render:
     balance: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be drawn, and to overwrite."""
+        """Refuse values out of bounds, and files that exist."""
         check_paths(self.paths)
         if self.out.suffix not in (STRIP, *FILMS):
             raise BadValueError(f"{self.out} must end with .png, .gif or .mp4")
@@ -72,7 +72,7 @@ class Render:
 
 
 def main(config: Render) -> None:
-    """Draw, and say where."""
+    """Draw the pictures, and print the file's name."""
     recordings = {
         name: recording
         for name, recording in gather(config.paths).items()

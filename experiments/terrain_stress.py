@@ -1,4 +1,4 @@
-"""`groundwalk terrain-stress`: how rough may the ground be before gaits fall?"""
+"""`groundwalk terrain-stress`: find the roughest ground on which gaits still walk."""
 
 import dataclasses
 import itertools
@@ -31,19 +31,21 @@ VERB = "terrain-stress"
 
 @dataclass(frozen=True)
 class TerrainStress(RunOptions):
-    """Let gaits climb ladders of ever harder ground: speed, falls and their causes.
+    """Let gaits walk on harder and harder ground: speed, falls and their causes.
 
-    For each family of ground, the severity at which half of the trials fall. A run that
-    was stopped is continued with --resume.
+    The result is, for each family of ground, the severity at which half of the trials
+    fall. A run that was stopped is continued with --resume.
 
     Attributes:
-      gaits: names, or JSON files with a gait such as a run's result.json.
-      worlds: where; sim, real or both.
-      robots: their names; `groundwalk list robots` shows them.
-      families: of ground; flat, the ground without severity, is always tried.
-      rungs: severities of a family, in equal ratios from mild to hard.
-      trials: of each gait at each severity, each on its own ground.
-      worst: rollouts of each gait and world that go into a Rerun file.
+      gaits: names (`groundwalk list gaits`), .json files with a gait, or run folders of
+        optimize-gait.
+      worlds: the worlds to walk in: sim, real or both.
+      robots: names (`groundwalk list robots`), or .urdf or .toml files.
+      families: kinds of difficult ground, friction and softness among them. Flat ground
+        is always tried.
+      rungs: number of severities of a family, in equal ratios from mild to hard.
+      trials: trials of each gait at each severity, each on its own ground.
+      worst: number of falls, of each gait and world, that are kept as Rerun files.
       threads: processor threads; 0 for all.
     """
 
@@ -77,7 +79,7 @@ class TerrainStress(RunOptions):
 
     @property
     def places(self) -> list[Place]:
-        """Where is walked, in the order of the cells."""
+        """Every robot, world and severity to walk at, in the order of the cells."""
         found = []
         for robot, world in itertools.product(self.robots, self.worlds):
             leg_m = leg_length_m(robots.get(robot))
@@ -110,10 +112,10 @@ def main(config: TerrainStress) -> None:
 def _walk_cells(
     folder: RunFolder, config: TerrainStress, gaits: Mapping[str, Gait]
 ) -> list[dict[str, Any]]:
-    """All cells, those that are done read from the folder.
+    """Compute all cells that the folder does not hold yet.
 
-    A cell is a place with the trials of all gaits. It depends on the seed alone, so
-    that a run that was stopped goes on to the same bits.
+    A cell is a place with the trials of all gaits. Its bits depend on the seed alone,
+    so that a run that was stopped continues to the same result.
     """
     state = _state(folder, gaits)
     cells: list[dict[str, Any]] = state["cells"]
@@ -131,10 +133,10 @@ def _walk_cells(
 
 
 def _state(folder: RunFolder, gaits: Mapping[str, Gait]) -> dict[str, Any]:
-    """The gaits and the cells that are done; those of a run that begins are none.
+    """The gaits, and the cells that are done (none in a new run).
 
     Raises:
-      BadValueError: a gait's file holds another gait now.
+      BadValueError: a gait's file has changed since the run began.
     """
     now = {name: dict(gait) for name, gait in gaits.items()}
     state = folder.read_json(HISTORY) if folder.has(HISTORY) else {"gaits": now}

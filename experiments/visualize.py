@@ -1,4 +1,4 @@
-"""`groundwalk visualize`: recordings in Rerun, and a run's search."""
+"""`groundwalk visualize`: show recordings and searches in Rerun."""
 
 import json
 from collections.abc import Sequence
@@ -19,22 +19,23 @@ from worlds.rerun_files.log import write_rrd
 from worlds.rerun_files.viewer import open_viewer
 
 _HEAD_BYTES = 4096
+"""Number of bytes, from a file's begin, in which groundwalk's mark is looked for."""
 
 
 @dataclass(frozen=True)
 class Visualize:
     """Show recordings in Rerun: robot, ground, balance, joints, forces, support.
 
-    All of them go into one .rrd file, side by side. Of a run, this takes all its
-    recordings; its search becomes a file search.rrd of its own, and a picture. See
-    docs/seeing.md.
+    All recordings go into one .rrd file, side by side. For a run folder, these are all
+    its recordings; its search is written to a separate file, search.rrd, and drawn as a
+    picture. See docs/seeing.md.
 
     Attributes:
       paths: run folders, or recordings (.parquet or .csv).
       out: the .rrd file to write; by default walk.rrd in a run folder, the recording's
         name with .rrd beside it, or comparison.rrd beside the first of several.
-      open: open what was written in Rerun's viewer, which only this machine reaches.
-      json: print what was written as JSON.
+      open: open the files in Rerun's viewer, which only this machine can reach.
+      json: print the names of the files as JSON.
     """
 
     paths: Annotated[tuple[Path, ...], tyro.conf.Positional] = ()
@@ -43,14 +44,14 @@ class Visualize:
     json: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse to show nothing, and to overwrite."""
+        """Refuse missing paths, and files that exist."""
         check_paths(self.paths)
         if self.out is not None:
             check_new(self.out, ".rrd")
 
 
 def main(config: Visualize) -> None:
-    """Write the pictures that there is something to draw for, and say where."""
+    """Write all files for which there is data, and print their names."""
     runs = [RunFolder.at(path) for path in config.paths if path.is_dir()]
     pictures = [*filter(None, map(picture_search, runs))]
     recordings = gather(config.paths)
@@ -78,11 +79,11 @@ def main(config: Visualize) -> None:
 
 
 def check_paths(paths: Sequence[Path]) -> None:
-    """Refuse to look at nothing.
+    """Refuse paths that do not exist.
 
     Raises:
-      BadValueError: there is no path.
-      BadRecordingError: nothing is there.
+      BadValueError: no path is given.
+      BadRecordingError: a path does not exist.
     """
     if not paths:
         raise BadValueError("no run folder and no recording is given; name some")
@@ -92,7 +93,7 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 
 def gather(paths: Sequence[Path]) -> dict[str, Recording]:
-    """Recordings by scene name; of several paths, the names begin with the path's.
+    """Read recordings, by scene name; with several paths, each name begins with one.
 
     Args:
       paths: run folders and recordings.
@@ -113,10 +114,10 @@ def gather(paths: Sequence[Path]) -> dict[str, Recording]:
 
 
 def default_out(paths: Sequence[Path]) -> Path:
-    """Where the file goes if the user does not say.
+    """The file to write if no --out is given.
 
     Raises:
-      BadValueError: there is a file that groundwalk has not written.
+      BadValueError: the file exists and was not written by groundwalk.
     """
     first = paths[0]
     if len(paths) > 1:
@@ -126,12 +127,14 @@ def default_out(paths: Sequence[Path]) -> Path:
     else:
         out = first.with_suffix(".rrd")
     if out.exists() and not _is_ours(out):
-        raise BadValueError(f"{out} is there and not of groundwalk: choose an --out")
+        raise BadValueError(
+            f"{out} exists and is no file of groundwalk: choose another --out"
+        )
     return out
 
 
 def _is_ours(path: Path) -> bool:
-    """Whether a file is one of Rerun's, written by this application."""
+    """Whether a file is a Rerun file that groundwalk has written."""
     if not path.is_file():
         return False
     with path.open("rb") as file:

@@ -10,6 +10,7 @@ from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
+from experiments.runs.gait_files import short_name
 from experiments.seeing.scenes import make_scenes
 from experiments.seeing.walk_figure import walk_figure
 from experiments.seeing.walk_strip import walk_strip
@@ -83,18 +84,14 @@ def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
     write_figure(walk_figure(placed, DOTS_PER_INCH), path)
 
 
-def folder_name(robot: str) -> str:
-    """Name of a robot's folder in the run: its own name, or its file's without end."""
-    return Path(robot).stem if "." in robot else robot
-
-
 def robot_rows(result: Result) -> tuple[list[str], list[list[str]]]:
     """The headings of the table, and a row for each robot."""
-    return COLUMNS, [_row(name, of) for name, of in result.items()]
+    return COLUMNS, [_row(short_name(name), of) for name, of in result.items()]
 
 
 def answer(result: Result) -> Iterator[str]:
     """One sentence on the robots that walk, then one on each robot that falls."""
+    result = {short_name(name): of for name, of in result.items()}
     walks = [name for name, of in result.items() if not _tuned(of)["falls"]]
     trials = next(_tuned(of)["trials"] for of in result.values())
     if walks:

@@ -91,10 +91,15 @@ def command_of(provenance: Mapping[str, Any]) -> str:
     return str(known or shlex.join(["groundwalk", *provenance["arguments"]]))
 
 
+def shown(text: str) -> str:
+    """A text for readers: if it is a path in the current folder, relative to it."""
+    return text.removeprefix(f"{Path.cwd()}{os.sep}")
+
+
 def _text(value: Any) -> str:
-    """A setting as text; paths within the current folder are relative to it."""
+    """A setting as text."""
     if isinstance(value, str):
-        return value.removeprefix(f"{Path.cwd()}{os.sep}")
+        return shown(value)
     if not isinstance(value, Sequence):
         return str(value)
     return ", ".join(map(_text, value)) or "none"

@@ -1,6 +1,6 @@
-"""What the doctor looks at, one small check a thing.
+"""The checks of `groundwalk doctor`: Python, packages, robot files, viewer, folder.
 
-Needs nothing but Python itself, so that it can still speak when all else is missing.
+They need nothing but Python itself, so that they work when every package is missing.
 """
 
 import enum
@@ -31,15 +31,15 @@ IMPORTS = {
     "rerun-sdk": "rerun",
     "sb3-contrib": "sb3_contrib",
 }
-"""What to import of a package where it is not of the package's name."""
+"""Module to import for a package whose module has another name."""
 
 
 class State(enum.StrEnum):
-    """How a finding is."""
+    """Severity of a finding."""
 
     OK = "ok"
     NOTE = "note"
-    """Works, but not as tested; or a comfort is missing."""
+    """It works, but differs from the tested setup; or something optional is missing."""
     FAIL = "fail"
 
 
@@ -48,10 +48,10 @@ class Finding:
     """One line of the report.
 
     Attributes:
-      name: what was looked at.
-      state: how it is.
-      found: what is there.
-      advice: what to do; empty where there is nothing to do.
+      name: what was checked, such as a package.
+      state: severity.
+      found: what is installed.
+      advice: what to do; empty if there is nothing to do.
     """
 
     name: str
@@ -61,7 +61,7 @@ class Finding:
 
 
 def check_python(version: tuple[int, int]) -> Finding:
-    """The running Python, by its major and minor version."""
+    """Check the major and minor version of the running Python."""
     found = ".".join(map(str, version))
     if version == TESTED_PYTHON:
         return Finding("Python", State.OK, found)
@@ -70,9 +70,10 @@ def check_python(version: tuple[int, int]) -> Finding:
 
 
 def import_problem(module: str) -> str:
-    """The last line of what a failing import says; nothing if it works.
+    """Import a module, and return the last line of the error; "" if it works.
 
-    Imports in a process of its own: an engine may print from C, or crash.
+    The import runs in a process of its own, because a physics engine may print from C,
+    or crash.
     """
     done = subprocess.run(
         [sys.executable, "-c", f"import {module}"],
@@ -92,13 +93,13 @@ def check_package(
     find_version: Callable[[str], str] = importlib.metadata.version,
     find_problem: Callable[[str], str] = import_problem,
 ) -> Finding:
-    """Whether a package is there, new enough, and can be imported.
+    """Check that a package is installed, new enough, and can be imported.
 
     Args:
-      requirement: name and least version, as "mujoco>=4.0".
-      tested: the version that is tested, if it is known.
-      find_version: gives a package's version or raises PackageNotFoundError.
-      find_problem: imports a module; says what went wrong, nothing if it works.
+      requirement: name and lowest version, such as "mujoco>=4.0".
+      tested: the version that groundwalk is tested with, if known.
+      find_version: returns a package's version or raises PackageNotFoundError.
+      find_problem: imports a module; returns the error's text, "" if it works.
     """
     name, least = requirement.split(">=")
     wanted = f"{name}=={tested}" if tested else f"'{requirement}'"
@@ -121,7 +122,7 @@ def check_package(
 
 
 def check_packages() -> list[Finding]:
-    """All packages that groundwalk requires."""
+    """Check all packages that groundwalk requires."""
     try:
         declared = importlib.metadata.requires("groundwalk") or []
     except PackageNotFoundError:
@@ -134,10 +135,10 @@ def check_packages() -> list[Finding]:
 
 
 def check_robot_files(files: Sequence[Path]) -> Finding:
-    """Whether the URDFs and meshes of example-robot-data are on the disk.
+    """Check that the URDFs and meshes of example-robot-data are on the disk.
 
     Args:
-      files: those that the package lists.
+      files: all files that the package lists.
     """
     install = "pip install --force-reinstall --no-deps example-robot-data"
     urdfs = [file for file in files if file.suffix == ".urdf"]
@@ -150,7 +151,7 @@ def check_robot_files(files: Sequence[Path]) -> Finding:
 
 
 def check_viewer(path: str) -> Finding:
-    """Whether the Rerun viewer is there.
+    """Check that the Rerun viewer is installed.
 
     Args:
       path: the folders to search, as in the variable PATH.
@@ -163,7 +164,7 @@ def check_viewer(path: str) -> Finding:
 
 
 def check_folder(folder: Path) -> Finding:
-    """Whether runs can be written into a folder."""
+    """Check that files can be written into a folder."""
     try:
         with tempfile.TemporaryFile(dir=folder):
             return Finding("this folder", State.OK, "can be written to")
@@ -173,7 +174,7 @@ def check_folder(folder: Path) -> Finding:
 
 
 def examine() -> list[Finding]:
-    """Everything that there is to say about this machine."""
+    """Do all checks of this machine."""
     beside = str(Path(sys.executable).parent)
     return [
         check_python(sys.version_info[:2]),

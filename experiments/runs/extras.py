@@ -1,4 +1,4 @@
-"""Results outlive their pictures: what a failed extra costs is one line."""
+"""Pictures and pages whose failure must not end a run that has its result."""
 
 import contextlib
 import sys
@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def extra(name: str) -> Iterator[None]:
-    """Make a picture, an overlay or a page; if that fails, say so and go on.
+    """Make a picture, an overlay or a page; if that fails, print one line and go on.
 
-    A run has its answer before it draws anything, and hours may be in it. So an error
-    of any kind within the block becomes one line on stderr, and what comes after the
-    block is still written. An interruption by the user passes through.
+    A run has its result, perhaps of hours, before it draws anything. An error of any
+    kind within the block therefore becomes one line on standard error, and the program
+    continues behind the block. Ctrl-C is not caught.
 
     Args:
-      name: of the file or files that are made, as the line names them.
+      name: name of the file or files that are made, for the line.
 
     Example:
       >>> with extra("walk.png"):

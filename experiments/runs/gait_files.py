@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from experiments.runs.folder import RESULT
+from experiments.runs.folder import FILE_ENDS, RESULT
 from groundwalk.errors import BadValueError
 from walk_engine import Gait, gaits
 
@@ -25,10 +25,7 @@ def load_gait(name: str) -> Gait:
 
 
 def load_gaits(names: Sequence[str]) -> dict[str, Gait]:
-    """Load gaits and give them short names.
-
-    The short name of a file is its own without the ending. That of a run folder, or of
-    a `result.json` in it, is the folder's name.
+    """Load gaits, by their short names.
 
     Args:
       names: gaits as `load_gait` takes them.
@@ -38,13 +35,26 @@ def load_gaits(names: Sequence[str]) -> dict[str, Gait]:
     """
     loaded: dict[str, Gait] = {}
     for name in names:
-        path = Path(name)
-        short = path.resolve().parent.name if path.name == RESULT else path.stem
-        if path.is_dir():
-            short = path.resolve().name
+        short = short_name(name)
         if short in loaded:
             raise BadValueError(
                 f"two gaits are called {short!r}; rename one of their files"
             )
         loaded[short] = load_gait(name)
     return loaded
+
+
+def short_name(name: str) -> str:
+    """The name, for tables and file names, of a gait or robot that may be a file.
+
+    A file is called as itself without its ending; a run folder, or the `result.json` in
+    it, as the folder.
+
+    Example:
+      >>> short_name("gaits/fast.json"), short_name("runs/mine/result.json")
+      ('fast', 'mine')
+    """
+    path = Path(name)
+    if path.name == RESULT:
+        return path.resolve().parent.name
+    return path.stem if path.suffix in FILE_ENDS else path.name

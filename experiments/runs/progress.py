@@ -36,6 +36,11 @@ def progress(title: str, steps: int, done: int = 0) -> Iterator[Task]:
       title: name of the work.
       steps: number of its steps.
       done: number of steps that an earlier run has done.
+
+    Example:
+      >>> with progress("trials", steps=10) as task:
+      ...     for _ in range(10):
+      ...         task.advance()
     """
     if sys.stderr.isatty():
         from rich.console import Console

@@ -1,4 +1,4 @@
-"""The command line that does a run again."""
+"""The command line that repeats a run."""
 
 import shlex
 import sys
@@ -10,18 +10,18 @@ from experiments.command_line import VERBS
 from experiments.runs.options import options_of
 
 NOT_REPEATED = frozenset({"out", "resume", "json"})
-"""Options that say where a run goes to, not what it is."""
+"""Options of the output, which do not change a result."""
 
 
 def repeat_command(verb: str, config: Any) -> str:
-    """The command line that does a run again.
+    """The command line that repeats a run.
 
-    It is the process's own; where Python called, as in a notebook, it is the one with
-    the options that are not at their defaults.
+    It is the command line of this process. If the run was started from Python, as in a
+    notebook, it is made from the options that differ from their defaults.
 
     Args:
-      verb: what runs, as in `RunFolder.create`: a study has its verb in front.
-      config: its configuration, a dataclass.
+      verb: the verb that runs, as in `RunFolder.create`: "transfer-toy" for a study.
+      config: its options, a dataclass.
     """
     program = _program(Path(sys.argv[0]))
     if program:
@@ -31,7 +31,7 @@ def repeat_command(verb: str, config: Any) -> str:
 
 
 def _program(path: Path) -> list[str]:
-    """How this process was started; nothing if it was by other code than ours."""
+    """The words that started this process; none if it was not groundwalk's code."""
     if path.name == "groundwalk":
         return ["groundwalk"]
     ours = Path(__file__).parents[1]
@@ -44,7 +44,7 @@ def _program(path: Path) -> list[str]:
 
 
 def _options(config: Any) -> Iterator[str]:
-    """The words for all options that are not at their defaults."""
+    """The command-line words for all options that differ from their defaults."""
     import tyro
 
     hints = get_type_hints(type(config), include_extras=True)

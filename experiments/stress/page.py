@@ -1,4 +1,4 @@
-"""The stress test's tables and its page."""
+"""Tables and page of the terrain stress test."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.runs.folder import RunFolder
+from experiments.runs.gait_files import short_name
 from experiments.stress.curves import Curve, causes_by_family
 from experiments.stress.fall_cause import Cause
 from experiments.stress.families import FLAT
@@ -34,18 +35,21 @@ CELL_HEADINGS = (
     "what came before",
 )
 NOTES = (
-    "Every gait walked the same grounds from the same start poses. Speed is forward,",
-    "until the fall where the robot fell; its spread is the standard deviation over",
-    "trials. Intervals of falls are Wilson's; those of the severity at which half of",
-    "the trials fall come from the profile likelihood of a logistic curve over the",
-    "logarithm of the severity; ? is beyond what was tried. Distance to fall: median",
-    "of the trials that fell.",
+    "Every gait walked on the same grounds from the same start poses. Speed is the",
+    "mean forward speed; in a trial with a fall, until the fall; s.d. is the standard",
+    "deviation over trials. Intervals of fall rates are Wilson's. The severity at",
+    "which half of the trials fall, and its interval, come from the profile likelihood",
+    "of a logistic curve over the logarithm of the severity; ? means that an end of",
+    "the interval is outside of what was tried, not reached that fewer than half of",
+    "the trials fall even at the hardest severity. On slippery ground a robot need not",
+    "fall: with a friction of 0.02 hardly anything brakes its feet, and it glides on.",
+    "Distance to fall: median of the trials that fell.",
     "What each severity and each cause means: docs/terrain_stress.md.",
 )
 
 
 def half_rows(curves: Sequence[Curve]) -> list[list[str]]:
-    """A row for each curve that has a ladder."""
+    """Severities at which half of the trials fall, a row of texts for each curve."""
     return [
         [*_setting(curve), curve["quantity"], half_text(curve)]
         for curve in curves
@@ -54,7 +58,7 @@ def half_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 
 def cell_rows(curves: Sequence[Curve]) -> list[list[str]]:
-    """A row for each severity of each curve."""
+    """Table of all results, a row for each severity of each curve."""
     rows = []
     for curve in curves:
         for rung in curve["rungs"]:
@@ -74,7 +78,7 @@ def cell_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 
 def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
-    """A row for each curve with falls: how many have which cause."""
+    """Table of the causes of falls, a row for each curve that has falls."""
     return [
         [*_setting(curve), str(counted.total()), *(str(counted[c]) for c in Cause)]
         for curve, counted in causes_by_family(curves)
@@ -87,7 +91,7 @@ def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
 
     Args:
       folder: the run.
-      curves: of `curves_of`.
+      curves: results as `curves_of` makes them.
     """
     causes = ("robot", "world", "gait", "family", "falls", *Cause)
     body = [
@@ -114,7 +118,7 @@ def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
 
 
 def stress_answer(curves: Sequence[Curve]) -> Iterator[str]:
-    """A sentence for each robot, world and gait."""
+    """The page's answer: a sentence for each robot, world and gait."""
     keys = dict.fromkeys(tuple(_setting(curve)[:3]) for curve in curves)
     for robot, world, gait in keys:
         own = [c for c in curves if tuple(_setting(c)[:3]) == (robot, world, gait)]
@@ -132,13 +136,13 @@ def stress_answer(curves: Sequence[Curve]) -> Iterator[str]:
 def _halves(curves: Sequence[Curve]) -> str:
     known = [curve for curve in curves if curve["half"] is not None]
     return ", ".join(
-        f"{family_text(curve['family'])} {half_text(curve).split(' (')[0]}"
+        f"{family_text(curve['family'])} {half_text(curve, interval=False)}"
         for curve in known
     )
 
 
 def _setting(curve: Curve) -> list[str]:
-    names = [curve[name] for name in ("robot", "world", "gait")]
+    names = short_name(curve["robot"]), curve["world"], curve["gait"]
     return [*names, family_text(curve["family"])]
 
 

@@ -1,11 +1,11 @@
-"""Families and severities as people read them: in words, millimetres and degrees."""
+"""Names of ground families and severities for pages: words, millimetres, degrees."""
 
 import math
 from collections.abc import Mapping
 from typing import Any
 
 SHOWN = {"m": (1000.0, " mm"), "rad": (180.0 / math.pi, "°"), "1": (1.0, "")}
-"""By unit: factor, and the unit that is printed."""
+"""For each unit of a severity: the factor to the printed unit, and its name."""
 
 
 def family_text(family: str) -> str:
@@ -14,36 +14,39 @@ def family_text(family: str) -> str:
 
 
 def severity_text(severity: float, unit: str | None) -> str:
-    """A severity with its printed unit, such as "6.3 mm"; "-" where there is none."""
+    """A severity with its printed unit, such as "6.3 mm"; "-" if it has no unit."""
     if unit is None:
         return "-"
     factor, name = SHOWN[unit]
     return f"{severity * factor:.2g}{name}"
 
 
-def half_text(curve: Mapping[str, Any]) -> str:
-    """The half-fall severity with its interval, such as "6.3 mm (5 to 8.1)".
+def half_text(curve: Mapping[str, Any], interval: bool = True) -> str:
+    """The severity at which half of the trials fall, with its 95 % interval.
 
-    "> 20 mm" means that less than half of the trials fall even there, "< 2 mm" that
-    more than half do. Where an end of the interval is missing it is beyond what was
-    tried.
+    Examples: "6.3 mm (5 to 8.1)"; "not reached (up to 20 mm)" if fewer than half of the
+    trials fall even at the hardest severity, 20 mm; "below 2 mm" or, for friction,
+    "above 0.6" if more than half fall at the mildest. An end of the interval that lies
+    outside of the ladder is "?".
+
+    Args:
+      curve: results of one gait on one family of ground, as `curves_of` makes them.
+      interval: whether the interval is part of the text.
     """
     half, unit = curve["half"], curve["unit"]
     if half is None:
         return "-"
     factor, _ = SHOWN[unit]
     text = severity_text(half["severity"], unit)
+    falling = curve["rungs"][-1]["severity"] < curve["rungs"][0]["severity"]
+    if half["beyond"] == ">":
+        return f"not reached ({'down' if falling else 'up'} to {text})"
     if half["beyond"]:
-        return f"{_beyond(half['beyond'], curve)} {text}"
+        return f"{'above' if falling else 'below'} {text}"
+    if not interval:
+        return text
     low, high = (
         "?" if half[end] is None else f"{half[end] * factor:.2g}"
         for end in ("low", "high")
     )
     return f"{text} ({low} to {high})"
-
-
-def _beyond(side: str, curve: Mapping[str, Any]) -> str:
-    """The sign as numbers have it: of friction, the harder is the smaller one."""
-    severities = [rung["severity"] for rung in curve["rungs"]]
-    falling = severities[-1] < severities[0]
-    return {">": "<", "<": ">"}[side] if falling else side

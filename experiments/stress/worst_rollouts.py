@@ -5,6 +5,7 @@ from typing import Protocol
 
 from experiments.runs.extras import extra
 from experiments.runs.folder import RECORDINGS, RunFolder
+from experiments.runs.gait_files import short_name
 from experiments.stress.curves import Cell, trials_of
 from experiments.stress.families import Place
 from experiments.stress.walks import Trial, Walk, walk_at
@@ -47,7 +48,7 @@ def write_worst(
         own = [c for c in cells if (c["robot"], c["world"]) == (robot, world)]
         for gait in gaits:
             worst = worst_falls(own, gait, config.worst)
-            name = f"worst_{robot}_{world}_{gait}.rrd"
+            name = f"worst_{short_name(robot)}_{world}_{gait}.rrd"
             if worst and not folder.has(name):
                 walks = list(_again(worst, gaits, config.seed, config.threads))
                 _write(folder, name, walks)

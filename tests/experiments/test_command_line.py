@@ -1,10 +1,16 @@
 import json
+import os
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
-from experiments.command_line import VERBS, main, one_line
+from experiments.command_line import VERBS, main, one_line, run_verb
+from experiments.concealed.run import ConcealedRun
+from experiments.evaluate import Evaluate
+from experiments.record import Record
 from walk_engine import gaits
 
 
@@ -107,6 +113,48 @@ def test_good_input_is_not_refused(tmp_path):
     assert done.returncode == 0
     assert "walk2014" in done.stdout
     assert done.stderr == ""
+
+
+@pytest.mark.parametrize(
+    ("options", "words", "hint"),
+    [
+        (Evaluate, ["start"], "; --resume DIR continues the run"),
+        (ConcealedRun, ["SET"], "; the same command continues where this one stopped"),
+        (Record, ["--out", "new.csv"], ""),
+    ],
+)
+def test_ctrl_c_advises_only_what_the_verb_has(
+    tmp_path, monkeypatch, capsys, options, words, hint
+):
+    (tmp_path / "SET" / "cases").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+
+    def stopped(config):
+        raise KeyboardInterrupt
+
+    with pytest.raises(SystemExit) as stop:
+        run_verb(options, stopped, "groundwalk", words)
+    assert stop.value.code == 130
+    assert capsys.readouterr().err == f"groundwalk: interrupted{hint}\n"
+
+
+@pytest.mark.slow
+def test_ctrl_c_in_the_real_world_says_one_thing(tmp_path):
+    words = ["evaluate", "start", "--worlds", "real", "--trials", "1", "--out", "run"]
+    run = subprocess.Popen(
+        [sys.executable, "-m", "experiments.command_line", *words],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    while not (tmp_path / "run" / "config.json").exists():
+        time.sleep(0.1)
+    time.sleep(5)  # until it walks; a trial takes some 10 s
+    os.killpg(run.pid, signal.SIGINT)
+    _, said = run.communicate(timeout=60)
+    assert (run.returncode, said.count("\n")) == (130, 1), said
 
 
 def test_a_boxed_report_becomes_one_line():

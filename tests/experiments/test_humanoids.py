@@ -11,8 +11,9 @@ import robots
 import terrain
 import worlds
 from experiments.humanoid_study.facts import reach, saturation, sole
-from experiments.humanoid_study.page import answer, folder_name, robot_rows, why
+from experiments.humanoid_study.page import answer, robot_rows, why
 from experiments.humanoids import Humanoids, main
+from experiments.runs.gait_files import short_name
 from experiments.walking.trials import TrialRules, walk_trials
 from groundwalk.errors import GroundwalkError
 from walk_engine import gaits
@@ -131,8 +132,10 @@ def test_what_no_run_can_do(options, message):
 
 
 def test_folders_of_files():
-    assert folder_name("g1") == "g1"
-    assert folder_name("my/robot.urdf") == "robot"
+    assert short_name("g1") == "g1"
+    assert short_name("my/robot.urdf") == "robot"
+    _, (row,) = robot_rows({"my/robot.urdf": of()})
+    assert row[0] == "robot"
 
 
 def walked(name, limit_s):

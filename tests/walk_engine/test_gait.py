@@ -31,7 +31,7 @@ def test_walk2014_has_the_published_constants(name, value):
     assert WALK2014[name] == value
 
 
-def test_start_is_walk2014_at_twenty_centimetres_per_second():
+def test_start_is_walk2014_at_twenty_three_centimetres_per_second():
     assert gaits.get("start") == WALK2014.replace(max_forward=0.23)
     assert gaits.get("start") != WALK2014
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from leg_fk import forward
 from scipy.spatial.transform import Rotation
 
 from robots.leg_geometry import LegGeometry
-from walk_engine.leg_fk import forward
 from walk_engine.leg_ik import inverse
 
 SLANT = math.sqrt(0.5)

@@ -1,9 +1,9 @@
 """Drives a walk engine without physics: the weight swings by the clock."""
 
 import numpy as np
+from leg_fk import forward
 
 from walk_engine import Velocity
-from walk_engine.leg_fk import forward
 from walk_engine.leg_ik import MIRROR
 
 LEFT, RIGHT = 1, -1

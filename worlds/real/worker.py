@@ -1,6 +1,7 @@
 """The process that computes some robots of the real world."""
 
 import os
+import signal
 from multiprocessing.connection import Connection
 
 import numpy as np
@@ -43,6 +44,8 @@ def serve(connection: Connection) -> None:
     Args:
       connection: to the process of the world.
     """
+    # Ctrl-C reaches all processes; the world's own process ends this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     # Standard output is for results; Bullet prints to it from C at any time.
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 1)

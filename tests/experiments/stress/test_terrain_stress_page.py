@@ -76,13 +76,15 @@ def test_numbers_are_read_in_millimetres_and_degrees():
     assert severity_text(0.0, None) == "-"
 
 
-def test_what_was_not_reached_is_said_as_numbers_have_it(curves):
+def test_a_severity_that_no_rung_reaches_is_said_in_words(curves):
     lumps, never, ice = half_text(curves[2]), half_text(curves[3]), half_text(curves[5])
     assert lumps.startswith("4.")
     assert "mm (" in lumps
-    assert never == "> 8 mm"
+    assert never == "not reached (up to 8 mm)"
     # the harder friction is the smaller one
-    assert ice == "< 0.1"
+    assert ice == "not reached (down to 0.1)"
+    easy = {**curves[5], "half": {**curves[5]["half"], "beyond": "<", "severity": 0.4}}
+    assert half_text(easy) == "above 0.4"
 
 
 def test_tables_have_their_rows(curves):
@@ -101,7 +103,7 @@ def test_the_answer_speaks_of_each_gait(curves):
     start, sure = stress_answer(curves)
     assert "start (nao) falls in 12 of 28 trials, 0 of 4 on flat ground" in start
     assert "sure (nao) falls in 0 of 28 trials" in sure
-    assert "lumps > 8 mm" in sure
+    assert "lumps not reached (up to 8 mm)" in sure
 
 
 def test_the_worst_are_the_early_falls_on_mild_ground(cells):
