@@ -1,4 +1,4 @@
-"""What was measured and what both sims predict, over time, on held-out recordings."""
+"""Measured and predicted values over time on the held-out recordings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -40,7 +40,7 @@ class Limb:
         return tuple(one for one in model if one.place not in self.elsewhere)
 
     def run(self, run: Run) -> Run:
-        """What this part does in a run of the whole plant."""
+        """The part of a window of the whole robot that belongs to this limb."""
         columns = list(self.columns)
         return replace(
             run,

@@ -23,7 +23,7 @@ CLOSE_NATS = 100.0
 """Models within this distance of the best one [nats] lend it their effects: each may
 contain a part of the truth. Generous, since trying a few more models is cheap."""
 
-REPLAYS_EACH = 60
+REPLAYS_EACH = 30
 """Rough number of replays in all acceptance tests for each model compared. An exact
 replay counts as six."""
 

@@ -160,7 +160,7 @@ class Nudges:
         return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
 
     def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
-        """(N, p) Jacobian from the (1 + groups, N) residuals at a point and its nudges."""
+        """(N, p) Jacobian from (1 + groups, N) residuals at a point and its nudges."""
         found = np.zeros((seen.shape[1], len(steps)))
         for own, other in zip(self.groups, seen[1:], strict=True):
             for i in own:

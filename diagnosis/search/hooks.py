@@ -1,7 +1,7 @@
 """How a long diagnosis reports its progress and stores results for a later resume.
 
-Both are optional. Whoever wants a progress display passes a `Progress`; whoever wants
-to resume after an interruption passes a `Checkpoint`.
+Both are optional: a `Progress` receives reports while a diagnosis runs, a `Checkpoint`
+lets it go on after an interruption.
 """
 
 from collections.abc import Callable, Mapping

@@ -246,7 +246,7 @@ class Judge:
         return [e + gain for e, gain in zip(energies, before, strict=True)]
 
     def _gains_before(self, models: Sequence[Model]) -> list[float]:
-        """What each model gains on the reference, scaled to the selection data's size.
+        """Gain of each model on the reference, scaled to the length of selection data.
 
         Returns:
           Gains [nats], at least 0; all 0 without a reference.

@@ -159,7 +159,7 @@ def _halves(traces: Sequence[Trace]) -> tuple[list[Trace], list[Trace]]:
 
 
 def reference_limit(noise: ReferenceNoise) -> tuple[str, ...]:
-    """The sentence of a verdict's limits that says what is taken as given."""
+    """The sentence for a verdict's limits about differences that are taken as given."""
     known = ", ".join(f"{one.name} at {one.place}" for one in noise.model)
     given = f" ({known})" if known else ""
     return (

@@ -41,7 +41,8 @@ class Search:
     def run(self) -> SearchResult:
         """Grow models until another effect does not improve them enough."""
         judge, residual = self.judge, self.judge.residual
-        self.signatures = self._signatures()
+        intervals = push_intervals(self._fit, residual)
+        self.signatures = signatures(self._fit, (), self._usage, intervals)
         starts = Candidates(self._fit, self.signatures, self._rules)
         best = {1: self._round(1, starts.alone(residual))}
         chosen, size = 0, 1
@@ -60,7 +61,8 @@ class Search:
             size += 1
             best[size] = self._round(size, larger)
         if chosen:
-            swapped = self._round(chosen, starts.swapped(best[chosen][0]))
+            replaced = starts.swapped(best[chosen][0])
+            swapped = self._round(chosen, replaced, "replacements of ")
             best[chosen] = distinct(judge.ranked(best[chosen] + swapped))
         return SearchResult(
             judge.nothing,
@@ -71,15 +73,12 @@ class Search:
             judge.floor_fit,
         )
 
-    def _signatures(self) -> list[Signature]:
-        """What each effect at each place changes in the predictions."""
-        intervals = push_intervals(self._fit, self.judge.residual)
-        return signatures(self._fit, (), self._usage, intervals)
-
-    def _round(self, size: int, starts: Sequence[Model]) -> list[Judged]:
+    def _round(
+        self, size: int, starts: Sequence[Model], kind: str = ""
+    ) -> list[Judged]:
         """Fit and judge the models of one round, and report the round as a stage."""
         if starts:
-            name = f"search round {size}"
+            name = f"{kind}search round {size}"
             self.judge.hooks.stage(name, self.judge.replays_of(starts))
         return self.judge.judged(starts)
 
