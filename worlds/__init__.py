@@ -1,4 +1,16 @@
-"""Robots on terrain under physics: sim (MuJoCo) and real (PyBullet), and recordings."""
+"""Robots on terrain under physics: sim (MuJoCo), real (PyBullet), and recordings.
+
+Both worlds have one interface, `World`: n robots that are stepped together by joint
+commands. See docs/python.md for whole programs.
+
+Example:
+  >>> import numpy as np, robots, terrain, worlds
+  >>> seeds = np.random.SeedSequence(1).spawn(1)
+  >>> world = worlds.make("sim", robots.get("nao"), [terrain.make("flat", 0)], seeds)
+  >>> observation = world.reset(np.zeros((1, 20)))
+  >>> observation.position_rad.shape
+  (1, 20)
+"""
 
 from worlds.catalog import WORLDS, kind, make
 from worlds.observation import Observation, Truth

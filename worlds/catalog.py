@@ -1,4 +1,4 @@
-"""The two worlds by name, and what each is like unless told otherwise."""
+"""The two worlds by name, and their default options."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ REAL_LATENCY_S = 0.036
 
 @dataclass(frozen=True)
 class WorldKind:
-    """A world's class, and how it is set up by default.
+    """A world's class and its defaults; see `kind` for an example.
 
     Attributes:
       world: the class.
@@ -45,13 +45,22 @@ WORLDS = {
         seed_key=0,
     ),
 }
+"""The worlds by name. Real differs from sim by its engine and, by default, by its
+latency, its noise and its ground."""
 
 
 def kind(name: str) -> WorldKind:
-    """The world of that name.
+    """The class and the defaults of a world.
+
+    Args:
+      name: "sim" or "real".
 
     Raises:
-      UnknownNameError: there is none.
+      UnknownNameError: there is no world of this name.
+
+    Example:
+      >>> kind("real").options.latency_s
+      0.036
     """
     if name not in WORLDS:
         raise UnknownNameError("world", name, WORLDS)
@@ -73,6 +82,12 @@ def make(
       grounds: one per robot; give one object n times to share it.
       seeds: one per robot, for its sensor noise.
       options: the world's own default where None.
+
+    Raises:
+      GroundwalkError: the world is unknown, or its options do not fit the robot.
+
+    Example:
+      See the beginning of the package `worlds`, or docs/python.md.
     """
     chosen = kind(name)
     return chosen.world(description, grounds, seeds, options or chosen.options)

@@ -21,11 +21,19 @@ class DelayLine:
         self._commands: deque[FloatArray] = deque(maxlen=self._ticks + 2)
 
     def reset(self, command: FloatArray) -> None:
-        """As if this command had been given for ever."""
+        """Begin as if this command had always been given.
+
+        Args:
+          command: any array, for example (n, joints) targets.
+        """
         self._commands.extend([command] * (self._ticks + 2))
 
     def tick(self, command: FloatArray) -> Iterator[tuple[FloatArray, int]]:
-        """Give one tick's command; yields which commands act, for how many steps."""
+        """Give one tick's command.
+
+        Yields:
+          Each command that acts during this tick, and for how many physics steps.
+        """
         self._commands.append(command)
         older, newer = self._commands[0], self._commands[1]
         if self._late_steps:

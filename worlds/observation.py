@@ -10,10 +10,15 @@ from groundwalk.arrays import BoolArray, FloatArray
 
 @dataclass(frozen=True, eq=False)
 class _PerRobot:
-    """Arrays whose first axis counts the robots."""
+    """Base of dataclasses of arrays whose first axis counts the robots."""
 
     def where(self, mask: BoolArray, other: Self) -> Self:
-        """These rows where the mask is set, the other's elsewhere."""
+        """Rows of this object where a mask is set, and of another one elsewhere.
+
+        Args:
+          mask: (n,) robots.
+          other: of the same class and shape.
+        """
         if mask.all():
             return self
         merged = {}
@@ -32,7 +37,7 @@ class _PerRobot:
 
 @dataclass(frozen=True, eq=False)
 class Observation(_PerRobot):
-    """What n robots measure at a tick.
+    """What n robots measure at a tick; `World.reset` and `World.step` return it.
 
     Attributes:
       time_s: (n,) since the start of the rollout.
@@ -41,6 +46,9 @@ class Observation(_PerRobot):
       accelerometer_m_s2: (n, 3) torso frame; +9.81 upward when at rest.
       foot_force_n: (n, 8) front left, front right, rear left, rear right sensor of
         the left foot, then of the right.
+
+    Example:
+      See the beginning of the package `worlds`.
     """
 
     time_s: FloatArray
@@ -53,13 +61,18 @@ class Observation(_PerRobot):
 
 @dataclass(frozen=True, eq=False)
 class Truth(_PerRobot):
-    """What only the world knows of n robots; never fed to a gait.
+    """What only the world knows of n robots; `World.truth` returns it.
+
+    A gait never sees it: a real robot could not measure it.
 
     Attributes:
       base_position_m: (n, 3) of the torso frame, in the world.
       base_orientation: (n, 4) unit quaternion w, x, y, z from torso to world.
       base_linear_velocity_m_s: (n, 3) world frame.
       base_angular_velocity_rad_s: (n, 3) torso frame.
+
+    Example:
+      `world.truth().base_position_m[:, 0]` is how far each robot has walked.
     """
 
     base_position_m: FloatArray

@@ -1,4 +1,4 @@
-"""What both worlds share: everything but the physics."""
+"""The base class of both worlds: everything but the physics."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -16,16 +16,23 @@ from worlds.sensor_noise import NoisySensors
 from worlds.world import TICK_S, End, WorldOptions
 
 Schedule = list[tuple[FloatArray, int]]
+"""Targets (n, joints) [rad] of one tick, and for how many physics steps each acts."""
 
 MOST_RAD = 1e6
-"""Beyond this a number is no joint position: something has gone wrong."""
+"""A joint position beyond this [rad] is an error: no joint turns a million radians."""
 
 
 class RolloutWorld(ABC):
     """n rollouts side by side; see `World` for the interface.
 
-    Keeps who is still walking, holds commands back for the latency and adds the
+    It remembers which rollouts go on, delays commands by the latency and adds the
     sensors' noise. A subclass computes the physics.
+
+    Attributes:
+      description: the robot.
+      options: how the world computes.
+      active: (n,) robots whose rollout goes on.
+      ended: why each robot's rollout ended.
     """
 
     def __init__(
@@ -35,13 +42,16 @@ class RolloutWorld(ABC):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Remember who stands where.
+        """Remember the robots' grounds and seeds; nothing is computed yet.
 
         Args:
           description: the robot.
           grounds: one per robot; give one object n times to share it.
           seeds: one per robot, for its sensor noise.
-          options: see there.
+          options: how the world computes.
+
+        Raises:
+          BadValueError: there is not one ground and one seed for each robot.
         """
         if not grounds or len(grounds) != len(seeds):
             raise BadValueError(
@@ -66,7 +76,7 @@ class RolloutWorld(ABC):
         targets = self._targets(pose_rad)
         if not _are_positions(targets).all():
             raise BadValueError(
-                "a pose to start from holds what is no joint position; it must be "
+                "a start pose holds a number that is no joint position; it must be "
                 f"finite and within {MOST_RAD:g} rad"
             )
         self._start(targets)
@@ -83,7 +93,7 @@ class RolloutWorld(ABC):
     def step(self, command_rad: FloatArray) -> Observation:
         """Advance the active robots by one tick; see `World.step`."""
         targets = self._targets(command_rad)
-        # MuJoCo would take them for zero.
+        # MuJoCo would take NaN for zero.
         self._end(End.DIVERGED, ~_are_positions(targets))
         schedule = list(self._delay.tick(targets))
         if self.active.any():
@@ -97,12 +107,12 @@ class RolloutWorld(ABC):
         self.active = self.active & ~robots
 
     def truth(self) -> Truth:
-        """Where the robots really are."""
+        """True poses and velocities of the robots; see `World.truth`."""
         return self._truth
 
     @abstractmethod
     def close(self) -> None:
-        """Give back processes and memory."""
+        """End processes and free memory."""
 
     @abstractmethod
     def _start(self, pose_rad: FloatArray) -> None:
@@ -110,14 +120,17 @@ class RolloutWorld(ABC):
 
     @abstractmethod
     def _advance(self, schedule: Schedule) -> None:
-        """One tick of the active robots: targets (n, joints) and steps for each."""
+        """Compute one tick of the active robots."""
 
     @abstractmethod
     def _read(self) -> tuple[Truth, Observation]:
-        """All robots as they are now; rows that blew up hold NaN."""
+        """Truth and noiseless observation of now; NaN for robots that blew up."""
 
     def _take_stock(self) -> None:
-        """Read all states, and end the rollouts that are over."""
+        """Read all states, and end the rollouts that are over.
+
+        Robots that are not active keep their last state.
+        """
         truth, observation = self._read()
         sound = truth.finite() & observation.finite()
         keep = self.active & sound
@@ -127,13 +140,16 @@ class RolloutWorld(ABC):
         self._clean = observation.where(keep, self._clean)
 
     def _end(self, end: End, robots: BoolArray) -> None:
-        """Take those of these robots that are active out of the batch, and say why."""
+        """End the rollouts of those robots (n,) that are active, for a reason."""
         for i in np.flatnonzero(robots & self.active):
             self.ended[i] = end
         self.active = self.active & ~robots
 
     def _targets(self, command_rad: FloatArray) -> FloatArray:
-        """Commands as motor targets: a coupled pair's motor takes the mean."""
+        """Commands (n, joints) as motor targets.
+
+        Two joints that share a motor get the mean of their commands.
+        """
         targets = np.array(command_rad, dtype=float)
         for first, second in self.description.coupled:
             mean = (targets[:, first] + targets[:, second]) / 2

@@ -1,4 +1,4 @@
-"""The one interface of both worlds, and what their options are."""
+"""The one interface of both worlds, and their options."""
 
 import enum
 import math
@@ -18,7 +18,12 @@ TICK_S = 0.01
 
 
 class End(enum.StrEnum):
-    """Why a rollout ended; NONE while it goes on."""
+    """Why a rollout ended; NONE while it goes on.
+
+    Example:
+      >>> End.FALL in FALLS
+      True
+    """
 
     NONE = ""
     FALL = "fall"
@@ -32,7 +37,7 @@ FALLS = (End.FALL, End.DIVERGED)
 
 @dataclass(frozen=True)
 class WorldOptions:
-    """How a world computes and what it does to signals.
+    """How a world computes, and what it does to signals.
 
     Attributes:
       timestep_s: physics step; a whole number of them makes a tick of 10 ms.
@@ -43,6 +48,10 @@ class WorldOptions:
       fixed_base: hold the torso in the air where it started.
       hidden: physics that the real world has and the sim's model lacks.
       threads: of the sim, or processes of the real world; 0 for one per core.
+
+    Example:
+      >>> WorldOptions(latency_s=0.036).latency_steps
+      18
     """
 
     timestep_s: float = 0.002
@@ -55,7 +64,7 @@ class WorldOptions:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse steps that do not fit into ticks, and what cannot be."""
+        """Refuse steps that do not fit into ticks, and values that cannot be."""
         for name in ("timestep_s", "latency_s", "friction", "sinkage_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
@@ -73,7 +82,7 @@ class WorldOptions:
                 f"of {self.timestep_s} s"
             )
         if self.hidden and self.sinkage_m:
-            raise BadValueError("of sinkage_m and hidden physics give only one")
+            raise BadValueError("give only one of sinkage_m and hidden physics")
         if surroundings(self.hidden).bumps_m:
             raise BadValueError("uneven_ground: give the world an uneven ground")
         if self.threads < 0:
@@ -91,7 +100,11 @@ class WorldOptions:
 
 
 class World(Protocol):
-    """n robots, each on its own ground, stepped together by joint commands."""
+    """n robots, each on its own ground, stepped together by joint commands.
+
+    Example:
+      See the beginning of the package `worlds`, or docs/python.md.
+    """
 
     @property
     def description(self) -> Description:
@@ -124,15 +137,15 @@ class World(Protocol):
         """Advance the active robots by one tick; the others stay as they are.
 
         Args:
-          command_rad: (n, joints) joint position targets for this tick. Of a
-            coupled pair, the motor takes the mean.
+          command_rad: (n, joints) joint position targets for this tick. Two joints
+            that share a motor get the mean of their commands.
         """
 
     def stop(self, robots: BoolArray) -> None:
-        """Take robots out of the batch, as if their trial were over."""
+        """End the rollouts of robots, given as a mask (n,)."""
 
     def truth(self) -> Truth:
-        """Where the robots really are."""
+        """True poses and velocities of the robots, without noise."""
 
     def close(self) -> None:
-        """Give back processes and memory; the world cannot be used afterwards."""
+        """End processes and free memory; the world cannot be used afterwards."""

@@ -183,4 +183,5 @@ def _names(
 
 def _compatible(names: Sequence[str], plant: HiddenPlant) -> bool:
     """Whether these kinds can be distinguished from each other in one case."""
-    return not any(KINDS[name].apart(plant) & set(names) for name in names)
+    cancelling = [KINDS[name] for name in names if KINDS[name].cancels(plant)]
+    return not any(set(kind.apart) & set(names) for kind in cancelling)

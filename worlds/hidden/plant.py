@@ -1,4 +1,4 @@
-"""Robots whose worlds can hide physics: what is nominally known of each."""
+"""The nominal robots of worlds with hidden physics: models, servos and ranges."""
 
 import re
 from collections.abc import Callable
@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 _SO101 = "so_arm_description/urdf/so101.urdf"
 _SO101_HELD = "gripper"
 SO101_TORQUE_NM = 2.9
-"""Of each servo, at most; the file that a diagnosis gets says so, too."""
+"""Largest torque of each servo; the model file of concealed cases states it, too."""
 SO101_ROTOR_KG_M2 = 0.003
-"""Rotor behind the gear, lumped into each link. Without it the wrist's inertia is
-4e-5 kg m^2, which no servo of 17 N m/rad and 0.6 N m s/rad notices."""
+"""Inertia of the rotor behind each gear, lumped into the link. Without it the wrist's
+inertia is 4e-5 kg m^2: too little for a servo of 17 N m/rad and 0.6 N m s/rad to show
+any effect of inertia."""
 
 PENDULUM = """<mujoco model="pendulum">
   <compiler angle="radian"/>
@@ -41,7 +42,7 @@ PENDULUM = """<mujoco model="pendulum">
   </worldbody>
 </mujoco>
 """
-"""Half a kilogram 0.3 m below a hinge."""
+"""MuJoCo model of half a kilogram 0.3 m below a hinge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,16 +51,16 @@ class HiddenPlant:
 
     Attributes:
       name: "pendulum", "so101" or a robot's name.
-      file: name and text of its model file; None where `name` says it all.
+      file: name and text of its model file; None for a robot that is known by name.
       make_spec: a new MuJoCo specification without actuators and ground.
-      joints: that have servos.
+      joints: names of the joints, which all have servos.
       links: the body that each joint moves.
       kp_nm_rad, kd_nm_s_rad, max_torque_nm, back_emf_nm_s_rad: the servos,
         torque = clip(kp (command - position) - kd v, +-max) - back_emf v.
       range_rad: (j, 2) of each joint.
       speed_rad_s: (j,) that commands may reach.
       floating: whether the base is free.
-      description: of a robot that has one.
+      description: of a robot that `groundwalk list robots` knows; else None.
     """
 
     name: str
@@ -78,7 +79,7 @@ class HiddenPlant:
 
     @property
     def servo(self) -> dict[str, ServoGains]:
-        """As recordings state it; damping within and beside the limit in one."""
+        """Servo gains as recordings state them: damping and back-EMF in one number."""
         damping = self.kd_nm_s_rad + self.back_emf_nm_s_rad
         rows = zip(self.kp_nm_rad, damping, self.max_torque_nm, strict=True)
         gains = [ServoGains(*map(float, row)) for row in rows]
@@ -95,7 +96,7 @@ class HiddenPlant:
         return self.joints.index(name)
 
     def with_gains(self, stiffness: float, damping: float = 1.0) -> "HiddenPlant":
-        """The same robot with other servo gains, which are known.
+        """The same robot with other nominal servo gains.
 
         Args:
           stiffness: factor of all kp.
@@ -163,7 +164,7 @@ def _so101() -> HiddenPlant:
 
 
 def so101_urdf() -> str:
-    """The arm without meshes and gripper joint, with the rotors in its links.
+    """URDF of the SO-101 arm without meshes and gripper joint, rotors in its links.
 
     Raises:
       BadValueError: the files of example-robot-data are not installed.
@@ -185,7 +186,12 @@ def so101_urdf() -> str:
 
 
 def described_hidden_plant(description: Description, floating: bool) -> HiddenPlant:
-    """The nominal robot of a description."""
+    """The nominal robot of a description.
+
+    Args:
+      description: the robot.
+      floating: whether its base is free.
+    """
 
     def make() -> "mujoco.MjSpec":
         spec = mujoco_spec(description)

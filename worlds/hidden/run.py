@@ -15,7 +15,7 @@ from worlds.hidden.engine import BodySense, HiddenEngine
 from worlds.hidden.plant import HiddenPlant
 from worlds.observation import up_z
 from worlds.real.engines import hidden_engine
-from worlds.sim.start_height import Standing
+from worlds.sim.start_height import StartHeight
 
 Feed = Callable[[int, BodySense], FloatArray]
 """(j,) command of a tick, from the tick's number and the sensors' readings."""
@@ -73,7 +73,7 @@ def run_hidden(
     height_m = 0.0
     if plant.description is not None and ground is not None:
         height_m = float(
-            Standing(plant.description).heights_m(start_rad[None], [ground])[0]
+            StartHeight(plant.description).heights_m(start_rad[None], [ground])[0]
         )
     world.reset(start_rad, height_m)
     try:

@@ -1,1 +1,1 @@
-"""The uneven world: PyBullet."""
+"""The uneven world: PyBullet, robots spread over processes (`RealWorld`)."""

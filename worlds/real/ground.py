@@ -6,7 +6,8 @@ import numpy as np
 
 from terrain import Heightfield
 
-QUARTER_TURN = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))  # +90 degrees about z
+QUARTER_TURN = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
+"""Quaternion x, y, z, w of a turn by +90 degrees about the vertical."""
 
 
 def load_ground(client_id: int, field: Heightfield) -> int:

@@ -8,9 +8,10 @@ the same robot without contacts takes the same step, and what its motors gave ov
 that step, force at the start plus damping times the change of velocity, is the torque.
 So there is one implementation of the motor, MuJoCo's.
 
-A twin without contacts would believe that a standing leg flies up, and damp that. So
-it gets the generalised contact force of the step before, known from how the robot's
-velocity differed from the twin's: f = M (v - v_twin) / dt.
+A twin without contacts would compute that a standing leg flies up, and damp that
+motion. Therefore it gets the generalised contact force of the step before, which
+follows from the difference of the robot's and the twin's velocities:
+f = M (v - v_twin) / dt.
 """
 
 import numpy as np
@@ -22,7 +23,7 @@ from worlds.world import WorldOptions
 
 
 class ServoTwin:
-    """One robot's motors."""
+    """The motors of one robot in an engine that only takes joint torques."""
 
     def __init__(self, description: Description, options: WorldOptions) -> None:
         """Make the model without ground.
@@ -70,7 +71,7 @@ class ServoTwin:
             frame; unused if fixed.
           position_rad: (joints,) where the joints are.
           velocity_rad_s: (joints,) how fast they move.
-          command_rad: (joints,) where they shall go.
+          command_rad: (joints,) position targets.
         """
         data, model = self._data, self._model
         velocity = velocity_rad_s

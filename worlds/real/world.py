@@ -15,7 +15,7 @@ from worlds.observation import Observation, Truth
 from worlds.real.hidden_robot import check_hidden
 from worlds.real.worker import serve, state_columns
 from worlds.rollouts import RolloutWorld, Schedule
-from worlds.sim.start_height import Standing
+from worlds.sim.start_height import StartHeight
 from worlds.world import TICK_S, WorldOptions
 
 _PATIENCE_S = 5.0
@@ -54,7 +54,8 @@ class RealWorld(RolloutWorld):
             there.close()
             self._connections.append(here)
             self.processes.append(process)
-        # Not as arguments: `start` hangs if a process ends before it has read them.
+        # Sent, not passed as arguments: `start` would hang if a process ended before
+        # it had read them.
         self._send(
             [
                 (description, [self._grounds[i] for i in share], options)
@@ -62,7 +63,7 @@ class RealWorld(RolloutWorld):
             ]
         )
         self._columns = state_columns(len(description.joints))
-        self._standing = Standing(description)
+        self._start_height = StartHeight(description)
 
     def close(self) -> None:
         """End the processes."""
@@ -77,7 +78,7 @@ class RealWorld(RolloutWorld):
         self._connections, self.processes = [], []
 
     def _start(self, pose_rad: FloatArray) -> None:
-        heights_m = self._standing.heights_m(pose_rad, self._grounds)
+        heights_m = self._start_height.heights_m(pose_rad, self._grounds)
         self._exchange(
             [("start", pose_rad[share], heights_m[share]) for share in self._shares]
         )
@@ -95,7 +96,7 @@ class RealWorld(RolloutWorld):
         )
 
     def _exchange(self, messages: list[tuple[object, ...]]) -> None:
-        """Send each process its message, and keep the rows that they answer."""
+        """Send each process its message, and keep the rows of their answers."""
         self._send(messages)
         with self._closed_if_one_ended():
             self._rows = np.concatenate([c.recv() for c in self._connections])

@@ -1,1 +1,1 @@
-"""The deterministic world: MuJoCo."""
+"""The deterministic world: MuJoCo, many robots in one batch (`SimWorld`)."""

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     import mujoco
 
 ROOT_QPOS, ROOT_QVEL = 7, 6
+"""Numbers of a floating base in MuJoCo's position and velocity vectors."""
 _BASE_THICKNESS_M = 1.0
+"""Thickness of a heightfield below its lowest point: thick enough that no foot gets
+through in one step."""
 
 
 def mujoco_model(
@@ -41,7 +44,7 @@ def mujoco_model(
 def world_spec(
     description: Description, options: WorldOptions, grounds: Sequence[Heightfield]
 ) -> "mujoco.MjSpec":
-    """The robot on all of some grounds, before it is compiled.
+    """The robot on several grounds at once, as a specification that can be edited.
 
     Args:
       description: the robot.
@@ -50,10 +53,10 @@ def world_spec(
     """
     import mujoco
 
-    quiet_mujoco()  # worlds tell what blew up
+    quiet_mujoco()  # worlds report a blow-up themselves
     spec = mujoco_spec(description)
     spec.option.timestep = options.timestep_s
-    # A diverged robot shall show its NaN, not start again in silence.
+    # A diverged robot must show its NaN instead of starting again unnoticed.
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     spec.compiler.discardvisual = True
     if options.fixed_base:
@@ -68,12 +71,18 @@ def world_spec(
 
 
 def ground_name(number: int) -> str:
-    """Name of a ground's geom, by the ground's number."""
+    """Name of the geom of a ground, given by its number from 0."""
     return f"ground_{number}" if number else "ground"
 
 
 def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
-    """Add a heightfield to a specification, a plane where it is flat."""
+    """Add ground to a specification: a plane if it is flat, else a heightfield.
+
+    Args:
+      spec: a `mujoco.MjSpec`; changed.
+      ground: heights in the world frame.
+      name: of the geom.
+    """
     import mujoco
 
     if ground.is_flat:
@@ -107,7 +116,7 @@ def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
 
 
 def touch_shares(description: Description) -> FloatArray:
-    """(touch sensors, 8): how the contact points' forces reach the foot sensors."""
+    """(touch sensors, 8) shares of each contact point's force in each foot sensor."""
     left, right = (contact_shares(foot) for foot in description.feet)
     shares = np.zeros((len(left) + len(right), 8))
     shares[: len(left), :4], shares[len(left) :, 4:] = left, right

@@ -1,4 +1,4 @@
-"""How high a torso is when its robot stands."""
+"""The height of the torso at which a robot stands on its ground."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from worlds.sim.model import ROOT_QPOS, mujoco_model
 from worlds.world import WorldOptions
 
 
-class Standing:
+class StartHeight:
     """Finds the height at which an upright robot's lower sole just touches."""
 
     def __init__(self, description: Description) -> None:

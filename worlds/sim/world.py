@@ -17,7 +17,7 @@ from worlds.sim.model import (
     mujoco_model,
     touch_shares,
 )
-from worlds.sim.start_height import Standing
+from worlds.sim.start_height import StartHeight
 from worlds.world import TICK_S, WorldOptions
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class SimWorld(RolloutWorld):
     ) -> None:
         """Compile a model for each distinct ground, and make the batch."""
         if options.hidden:
-            raise BadValueError("a sim has no hidden physics; see the real world")
+            raise BadValueError("a sim has no hidden physics; only the real world can")
         super().__init__(description, grounds, seeds, options)
         self._batch = self._made_batch()
         self._qpos = self._batch.bind("qpos")
@@ -52,13 +52,13 @@ class SimWorld(RolloutWorld):
         self._shares = touch_shares(description)
         self._joints = slice(0 if options.fixed_base else ROOT_QPOS, None)
         self._speeds = slice(0 if options.fixed_base else ROOT_QVEL, None)
-        self._standing = Standing(description)
+        self._start_height = StartHeight(description)
 
     def close(self) -> None:
-        """Nothing to give back."""
+        """Nothing has to be freed."""
 
     def _made_batch(self) -> "Batch":
-        """The simulations, each robot's with its own ground."""
+        """One simulation per robot, each with the robot's own ground."""
         from mujoco.batch import Batch
 
         models = {
@@ -78,7 +78,7 @@ class SimWorld(RolloutWorld):
     def _start(self, pose_rad: FloatArray) -> None:
         self._batch.reset()
         self._qpos[:, self._joints] = pose_rad
-        self._start_height_m = self._standing.heights_m(pose_rad, self._grounds)
+        self._start_height_m = self._start_height.heights_m(pose_rad, self._grounds)
         if not self.options.fixed_base:
             self._qpos[:, 2] = self._start_height_m
         self._ctrl[:] = pose_rad
@@ -90,7 +90,7 @@ class SimWorld(RolloutWorld):
             self._run(steps)
 
     def _run(self, steps: int) -> None:
-        """Physics of the active robots; what blows up becomes NaN."""
+        """Compute physics steps of the active robots; those that blow up become NaN."""
         from mujoco.batch import SimulationError
 
         try:

@@ -4,9 +4,8 @@ import math
 
 import pytest
 
-from worlds.hidden.effects.dry_friction import DryFriction
+from worlds.hidden.effects.dry_friction import DryFriction, SoftBristles
 from worlds.hidden.effects.kind import StiffContact
-from worlds.hidden.effects.lugre_hysteresis import SoftBristles
 
 INERTIA, STEP_S = 0.05, 0.00025
 CONTACT = StiffContact(INERTIA, STEP_S)

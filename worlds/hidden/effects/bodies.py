@@ -10,16 +10,6 @@ from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
 if TYPE_CHECKING:
     from worlds.hidden.plant import HiddenPlant
 
-_KINDS = frozenset({"payload_mass", "com_offset", "armature"})
-
-
-def _others(plant: "HiddenPlant", name: str) -> frozenset[str]:
-    """The other kinds of this file where a robot has one joint.
-
-    A single joint only shows one weight and one inertia.
-    """
-    return _KINDS - {name} if len(plant.joints) == 1 else frozenset()
-
 
 def _weight_shows(plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
     """Whether the motion shows a change of a body's weight.
@@ -33,7 +23,15 @@ def _weight_shows(plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
     return scales.feels_weight(spot.body)
 
 
-class Armature(HiddenKind):
+class _Weight(HiddenKind):
+    """A kind that changes what a joint has to carry or to accelerate."""
+
+    def cancels(self, plant: "HiddenPlant") -> bool:
+        """A single joint only shows one weight and one inertia."""
+        return len(plant.joints) == 1
+
+
+class Armature(_Weight):
     """A rotor behind the gear adds to the joint's inertia."""
 
     name = "armature"
@@ -41,6 +39,7 @@ class Armature(HiddenKind):
     quantities = (Quantity("inertia", "kg m^2", 0.0),)
     engines = ("mujoco",)
     needs_motion = True
+    apart = ("payload_mass", "com_offset")
 
     def change_part(self, part: Any, values: Values) -> None:
         """Add to the joint's armature; Bullet's joints have none."""
@@ -50,18 +49,15 @@ class Armature(HiddenKind):
         """From 0.1 to 3 times the inertia that the joint moves."""
         return {"inertia": s.part(3, 0.1) * float(s.scales.inertia_kg_m2[s.joint])}
 
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """A single joint only shows one weight and one inertia."""
-        return _others(plant, self.name)
 
-
-class PayloadMass(HiddenKind):
+class PayloadMass(_Weight):
     """A body carries an extra mass at its centre of mass."""
 
     name = "payload_mass"
     rank = 16
     place = "body"
     quantities = (Quantity("mass", "kg", 0.0, 1000.0),)
+    apart = ("com_offset", "armature")
 
     def change_part(self, part: Any, values: Values) -> None:
         """Add to the body's mass."""
@@ -75,18 +71,15 @@ class PayloadMass(HiddenKind):
         """The weight has to be felt."""
         return _weight_shows(plant, scales, spot)
 
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """A single joint only shows one weight and one inertia."""
-        return _others(plant, self.name)
 
-
-class ComOffset(HiddenKind):
+class ComOffset(_Weight):
     """A body's centre of mass is not where the model has it."""
 
     name = "com_offset"
     rank = 17
     place = "body"
     quantities = tuple(Quantity(axis, "m", -1.0, 1.0) for axis in "xyz")
+    apart = ("payload_mass", "armature")
 
     def change_part(self, part: Any, values: Values) -> None:
         """Shift the centre of mass in the body's frame."""
@@ -110,7 +103,3 @@ class ComOffset(HiddenKind):
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
         """The weight has to be felt."""
         return _weight_shows(plant, scales, spot)
-
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """A single joint only shows one weight and one inertia."""
-        return _others(plant, self.name)

@@ -1,4 +1,4 @@
-"""Dry friction with true sticking: Coulomb's, Stribeck's, and that of a loaded gear."""
+"""Dry friction with true sticking (Coulomb, Stribeck, loaded gears), and LuGre's."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from worlds.hidden.effects.kind import (
 from worlds.hidden.setting import Setting
 
 if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
+    pass
 
 RIGID_NM_RAD = 3000.0
 """Stiffness of surfaces that stick and of gear teeth that touch: under a servo's torque
@@ -77,6 +77,7 @@ class CoulombFriction(HiddenKind):
     rank = 2
     quantities = (Quantity("torque", "N m", 0.0),)
     needs_motion = True
+    apart = ("stribeck_friction",)  # which has a Coulomb part of its own
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Constant while the joint slides."""
@@ -85,10 +86,6 @@ class CoulombFriction(HiddenKind):
     def size(self, s: Setting) -> dict[str, float]:
         """From 1 % to 15 % of the servo's torque."""
         return {"torque": s.part(0.15, 0.01) * s.torque_nm}
-
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """Stribeck friction has a Coulomb part of its own."""
-        return frozenset({"stribeck_friction"})
 
 
 class StribeckFriction(HiddenKind):
@@ -102,6 +99,7 @@ class StribeckFriction(HiddenKind):
         Quantity("speed", "rad/s", 1e-6),
     )
     needs_motion = True
+    apart = ("coulomb_friction",)  # which is a part of it
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Sliding torque coulomb + extra exp(-(v / speed)^2)."""
@@ -126,10 +124,6 @@ class StribeckFriction(HiddenKind):
             "speed": math.exp(part) * s.speed_rad_s,
         }
 
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """Coulomb friction is a part of it."""
-        return frozenset({"coulomb_friction"})
-
 
 class LoadFriction(HiddenKind):
     """Dry friction in proportion to the torque that the servo transmits."""
@@ -137,11 +131,62 @@ class LoadFriction(HiddenKind):
     name = "load_friction"
     rank = 4
     quantities = (Quantity("share", "1", 0.0, 1.0),)
+    sizes = (0.3, 0.03)
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Sliding torque share |servo torque|."""
         return DryFriction.of(contact, load_share=values["share"]).torque
 
+
+@dataclass
+class SoftBristles:
+    """LuGre friction (Canudas de Wit, Olsson, Astrom, Lischinsky 1995), no damping.
+
+    dz/dt = v - stiffness |v| z / F, torque = stiffness z, here with a constant F.
+
+    Attributes:
+      torque_nm: F, reached after long sliding.
+      stiffness_nm_rad: of the bristles.
+      step_s: time step.
+    """
+
+    torque_nm: float
+    stiffness_nm_rad: float
+    step_s: float
+    _bend_rad: float = 0.0
+
+    def torque(
+        self, time_s: float, angle_rad: float, speed_rad_s: float, servo_nm: float
+    ) -> float:
+        """Friction torque on the joint for the next step [N m]."""
+        rate = self.stiffness_nm_rad * abs(speed_rad_s) / self.torque_nm
+        steady = math.copysign(self.torque_nm / self.stiffness_nm_rad, speed_rad_s)
+        decay = math.exp(-rate * self.step_s)
+        self._bend_rad = steady + (self._bend_rad - steady) * decay
+        return -self.stiffness_nm_rad * self._bend_rad
+
+
+class LugreHysteresis(HiddenKind):
+    """Friction that acts as a spring at first and slides only after some degrees."""
+
+    name = "lugre_hysteresis"
+    rank = 27
+    quantities = (
+        Quantity("torque", "N m", 1e-6),
+        Quantity("stiffness", "N m/rad", 1e-6),
+    )
+    outside = True
+
+    def torque(self, values: Values, contact: StiffContact) -> JointTorque:
+        """See `SoftBristles`."""
+        return SoftBristles(
+            values["torque"], values["stiffness"], contact.step_s
+        ).torque
+
     def size(self, s: Setting) -> dict[str, float]:
-        """From 3 % to 30 %."""
-        return {"share": s.part(0.3, 0.03)}
+        """From 5 % to 30 % of the servo's torque, reached after 0.03 to 0.12 rad."""
+        torque = s.part(0.3, 0.05) * s.torque_nm
+        return {
+            "torque": torque,
+            "stiffness": torque / float(s.rng.uniform(0.03, 0.12)),
+        }

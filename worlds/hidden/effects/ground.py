@@ -29,14 +29,11 @@ class ContactFriction(_UnderFeet):
     rank = 21
     place = "feet"
     quantities = (Quantity("coefficient", "1", 0.0, 10.0),)
+    sizes = (0.2, 0.6)
 
     def sole_friction(self, values: Values) -> float:
         """The coefficient."""
         return values["coefficient"]
-
-    def size(self, s: Setting) -> dict[str, float]:
-        """From 0.6 down to 0.2, where robots slip."""
-        return {"coefficient": s.part(0.2, 0.6)}
 
 
 class ContactCompliance(_UnderFeet):
@@ -50,6 +47,7 @@ class ContactCompliance(_UnderFeet):
         Quantity("damping", "N s/m", 0.0, default=math.nan),
     )
     engines = ("bullet",)
+    sizes = (3000.0, 40000.0)
 
     def foot_spring(self, values: Values, mass_kg: float) -> FootSpring:
         """The spring; where no damping is given, a tenth of the critical one."""
@@ -58,10 +56,6 @@ class ContactCompliance(_UnderFeet):
             # Each foot carries half of the robot.
             damping = DAMPING_RATIO * 2 * np.sqrt(stiffness * (mass_kg / 2))
         return FootSpring(stiffness, float(damping))
-
-    def size(self, s: Setting) -> dict[str, float]:
-        """From 40000 down to 3000 N/m."""
-        return {"stiffness": s.part(3000.0, 40000.0)}
 
 
 class GroundSlope(HiddenKind):
@@ -99,11 +93,8 @@ class UnevenGround(_UnderFeet):
     rank = 24
     place = "world"
     quantities = (Quantity("height", "m", 0.0, 0.1),)
+    sizes = (0.008, 0.0007)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
         """Bumps of this height, or those that are there if they are higher."""
         surroundings.bumps_m = max(surroundings.bumps_m, values["height"])
-
-    def size(self, s: Setting) -> dict[str, float]:
-        """From 0.7 to 8 mm."""
-        return {"height": s.part(0.008, 0.0007)}

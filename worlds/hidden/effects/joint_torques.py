@@ -27,6 +27,7 @@ class ViscousFriction(HiddenKind):
     rank = 1
     quantities = (Quantity("coefficient", "N m s/rad", 0.0),)
     needs_motion = True
+    apart = ("servo_damping",)
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """-coefficient v."""
@@ -37,10 +38,9 @@ class ViscousFriction(HiddenKind):
         """From 2 % to 20 % of the servo's torque at the highest speed."""
         return {"coefficient": s.part(0.2, 0.02) * s.torque_nm / s.speed_rad_s}
 
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+    def cancels(self, plant: "HiddenPlant") -> bool:
         """Where all damping is back-EMF, less of it and viscous friction cancel."""
-        cancel = not plant.kd_nm_s_rad.any()
-        return frozenset({"servo_damping"} if cancel else ())
+        return not plant.kd_nm_s_rad.any()
 
 
 class JointSpring(HiddenKind):

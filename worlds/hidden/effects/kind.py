@@ -97,6 +97,9 @@ class HiddenKind:
       outside: whether the diagnosis has no effect of this name.
       engines: that can compute it.
       needs_motion: whether a joint shows it only while the joint moves.
+      apart: kinds that are never drawn into the same case, if `cancels` says so.
+      sizes: the only parameter of an effect that is easy and of one that is hard to
+        see in concealed cases; kinds whose size depends on more override `size`.
     """
 
     name: ClassVar[str]
@@ -106,6 +109,8 @@ class HiddenKind:
     outside: ClassVar[bool] = False
     engines: ClassVar[tuple[str, ...]] = ("bullet", "mujoco")
     needs_motion: ClassVar[bool] = False
+    apart: ClassVar[tuple[str, ...]] = ()
+    sizes: ClassVar[tuple[float, float]]
 
     @property
     def parameters(self) -> dict[str, Quantity]:
@@ -149,7 +154,7 @@ class HiddenKind:
 
     def size(self, s: Setting) -> dict[str, float]:
         """Parameters of an effect that is as easy to see as the setting says."""
-        raise NotImplementedError(f"no size is stated for {self.name}")
+        return {self.quantities[0].name: s.part(*self.sizes)}
 
     def possible(self, plant: "HiddenPlant") -> bool:
         """Whether the robot can have this effect and distinguish it from all others."""
@@ -159,9 +164,9 @@ class HiddenKind:
         """Whether the motion shows this effect at a spot, unlike all other effects."""
         return True
 
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """Names of kinds that are never drawn into the same case as this one."""
-        return frozenset()
+    def cancels(self, plant: "HiddenPlant") -> bool:
+        """Whether the kinds in `apart` cannot be distinguished from this on a robot."""
+        return True
 
     def spots(
         self, plant: "HiddenPlant", scales: Scales, joints: Sequence[int]

@@ -9,7 +9,7 @@ from worlds.hidden.setting import Setting
 from worlds.hidden.transmission import Transmission
 
 if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
+    pass
 
 
 class Backlash(HiddenKind):
@@ -18,19 +18,13 @@ class Backlash(HiddenKind):
     name = "backlash"
     rank = 5
     quantities = (Quantity("gap", "rad", 0.0, 0.5),)
+    sizes = (0.06, 0.003)
+    apart = ("joint_elasticity",)  # a joint has play or a spring
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
         """Teeth that are rigid, or as stiff as the time step allows."""
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return Transmission(stiffness, 0.0, values["gap"], contact.step_s)
-
-    def size(self, s: Setting) -> dict[str, float]:
-        """From 0.003 to 0.06 rad."""
-        return {"gap": s.part(0.06, 0.003)}
-
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """A joint has play or a spring."""
-        return frozenset({"joint_elasticity"})
 
 
 class JointElasticity(HiddenKind):
@@ -42,6 +36,7 @@ class JointElasticity(HiddenKind):
         Quantity("stiffness", "N m/rad", 0.0),
         Quantity("damping", "N m s/rad", 0.0),
     )
+    apart = ("backlash",)  # a joint has play or a spring
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
         """A spring without play."""
@@ -61,7 +56,3 @@ class JointElasticity(HiddenKind):
             "stiffness": stiffness,
             "damping": float(s.rng.uniform(0.01, 0.05) * critical),
         }
-
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
-        """A joint has play or a spring."""
-        return frozenset({"backlash"})

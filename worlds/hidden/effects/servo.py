@@ -98,6 +98,7 @@ class ServoDamping(HiddenKind):
     name = "servo_damping"
     rank = 14
     quantities = (Quantity("factor", "1", 0.0, 10.0),)
+    apart = ("viscous_friction",)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
         """Multiply kd and the back-EMF constant."""
@@ -113,10 +114,9 @@ class ServoDamping(HiddenKind):
         sign = s.sign if s.plant.kd_nm_s_rad[s.joint] > 0 else -1.0
         return {"factor": 1.0 + sign * part}
 
-    def apart(self, plant: "HiddenPlant") -> frozenset[str]:
+    def cancels(self, plant: "HiddenPlant") -> bool:
         """Where all damping is back-EMF, less of it and viscous friction cancel."""
-        cancel = not plant.kd_nm_s_rad.any()
-        return frozenset({"viscous_friction"} if cancel else ())
+        return not plant.kd_nm_s_rad.any()
 
 
 class ServoFade(HiddenKind):

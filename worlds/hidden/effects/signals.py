@@ -17,14 +17,11 @@ class CommandLatency(HiddenKind):
     rank = 7
     place = "commands"
     quantities = (Quantity("delay", "s", 0.0, 0.5),)
+    sizes = (0.06, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
         """Add to the delay."""
         surroundings.command_delay_s += values["delay"]
-
-    def size(self, s: Setting) -> dict[str, float]:
-        """From 2 to 60 ms."""
-        return {"delay": s.part(0.06, 0.002)}
 
 
 class SensorDelay(HiddenKind):
@@ -34,14 +31,11 @@ class SensorDelay(HiddenKind):
     rank = 8
     place = "encoders"
     quantities = (Quantity("delay", "s", 0.0, 0.5),)
+    sizes = (0.04, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
         """Add to the delay."""
         surroundings.encoder_delay_s += values["delay"]
-
-    def size(self, s: Setting) -> dict[str, float]:
-        """From 2 to 40 ms."""
-        return {"delay": s.part(0.04, 0.002)}
 
     def possible(self, plant: "HiddenPlant") -> bool:
         """On a fixed base late readings cannot be distinguished from late commands."""
