@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 STANDS_FOR = {"DIR": "set", "FOLDER": "data", "NAME": "nao", "RECORDING...": "air.csv"}
 STANDS_FOR["GAIT..."] = "start"
-LONG = ("tune_gait(", "run_diagnosis(", "Grounding(")
+LONG = ("tune_gait(", "run_diagnosis(", "GroundingStep(")
 """What no test waits for: the examples' tests do it in a small size."""
 
 QUICK = (
@@ -66,10 +66,11 @@ def prepared(tmp_path, monkeypatch):
     """A folder that has what the commands speak of."""
     monkeypatch.chdir(tmp_path)
     found = {"format": 1, "robot": "nao", "base": "fixed", "native": [], "per_tick": []}
-    path = tmp_path / "runs" / "of-a-nao" / "corrected.json"
-    path.parent.mkdir(parents=True)
-    path.write_text(json.dumps(found))
-    for run in ("runs/mine", "runs/g1", "docs/results/walk"):
+    for run in ("of-a-nao", "knee"):
+        path = tmp_path / "runs" / run / "corrected.json"
+        path.parent.mkdir(parents=True)
+        path.write_text(json.dumps(found))
+    for run in ("runs/mine", "runs/g1", "runs/lumps", "docs/results/walk"):
         gaits.get("start").save(tmp_path / run / "result.json")
     for room in ("robots", "experiments"):
         monkeypatch.syspath_prepend(ROOT / "tests" / room)
@@ -81,7 +82,8 @@ def prepared(tmp_path, monkeypatch):
     (tmp_path / "my_robot.urdf").write_text(two_legged())
     (tmp_path / "set" / "cases").mkdir(parents=True)
     (tmp_path / "data").mkdir()
-    (tmp_path / "data" / "air.parquet").touch()
+    for recording in ("data/air.parquet", "runs/air.parquet"):
+        (tmp_path / recording).touch()
     return tmp_path
 
 

@@ -22,7 +22,7 @@ from sgat.tabular.planning import action_values, policy_iteration
 from sgat.tabular.rollouts import roll_out
 
 VERB = "transfer-toy"
-TITLE = "Toy worlds: does planning in a grounded sim find what is best on real?"
+TITLE = "Toy worlds: does planning in a grounded sim find the best action?"
 COLUMNS = (
     "real world", "planned in", "values of a1, a2, ...", "best", "in the paper",
     "from counts", "worth on real",
@@ -85,7 +85,7 @@ def _answer(toys: Mapping[str, Any]) -> str:
         for world in found:
             found[world] += best[world] == best["real"]
     said = [f"in {count} when grounded by {name}" for name, count in found.items()]
-    said[0] = f"in {found['sim']} as it is"
+    said[0] = f"in {found['sim']} without grounding"
     return (
         f"In {len(toys)} toy worlds, planning in the sim finds the action that is best "
         f"in the real world: {', '.join(said)}."

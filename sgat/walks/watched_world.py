@@ -80,7 +80,7 @@ class WatchedWorld(WorldWrapper):
         senses, walking = self._senses, self.active
         self._noise = self._next_noise()
         state = senses.state()
-        # Added to the command, not to the action: no noise shall change no bit.
+        # Added to the command and not to the action, so that zero noise changes no bit.
         given_rad = command_rad.copy()
         given_rad[:, senses.joints] += self._noise
         action = senses.action(given_rad)

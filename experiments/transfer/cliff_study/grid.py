@@ -7,26 +7,28 @@ from groundwalk.errors import BadValueError
 from sgat.tabular.mdp import FiniteMdp
 
 MOVES = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
-"""Rows and columns that each action goes; in the paper's order."""
+"""Change of row and column by each action, in the SGAT paper's order."""
 
 GOAL, CLIFF, STEP = 100.0, -10.0, -0.1
-"""Rewards of the paper; every step has its price, the last one included."""
+"""Rewards of the SGAT paper: for the goal, for the cliff, and for every step, also
+the last one."""
 
 LEAST_ROWS, LEAST_COLUMNS = 2, 3
+"""Smallest grid that has a cliff."""
 
 
 def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
-    """The grid world of the paper's figures on cliff walking.
+    """The grid world of the SGAT paper's figures on cliff walking.
 
-    Cell (row, column) is state row * columns + column, the first row on top. Episodes
-    begin bottom left and end on the goal bottom right, or in the cliff: all of the
-    bottom row between the two. A move into a wall has no effect.
+    Cell (row, column) is state row * columns + column, with the first row on top.
+    Episodes begin at the bottom left. They end at the goal, bottom right, or in the
+    cliff: the cells of the bottom row in between. A move into a wall has no effect.
 
     Args:
-      rows: of the grid.
-      columns: of the grid.
-      noise: at each step, chance that the move is a random one of the four instead of
-        the chosen one. Without noise it is the simulator.
+      rows: rows of the grid.
+      columns: columns of the grid.
+      noise: probability, at each step, that the move is a random one of the four
+        instead of the chosen one. Without noise this world is the simulator.
 
     Raises:
       BadValueError: there is no room for a cliff, or noise is no probability.
@@ -54,14 +56,14 @@ def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
 
 
 def intended_path(sim: FiniteMdp, policy: IntArray) -> list[int]:
-    """The states that a policy goes through where no move is random.
+    """The states that a policy passes if no move is random.
 
     Args:
       sim: a deterministic world.
       policy: (S,) actions.
 
     Returns:
-      States from the start to an end, or to the first one that is met again.
+      States from the start to an end, or to the first state that is visited twice.
     """
     path = [sim.start]
     while not sim.ends[path[-1]] and path[-1] not in path[:-1]:

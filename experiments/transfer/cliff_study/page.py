@@ -1,4 +1,4 @@
-"""Cliff walking as tables and a page."""
+"""Tables and page of cliff walking."""
 
 from collections.abc import Sequence
 
@@ -11,31 +11,31 @@ from sgat.tabular.rollouts import STEP_LIMIT
 
 TITLE = "Cliff walking: what policies return in a real world of random moves"
 NOTES = """
-The grid has {rows} x {columns} cells. The paper does not tell the size of its own; the
+The grid has {rows} x {columns} cells. The paper does not state the size of its own; the
 default is that of Sutton and Barto (Reinforcement Learning, example 6.6). The goal pays
 100, the cliff -10, and both end the episode; each step costs 0.1, and nothing is
-discounted. Noise is the chance that a move is a random one of the four. Returns are
-means of {episodes} episodes with their standard errors; all methods share their random
-numbers. Exact returns follow from the transition probabilities. Episodes are cut after
-{limit} steps; here {cut} were.
+discounted. Noise is the probability that a move is a random one of the four. Returns
+are means of {episodes} episodes with their standard errors; all methods share their
+random numbers. Exact returns follow from the transition probabilities. Episodes are cut
+after {limit} steps; here {cut} were.
 
 GAT and SGAT ground and plan (policy iteration) until {calm} grounding steps in a row
 gain no more than {gain:g}. Each step plays {real_episodes} real episodes with the
 current policy and {exploration:.0%} random actions. All transitions so far are counted;
-where fewer than {known_after} were seen of a state and action, the sim is believed. GAT
-takes the likeliest next state, SGAT samples it. No grounding plans in the sim, optimum
-in the real world itself. Of equally good actions the first of up, down, left and right
-counts.
+where fewer than {known_after} of a state and action were seen, the sim's table is used.
+GAT takes the most likely next state, SGAT samples it. "No grounding" plans in the sim,
+"optimum" in the real world itself. Of equally good actions the first of up, down, left
+and right is taken.
 """
 
 
 def returns_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows: mean returns with their standard errors."""
+    """Headings and rows of mean returns with their standard errors."""
     return _table(rows, "{mean:.2f} ± {standard_error:.2f}")
 
 
 def _table(rows: Sequence[Row], form: str) -> tuple[list[str], list[list[str]]]:
-    """A column for each method."""
+    """Headings and rows, with a column for each method."""
     texts = [
         [f"{row['noise']:g}"]
         + [form.format_map(row["methods"][name]) for name in METHODS]
@@ -63,7 +63,14 @@ def _data_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
 def write_cliff_page(
     folder: RunFolder, study: CliffStudy, rows: Sequence[Row], claims: Sequence[Claim]
 ) -> None:
-    """Write `result.md` into the run's folder, which has the figure already."""
+    """Write `result.md` and `report.html`; the figure is in the folder already.
+
+    Args:
+      folder: of the run.
+      study: how the methods were compared.
+      rows: results for each noise value.
+      claims: the paper's claims, checked.
+    """
     cut = sum(method["cut"] for row in rows for method in row["methods"].values())
     notes = NOTES.format(
         rows=study.rows,
@@ -85,5 +92,10 @@ def write_cliff_page(
         *markdown_table(*_table(rows, "{exact:.3f}")),
         "",
     ]
-    body += ["What the grounding took:", "", *markdown_table(*_data_table(rows)), ""]
+    body += [
+        "Grounding steps, and real transitions that they needed:",
+        "",
+        *markdown_table(*_data_table(rows)),
+        "",
+    ]
     write_transfer_page(folder, TITLE, claims, [*body, notes.strip()])

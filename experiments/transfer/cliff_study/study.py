@@ -1,4 +1,4 @@
-"""One real world of cliff walking: what each method's policy returns there."""
+"""Cliff walking in one real world: each method's policy and its return there."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,12 +14,14 @@ from sgat.tabular.planning import expected_return, policy_iteration
 from sgat.tabular.rollouts import STEP_LIMIT, roll_out
 
 UNGROUNDED, GAT, SGAT, OPTIMUM = METHODS = ("no grounding", "GAT", "SGAT", "optimum")
-"""Planned in the sim, in the sim grounded by either, and in the real world itself."""
+"""Methods: planned in the sim, in the sim grounded by GAT or by SGAT, and in the
+  real world itself."""
 
 SAMPLES = {GAT: False, SGAT: True}
+"""Whether a grounding samples next states; see `grounded_sim`."""
 
 Row = dict[str, Any]
-"""A `noise` value, and what came of each of its `methods`."""
+"""Results for one `noise` value: numbers of each of its `methods`."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +29,10 @@ class CliffStudy:
     """How methods are compared.
 
     Attributes:
-      rows: of the grid.
-      columns: of the grid.
-      episodes: in the real world, of each policy.
-      loop: of grounding and planning.
+      rows: rows of the grid.
+      columns: columns of the grid.
+      episodes: real episodes in which each policy is tried.
+      loop: settings of grounding and planning.
     """
 
     rows: int
@@ -39,19 +41,20 @@ class CliffStudy:
     loop: TabularLoop
 
     def __post_init__(self) -> None:
-        """Refuse grids without a cliff, and returns without a standard error."""
+        """Refuse grids without a cliff, and too few episodes for a standard error."""
         cliff_walking(self.rows, self.columns)
         if self.episodes < 2:
             raise BadValueError(f"episodes is {self.episodes}; it must be at least 2")
 
 
 def compare(study: CliffStudy, noise: float, seed: np.random.SeedSequence) -> Row:
-    """Find each method's policy, and let it walk in the real world.
+    """Find each method's policy, and try it in the real world.
 
     Args:
-      study: how.
-      noise: of the real world.
-      seed: of its luck. All methods have the same: what differs is what they do.
+      study: the grid, and how much is tried.
+      noise: probability of a random move in the real world.
+      seed: of the real world's outcomes; all methods get the same random numbers, so
+        that differences come from the methods.
     """
     of_data, of_trials = seed.spawn(2)
     sim = cliff_walking(study.rows, study.columns)
@@ -67,10 +70,10 @@ def compare(study: CliffStudy, noise: float, seed: np.random.SeedSequence) -> Ro
     policies[OPTIMUM] = policy_iteration(real)
     methods = {}
     for name, policy in policies.items():
-        luck = np.random.default_rng(of_trials)
+        generator = np.random.default_rng(of_trials)
         path = np.divmod(intended_path(sim, policy), study.columns)
         methods[name] = {
-            **_returns(real, policy, study.episodes, luck),
+            **_returns(real, policy, study.episodes, generator),
             "path": np.transpose(path).tolist(),
         }
     for name, found in settled.items():
@@ -83,9 +86,9 @@ def compare(study: CliffStudy, noise: float, seed: np.random.SeedSequence) -> Ro
 
 
 def _returns(
-    real: FiniteMdp, policy: IntArray, episodes: int, luck: np.random.Generator
+    real: FiniteMdp, policy: IntArray, episodes: int, generator: np.random.Generator
 ) -> dict[str, Any]:
-    trials = roll_out(real, policy, episodes, luck)
+    trials = roll_out(real, policy, episodes, generator)
     return {
         "mean": trials.mean,
         "standard_error": trials.standard_error,

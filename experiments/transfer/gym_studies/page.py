@@ -10,35 +10,37 @@ from experiments.transfer.gym_studies.rows import WAYS, measures_table, returns_
 from experiments.transfer.gym_studies.study import GymStudy
 
 NOTES = """
-The sim is {environment} as it is. Real is a sim whose actions are noisy; in the setting
-noisy-real, the mass and inertia of {heavy} are {factor:.4g} times as large, too. Noise
-is Gaussian; its standard deviation is given as a fraction of half of the action's
-range, here {unit:g}. It is added to the action, then the sum is clipped to the range.
-Returns are those of the policy's own actions, also where the reward charges for them.
+The sim is Gymnasium's {environment}. The real world is the same with noisy actions; in
+the setting noisy-real, the mass and inertia of {heavy} are also {factor:.4g} times as
+large. Noise is Gaussian; its standard deviation is given as a fraction of half of the
+action's range, here {unit:g}. It is added to the action, and the sum is clipped to the
+range. Where the reward charges for actions, it charges for the policy's own ones.
 
 TRPO (sb3-contrib) first trains {timesteps} steps in the sim: "none". All others go on
 from that policy for as many steps again, each in a world of its own: "gat" and "sgat"
-in the sim grounded by one step of the mean or of a sampled next state, "ane" in the sim
-with noise on actions, "real" in the real world. The last is an upper line only where
-that many steps are enough; the claims on it say where they are not: a policy that falls
-at once learns little from each step.
-The paper's "sgat" samples every dimension of the next state by itself, "sgat-full" all
-of them with their covariance. The noise ratio tells what that is for: noise on actions
-in the grounded sim over that of the sim's actions that would do what real did on data
-that were held out. One noisy force moves several dimensions together; where the samples
-lack that, the inverse model averages the noise away: the grounded sim is too calm.
+in the sim after one grounding step, with the mean or a sampled next state, "ane" in the
+sim with noise on actions, "real" in the real world. "real" is an upper bound only if
+that many steps are enough; the claims say where they are not: a policy that falls at
+once learns little from each step.
+The paper's "sgat" samples every dimension of the next state independently, "sgat-full"
+all of them with their covariance. The noise ratio shows the difference: it is the noise
+on actions in the grounded sim, divided by the noise of those sim actions that would
+reproduce held-out real transitions. One noisy force moves several dimensions together;
+where the samples lack that correlation, the inverse model averages the noise out, and
+the grounded sim is less noisy than the real world.
 Grounding takes {real_steps} transitions of real and {sim_steps} of the sim, by the
 stochastic policy with {real_exploration:.0%} and {sim_exploration:.0%} random actions.
-ANE trains at the levels {envelopes} and takes the
-one that returns most in {search_episodes} episodes on real; what those cost is in the
+ANE trains at the noise levels {envelopes} and takes the
+one that returns most in {search_episodes} episodes on real; their steps are in the
 table. Each policy is tried for {episodes} episodes on real, with its mean action
 (deterministic) and with random ones (stochastic). Versions 5 of these environments pay
 nothing for the step that fails, so a failed episode returns 1 less than in the paper.
 
 TRPO: {trpo}. These are the values of the grounding papers' own later code where the
 table of its domains has them; the batch and the trust region are the size's own.
-Likelihoods are per dimension, in units of the state. Bias and spread are those of what
-the transformer adds to actions in real data, in the action's unit.
+Likelihoods are per dimension, in units of the state. Bias and spread are mean and
+standard deviation of what the transformer adds to actions of real data, in the action's
+unit.
 """
 
 
@@ -67,7 +69,7 @@ def write_gym_page(
     for way in WAYS:
         body += [f"Returns on real, {way} policies, mean ± standard error over seeds:"]
         body += ["", *markdown_table(*returns_table(rows, way)), ""]
-    body += ["What it took (means over seeds):", ""]
+    body += ["Cost and quality of each method (means over seeds):", ""]
     body += [*markdown_table(*measures_table(rows)), "", _notes(study)]
     write_transfer_page(folder, title, claims, body)
 

@@ -107,7 +107,7 @@ def claims_of(cells: Sequence[Cell]) -> list[Claim]:
             f"{_walked(sgat)}",
         ),
         Claim(
-            "so does SGAT on an uneven sim",
+            "after two steps SGAT on an uneven sim does, too",
             _is_good(best),
             f"{_walked(best)}",
         ),
@@ -160,7 +160,7 @@ def write_nao_page(
         "",
         *markdown_table(HEADINGS, table_of(cells)),
         "",
-        f"{SGAT}'s noise is white, as in the paper.",
+        f"{SGAT}'s noise is white, as in the SGAT paper.",
         *_own_groundings(cells),
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
@@ -168,7 +168,7 @@ def write_nao_page(
         f"{RATED.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the ground has lumps.",
         "What a search finds is the best of its generations' mean gaits, each rated",
         f"{RATINGS} times more.",
-        "*real walks*: what the method has seen of the real world before its trials.",
+        "*real walks*: number of real walks that the method used before its trials.",
     ]
     title = "Do gaits from grounded sims hold in the real world?"
     write_transfer_page(folder, title, claims_of(cells), body, answer_of(cells))
@@ -224,7 +224,7 @@ def answer_of(cells: Sequence[Cell]) -> list[str]:
     said = f"The best gait is that of {best['method']}{step}: {_walked(best)}."
     for cell in cells:
         if cell["method"] == NONE and cell is not best:
-            said += f" The gait tuned in the sim as it is: {_walked(cell)}."
+            said += f" The gait tuned in the plain sim: {_walked(cell)}."
     return [
         said,
         f"{good} the goal of {GOAL_SPEED_CM_S:.0f} cm/s with falls in at most "
