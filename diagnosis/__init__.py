@@ -11,8 +11,9 @@ Example:
   >>> print(found.verdict.kind, [one.name for one in found.verdict.effects])
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from groundwalk.faces import lazy_face
 
 if TYPE_CHECKING:
     from diagnosis.effects.effect import Effect
@@ -46,24 +47,19 @@ __all__ = [
     "read_traces",
 ]
 
-_MODULES = {
-    "effects.effect": ("Effect",),
-    "effects.library": ("all_effects", "also_known", "effect"),
-    "effects.parts": ("Parameter", "PlacedEffect"),
-    "pipeline": ("Diagnosis", "diagnose"),
-    "plant.load": ("load_plant",),
-    "plant.plant": ("Plant",),
-    "search.hooks": ("Hooks",),
-    "search.rules": ("Rules",),
-    "traces.read": ("read_reference", "read_traces"),
-    "traces.trace": ("Trace",),
-    "verdict.verdict": ("Verdict",),
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a name of `__all__` when it is first used (PEP 562)."""
-    for module, names in _MODULES.items():
-        if name in names:
-            return getattr(importlib.import_module(f"{__name__}.{module}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_face(
+    __name__,
+    {
+        "effects.effect": ("Effect",),
+        "effects.library": ("all_effects", "also_known", "effect"),
+        "effects.parts": ("Parameter", "PlacedEffect"),
+        "pipeline": ("Diagnosis", "diagnose"),
+        "plant.load": ("load_plant",),
+        "plant.plant": ("Plant",),
+        "search.hooks": ("Hooks",),
+        "search.rules": ("Rules",),
+        "traces.read": ("read_reference", "read_traces"),
+        "traces.trace": ("Trace",),
+        "verdict.verdict": ("Verdict",),
+    },
+)

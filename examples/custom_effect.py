@@ -1,16 +1,15 @@
-"""Physics of your own: the diagnosis looks for it beside the effects that it knows.
+"""An effect of your own, which the diagnosis looks for beside the built-in effects.
 
     python examples/custom_effect.py --folder runs/water
 
 A pendulum swings in water, which brakes with the square of the speed. No effect of the
-library does that; the class below says it.
+library does that; the class below describes it.
 """
 
 from pathlib import Path
 
 import mujoco
 import numpy as np
-import tyro
 
 from diagnosis import (
     Effect,
@@ -20,7 +19,7 @@ from diagnosis import (
     diagnose,
     read_traces,
 )
-from experiments.diagnosis_report.console import print_verdict
+from experiments import print_verdict, run_script
 from worlds import Recording, RecordingMetadata, ServoGains, write_recording
 
 PENDULUM = """<mujoco><option timestep="0.001"/><worldbody><body name="rod">
@@ -39,11 +38,11 @@ class WaterDrag(Effect):
         return plant.joints
 
     def parameters(self, plant, place):
-        """c: from nothing to much, and what is worth trying first."""
+        """The coefficient c: its bounds, its value for no effect, a first guess."""
         return (Parameter("coefficient", "N m s^2/rad^2", 0.0, 5.0, 0.0, 0.1),)
 
     def apply(self, variants, row, place, values):
-        """In MuJoCo it is the second coefficient of the damping."""
+        """Set the second coefficient of MuJoCo's joint damping."""
         variants.field("dof_dampingpoly")[row, variants.dof(place), 0] += values[0]
 
 
@@ -65,11 +64,11 @@ def swing(path: Path, duration: float, seed: int) -> None:
 
 
 def main(folder: Path, duration: float = 6.0) -> Verdict:
-    """Record twice in water, and diagnose with a model that knows of none.
+    """Make two recordings in water, and diagnose them with a model without water.
 
     Args:
-      folder: gets the model and the recordings.
-      duration: of a recording [s].
+      folder: folder for the model and the recordings.
+      duration: length of a recording [s].
     """
     paths = [folder / f"swing{seed}.parquet" for seed in (1, 2)]
     for seed, path in enumerate(paths):
@@ -83,4 +82,4 @@ def main(folder: Path, duration: float = 6.0) -> Verdict:
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    run_script(main)

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import matplotlib.image
 import numpy as np
-import tyro
 
 import robots
 import worlds
-from experiments.walking.trials import TrialRules, Trials, walk_trials
+from experiments import run_script
+from experiments.walking import TrialRules, Trials, walk_trials
 from terrain import Heightfield
 from walk_engine import gaits
 
@@ -22,9 +22,9 @@ def main(
     """Walk from the middle of the left edge to the right, in the real world.
 
     Args:
-      image: a PNG; small waves where there is none.
-      height_m: of white over black.
-      limit_s: time limit.
+      image: a PNG file; without one, the ground has small waves.
+      height_m: height of white above black [m].
+      limit_s: time limit [s].
     """
     if image is None:
         grey = np.tile(0.5 + 0.5 * np.sin(np.arange(240) / 5), (120, 1))
@@ -42,4 +42,4 @@ def main(
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    run_script(main)

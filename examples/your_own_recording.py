@@ -1,35 +1,40 @@
-"""Diagnose recordings: what physics does the model lack that they show?
+"""Diagnose recordings: find the physics that they show and the model lacks.
 
     python examples/your_own_recording.py --folder runs/dirt
 
-Here they are made: a pendulum in PyBullet with dirt in its hinge. Your own are
-files of the format in docs/recordings.md; `worlds.write_recording` writes NumPy arrays.
+This example makes its own recordings: a pendulum in PyBullet with dirt in its hinge.
+Your own are files in the format of docs/recordings.md, which `worlds.write_recording`
+writes from NumPy arrays.
 """
 
 from pathlib import Path
 
-import tyro
-
 from diagnosis import Verdict
-from experiments.diagnose import Diagnose, run_diagnosis
-from experiments.diagnosis_report.console import print_verdict
-from experiments.record import Record
-from experiments.record import main as record
+from experiments import (
+    Diagnose,
+    Record,
+    make_recording,
+    print_verdict,
+    run_diagnosis,
+    run_script,
+)
 
 DIRT = "coulomb_friction@swing:torque=0.15"
 
 
 def main(folder: Path, duration: float = 8.0) -> Verdict:
-    """Record twice, diagnose, and say what was found.
+    """Make two recordings, diagnose them, and print the verdict.
 
     Args:
-      folder: gets the recordings, and the diagnosis beside them.
-      duration: of a recording [s].
+      folder: folder for the recordings and the diagnosis.
+      duration: length of a recording [s].
     """
     paths = tuple(folder / f"{motion}.parquet" for motion in ("multisine", "ramps"))
     for seed, path in enumerate(paths):
         motion = path.stem
-        record(Record(path, "pendulum", "real", motion, None, (DIRT,), duration, seed))
+        make_recording(
+            Record(path, "pendulum", "real", motion, None, (DIRT,), duration, seed)
+        )
     model = str(folder / "ramps.nominal.xml")
     found, verdict = run_diagnosis(Diagnose(paths, model, out=folder / "diagnosis"))
     print_verdict(verdict, [found.path / "report.html"])
@@ -37,4 +42,4 @@ def main(folder: Path, duration: float = 8.0) -> Verdict:
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    run_script(main)

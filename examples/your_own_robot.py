@@ -1,4 +1,4 @@
-"""Walk with a robot of your own: a URDF, or a TOML file as robots/nao.toml.
+"""Walk with a robot of your own: a URDF, or a TOML file such as robots/nao.toml.
 
 python examples/your_own_robot.py --robot path/to/robot.urdf
 """
@@ -7,12 +7,12 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import tyro
 
 import robots
 import terrain
 import worlds
-from experiments.walking.trials import TrialRules, Trials, walk_trials
+from experiments import run_script
+from experiments.walking import TrialRules, Trials, walk_trials
 from walk_engine import gaits
 
 
@@ -20,8 +20,8 @@ def main(robot: Path | None = None, limit_s: float = 7.5) -> Trials:
     """Walk straight ahead on flat ground in the sim.
 
     Args:
-      robot: its file; a NAO with a torso of twice the mass where there is none.
-      limit_s: time limit.
+      robot: the robot's file; without one, a NAO whose torso has twice the mass.
+      limit_s: time limit [s].
     """
     if robot is None:
         nao = Path(robots.__file__).with_name("nao.toml").read_text()
@@ -37,4 +37,4 @@ def main(robot: Path | None = None, limit_s: float = 7.5) -> Trials:
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    run_script(main)

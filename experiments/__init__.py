@@ -1,1 +1,38 @@
-"""The studies and the command line: the only place where rooms are combined."""
+"""Studies and the command line: the only room in which all others are combined.
+
+The names below are for use from Python; docs/python.md shows how. Their modules are
+imported when a name is first used, so that each verb loads no more than it needs.
+"""
+
+from typing import TYPE_CHECKING
+
+from groundwalk.faces import lazy_face
+
+if TYPE_CHECKING:
+    from experiments.command_line import run_script
+    from experiments.diagnose import Diagnose, run_diagnosis
+    from experiments.diagnosis_report.console import print_verdict
+    from experiments.optimize_gait import OptimizeGait, tune_gait
+    from experiments.record import Record, make_recording
+
+__all__ = [
+    "Diagnose",
+    "OptimizeGait",
+    "Record",
+    "make_recording",
+    "print_verdict",
+    "run_diagnosis",
+    "run_script",
+    "tune_gait",
+]
+
+__getattr__ = lazy_face(
+    __name__,
+    {
+        "command_line": ["run_script"],
+        "diagnose": ["Diagnose", "run_diagnosis"],
+        "diagnosis_report.console": ["print_verdict"],
+        "optimize_gait": ["OptimizeGait", "tune_gait"],
+        "record": ["Record", "make_recording"],
+    },
+)

@@ -126,6 +126,23 @@ def run_verb(
     sys.exit(status if isinstance(status, int) else 0)
 
 
+def run_script(main: Callable[..., object]) -> None:
+    """Run a function as a script of one's own, with its arguments as options.
+
+    Errors that the user can mend become one line and exit status 2, as in verbs.
+
+    Args:
+      main: a function whose arguments have types and are described in its docstring.
+
+    Example:
+      >>> if __name__ == "__main__":
+      ...     run_script(main)
+    """
+    import tyro
+
+    _guarded(lambda: tyro.cli(main))
+
+
 def one_line(report: str) -> str:
     """Turn the boxed report of the option parser into one line without hints."""
     lines = []

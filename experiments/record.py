@@ -19,6 +19,7 @@ from experiments.runs.options import check_at_least
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from groundwalk.files import write_text
+from worlds import Recording
 from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import HiddenPlant, hidden_plant
@@ -102,7 +103,24 @@ class Record:
 
 
 def main(config: Record) -> None:
-    """Move the robot and write the recording."""
+    """Make the recording, and print the file's name."""
+    recording = make_recording(config)
+    print(f"wrote {config.out}: {recording.ticks} ticks of {config.plant().name}")
+
+
+def make_recording(config: Record) -> Recording:
+    """Move a robot, write the recording into `config.out`, and return it.
+
+    Args:
+      config: the robot, its motion, its hidden physics and the file.
+
+    Raises:
+      GroundwalkError: the robot fell, or its simulation diverged.
+
+    Example:
+      >>> make_recording(Record(Path("air.parquet"), robot="pendulum", world="sim"))
+      See docs/python.md.
+    """
     plant, effects = config.plant(), config.effects()
     of_motion, of_clock, of_noise, of_ground = np.random.SeedSequence(
         config.seed
@@ -137,7 +155,7 @@ def main(config: Record) -> None:
         plant, run, effects, HiddenSensors(), np.random.default_rng(of_noise), metadata
     )
     write_recording(recording, config.out)
-    print(f"wrote {config.out}: {recording.ticks} ticks of {plant.name}")
+    return recording
 
 
 def _feed(

@@ -1,6 +1,11 @@
 """Every example does what it says, in a small size."""
 
 import importlib.util
+import inspect
+import os
+import re
+import subprocess
+import sys
 from pathlib import Path
 
 import matplotlib.image
@@ -36,6 +41,27 @@ def test_every_example_is_run_here_and_told_about():
     for path in EXAMPLES:
         assert f'example("{path.stem}")' in here
         assert f"examples/{path.name}" in told
+
+
+def test_errors_of_an_example_are_one_line():
+    done = subprocess.run(
+        [sys.executable, ROOT / "examples" / "your_own_robot.py", "--robot", "no.urdf"],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr == "groundwalk: no.urdf: no such file\n"
+
+
+def test_the_command_that_an_example_states_has_all_options():
+    for path in EXAMPLES:
+        module = example(path.stem)
+        (line,) = re.findall(r"^ *python examples/\S+(.*)$", module.__doc__, re.M)
+        given = set(re.findall(r"--(\w+)", line))
+        parameters = inspect.signature(module.main).parameters.values()
+        needed = {one.name for one in parameters if one.default is one.empty}
+        assert needed <= given <= {one.name for one in parameters}, path.name
 
 
 def test_tune_a_gait(tmp_path):

@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def write_figure(figure: "Figure", path: Path) -> None:
-    """Write a figure as PNG, the file at once.
+    """Write a figure as a PNG file, whole or not at all.
 
     Args:
-      figure: made by itself, without pyplot, so that nobody else has to close it.
+      figure: a figure made without pyplot, which therefore needs no closing.
       path: the file.
     """
     png = io.BytesIO()

@@ -1,4 +1,4 @@
-"""HTML pages that need nothing else: no script, no style, no picture from outside."""
+"""HTML pages that contain all they need: no script, style or picture from outside."""
 
 import base64
 import html
@@ -17,11 +17,11 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 
 def render(template: str, **values: Any) -> str:
-    """A page from a template in `templates/`; texts are escaped.
+    """Fill a template in `templates/`; texts are escaped.
 
     Args:
-      template: its file; it extends `report_base.html.jinja`.
-      **values: what the template shows.
+      template: name of its file; it extends `report_base.html.jinja`.
+      **values: the template's variables.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -34,10 +34,10 @@ def render(template: str, **values: Any) -> str:
 
 
 def body_html(markdown: str, folder: Path) -> str:
-    """Markdown with tables as HTML, its pictures embedded.
+    """Convert Markdown with tables to HTML, and embed its pictures.
 
-    HTML within the Markdown is shown as text. A picture that is not there, or is
-    somewhere else than beside the page, leaves its words.
+    HTML within the Markdown is shown as text. A picture that is missing, or in another
+    folder, is replaced by its caption.
 
     Args:
       markdown: the text.
@@ -47,7 +47,7 @@ def body_html(markdown: str, folder: Path) -> str:
 
 
 def sentence_html(markdown: str) -> str:
-    """A paragraph as HTML, without the paragraph's own tags; it has no pictures."""
+    """Convert one paragraph of Markdown to HTML without the tags of the paragraph."""
     return str(_parser().renderInline(markdown))
 
 
@@ -63,7 +63,7 @@ def _parser() -> "MarkdownIt":
 
 
 def _pictures_stand_alone(state: "StateCore") -> None:
-    """A paragraph that is a picture is no paragraph, but a figure."""
+    """Hide the tags of paragraphs that hold only a picture, which becomes a figure."""
     for k, token in enumerate([] if state.inlineMode else state.tokens):
         if token.type == "inline" and _is_picture(token.children or []):
             state.tokens[k - 1].hidden = state.tokens[k + 1].hidden = True
@@ -80,7 +80,7 @@ def _figure(
     options: object,
     env: Mapping[str, Path],
 ) -> str:
-    """A picture with its words below; only the words where it cannot be embedded."""
+    """A picture with its caption below; only the caption if it cannot be embedded."""
     token = tokens[index]
     words = html.escape(token.content)
     name = str(token.attrGet("src"))
@@ -94,7 +94,7 @@ def _figure(
 
 
 def data_uri(path: Path) -> str:
-    """A file as an address that holds all of it."""
+    """A file's content as a data URI, for use in HTML."""
     kind, _ = mimetypes.guess_type(path.name)
     content = base64.b64encode(path.read_bytes()).decode("ascii")
     return f"data:{kind or 'application/octet-stream'};base64,{content}"

@@ -1,7 +1,7 @@
-"""What a run found, as one page in two forms: Markdown and HTML.
+"""The page of a run in two forms: Markdown for a repository, and one HTML file.
 
-All verbs write their pages here; the diagnosis, whose figures are of its own, shares
-the HTML's frame and style.
+All verbs write their pages with `Report`, except the diagnosis, whose figures need a
+template of their own; it shares the frame and the style of the HTML.
 """
 
 from collections.abc import Sequence
@@ -18,14 +18,18 @@ TEMPLATE = "report.html.jinja"
 
 @dataclass(frozen=True)
 class Report:
-    """The question, the answer, and what it rests on.
+    """A page: a question, its answer, the tables and pictures behind it, its origin.
 
     Attributes:
-      question: what was asked, as a heading.
-      answer: in plain words, a paragraph each; may be empty.
+      question: the heading.
+      answer: paragraphs in plain words; may be empty.
       body: lines of Markdown: tables, notes, pictures. A picture is the name of a file
         beside the page.
-      origin: where it comes from.
+      origin: command, settings and versions of the run.
+
+    Example:
+      >>> report = Report("Does it walk?", ["Yes."], [], Origin.of_run(folder))
+      >>> report.write(folder.path)
     """
 
     question: str
@@ -34,7 +38,7 @@ class Report:
     origin: Origin
 
     def to_markdown(self) -> str:
-        """The page for a repository, its pictures beside it."""
+        """The page as Markdown; its pictures are files beside it."""
         lines = [f"# {self.question}", ""]
         for paragraph in self.answer:
             lines += [paragraph, ""]
@@ -42,7 +46,7 @@ class Report:
         return "\n".join([*lines, *self.origin.to_markdown()]) + "\n"
 
     def to_html(self, folder: Path) -> str:
-        """The page by itself: it holds its pictures and loads nothing.
+        """The page as HTML that contains its pictures and loads nothing else.
 
         Args:
           folder: where the pictures are.
@@ -70,11 +74,15 @@ class Report:
 
 
 def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Lines of a table; columns of numbers are set to the right.
+    """A table as lines of Markdown; columns of numbers are aligned to the right.
 
     Args:
-      columns: their headings.
-      rows: of as many texts each.
+      columns: the headings.
+      rows: the cells, one text for each column.
+
+    Example:
+      >>> markdown_table(["gait", "falls"], [["start", "1/10"]])
+      ['| gait | falls |', '| --- | ---: |', '| start | 1/10 |']
     """
     cells = list(zip(*rows, strict=True)) or [()] * len(columns)
     ruler = ["---:" if _are_numbers(column) else "---" for column in cells]
@@ -82,6 +90,6 @@ def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> lis
 
 
 def _are_numbers(texts: Sequence[str]) -> bool:
-    """Whether all begin with a digit, behind a sign; some may be missing."""
+    """Whether all texts begin with a digit or a signed digit; "" and "-" may occur."""
     found = [text for text in texts if text not in ("", "-")]
     return bool(found) and all(text.lstrip("+-")[:1].isdigit() for text in found)

@@ -3,8 +3,9 @@
 The names of this face need PyTorch, so they are imported when they are first used.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from groundwalk.faces import lazy_face
 
 if TYPE_CHECKING:
     from sgat.models.distributional_inverse import DistributionalInverse
@@ -21,17 +22,13 @@ __all__ = [
     "NetworkConfig",
 ]
 
-_HOMES = {
-    "DistributionalInverse": "distributional_inverse",
-    "ForwardConfig": "forward_config",
-    "ForwardModel": "forward_model",
-    "InverseModel": "inverse_model",
-    "NetworkConfig": "network_config",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a name of this face when it is first used."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+__getattr__ = lazy_face(
+    __name__,
+    {
+        "distributional_inverse": ["DistributionalInverse"],
+        "forward_config": ["ForwardConfig"],
+        "forward_model": ["ForwardModel"],
+        "inverse_model": ["InverseModel"],
+        "network_config": ["NetworkConfig"],
+    },
+)
