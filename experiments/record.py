@@ -58,7 +58,7 @@ class Record:
       motion: the motion of the robot.
       base: fixed or floating; by default the one that the motion needs.
       hidden: physics that the model lacks, such as backlash@LKneePitch:gap=0.02 or
-        coulomb_friction@LKneePitch:torque=0.2.
+        coulomb_friction@LKneePitch:torque=0.2; `groundwalk list effects` shows all.
       duration: length of the recording [s].
       seed: every random number follows from it.
     """

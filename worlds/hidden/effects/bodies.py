@@ -14,9 +14,14 @@ if TYPE_CHECKING:
 def _weight_shows(plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
     """Whether the motion shows a change of a body's weight.
 
-    What does not move on a floating base is carried by the ground. On a fixed base some
-    joint has to carry the weight: otherwise it acts as an encoder's offset, or not at
-    all.
+    On a floating base the ground carries bodies that do not move. On a fixed base some
+    moving joint has to carry the weight on a lever: otherwise the change acts as an
+    encoder's offset, or not at all.
+
+    Args:
+      plant: the robot.
+      scales: what the robot does with nothing hidden.
+      spot: the body, and a joint.
     """
     if plant.floating:
         return scales.moves(spot.body)
@@ -27,7 +32,7 @@ class _Weight(HiddenKind):
     """A kind that changes what a joint has to carry or to accelerate."""
 
     def cancels(self, plant: "HiddenPlant") -> bool:
-        """A single joint only shows one weight and one inertia."""
+        """Whether the robot has a single joint, which only shows one weight."""
         return len(plant.joints) == 1
 
 
@@ -42,11 +47,11 @@ class Armature(_Weight):
     apart = ("payload_mass", "com_offset")
 
     def change_part(self, part: Any, values: Values) -> None:
-        """Add to the joint's armature; Bullet's joints have none."""
+        """Add the inertia to the joint's armature, which only MuJoCo has."""
         part.armature += values["inertia"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.1 to 3 times the inertia that the joint moves."""
+        """Inertia from 0.1 (hard to see) to 3 times (easy) what the joint moves."""
         return {"inertia": s.part(3, 0.1) * float(s.scales.inertia_kg_m2[s.joint])}
 
 
@@ -60,15 +65,15 @@ class PayloadMass(_Weight):
     apart = ("com_offset", "armature")
 
     def change_part(self, part: Any, values: Values) -> None:
-        """Add to the body's mass."""
+        """Add the payload to the body's mass."""
         part.mass += values["mass"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 1 % to 30 % of the mass that hangs on the joint."""
+        """Mass from 1 % (hard to see) to 30 % (easy) of what hangs on the joint."""
         return {"mass": s.part(0.3, 0.01) * float(s.scales.carried_kg[s.joint])}
 
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """The weight has to be felt."""
+        """Whether the motion shows a change of the body's weight."""
         return _weight_shows(plant, scales, spot)
 
 
@@ -86,7 +91,7 @@ class ComOffset(_Weight):
         part.ipos = part.ipos + np.array([values[axis] for axis in "xyz"])
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 3 to 50 mm across the joint's axis.
+        """Shift by 3 (hard to see) to 50 mm (easy), across the joint's axis.
 
         A shift along the axis would change nothing for the joint. The last body of a
         chain gets longer or shorter: a shift to the side would act as a turn of the
@@ -101,5 +106,5 @@ class ComOffset(_Weight):
         return dict(zip("xyz", shift.tolist(), strict=True))
 
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """The weight has to be felt."""
+        """Whether the motion shows a change of the body's weight."""
         return _weight_shows(plant, scales, spot)

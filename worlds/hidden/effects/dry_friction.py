@@ -48,7 +48,12 @@ class DryFriction:
 
     @classmethod
     def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
-        """With a bristle that is rigid, or as stiff as the time step allows."""
+        """Friction whose bristle is rigid, or as stiff as the time step allows.
+
+        Args:
+          contact: inertia and time step at the joint.
+          torques: the other attributes.
+        """
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
 
@@ -80,11 +85,11 @@ class CoulombFriction(HiddenKind):
     apart = ("stribeck_friction",)  # which has a Coulomb part of its own
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Constant while the joint slides."""
+        """Friction of constant size while the joint slides."""
         return DryFriction.of(contact, coulomb_nm=values["torque"]).torque
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 1 % to 15 % of the servo's torque."""
+        """Torque from 1 % (hard to see) to 15 % (easy) of the servo's usual one."""
         return {"torque": s.part(0.15, 0.01) * s.torque_nm}
 
 
@@ -102,7 +107,7 @@ class StribeckFriction(HiddenKind):
     apart = ("coulomb_friction",)  # which is a part of it
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Sliding torque coulomb + extra exp(-(v / speed)^2)."""
+        """Sliding friction of size coulomb + extra exp(-(v / speed)^2)."""
         return DryFriction.of(
             contact,
             coulomb_nm=values["coulomb_torque"],
@@ -111,10 +116,10 @@ class StribeckFriction(HiddenKind):
         ).torque
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 2 % to 10 % of the servo's torque, and half to 1.5 times as much more.
+        """Coulomb part from 2 % (hard to see) to 10 % (easy) of the servo's torque.
 
-        The peak is at speeds that the joint passes: at much lower speeds the friction
-        could not be distinguished from Coulomb's.
+        The extra part is 0.5 to 1.5 times as large. Its peak is at speeds that the
+        joint passes: otherwise it could not be distinguished from Coulomb friction.
         """
         coulomb = s.part(0.1, 0.02) * s.torque_nm
         part = s.rng.uniform(math.log(0.03), math.log(0.3))
@@ -134,13 +139,13 @@ class LoadFriction(HiddenKind):
     sizes = (0.3, 0.03)
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Sliding torque share |servo torque|."""
+        """Friction of size share |servo torque| while the joint slides."""
         return DryFriction.of(contact, load_share=values["share"]).torque
 
 
 @dataclass
 class SoftBristles:
-    """LuGre friction (Canudas de Wit, Olsson, Astrom, Lischinsky 1995), no damping.
+    """LuGre friction without damping (Canudas de Wit, Olsson, Astrom, Lischinsky 1995).
 
     dz/dt = v - stiffness |v| z / F, torque = stiffness z, here with a constant F.
 
@@ -178,13 +183,13 @@ class LugreHysteresis(HiddenKind):
     outside = True
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """See `SoftBristles`."""
+        """Friction of soft bristles: a spring at first, Coulomb friction later."""
         return SoftBristles(
             values["torque"], values["stiffness"], contact.step_s
         ).torque
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 5 % to 30 % of the servo's torque, reached after 0.03 to 0.12 rad."""
+        """Torque from 5 % (hard to see) to 30 % (easy) of the servo's usual one."""
         torque = s.part(0.3, 0.05) * s.torque_nm
         return {
             "torque": torque,

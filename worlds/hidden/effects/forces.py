@@ -31,7 +31,7 @@ class ExternalForce(HiddenKind):
     )
 
     def push(self, values: Values) -> Push:
-        """The force [N], in the frame of the world, during its time."""
+        """The constant force, in the world's frame, from start to start + duration."""
         force_n = np.array([values[axis] for axis in "xyz"])
         start_s, duration_s = values["start"], values["duration"]
 
@@ -43,10 +43,10 @@ class ExternalForce(HiddenKind):
         return force
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.5 % to 10 % of the moving weight, mostly for 0.05 to 0.5 s.
+        """Force from 0.5 % (hard to see) to 10 % (easy) of the moving weight.
 
-        A force that lasts is only drawn where several joints move the body: on a single
-        link it could not be distinguished from another weight.
+        It mostly acts for 0.05 to 0.5 s. A force that lasts is only drawn where several
+        joints move the body: elsewhere it could not be distinguished from a weight.
         """
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         way = s.across if s.one_joint else s.direction
@@ -59,7 +59,7 @@ class ExternalForce(HiddenKind):
         return dict(zip("xyz", force.tolist(), strict=True)) | span
 
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """A body that never moves does not show a force."""
+        """Whether the body moves: else the base or the ground bears the force."""
         return scales.moves(spot.body)
 
 
@@ -72,16 +72,16 @@ class Drag(HiddenKind):
     quantities = (Quantity("coefficient", "N s/m", 0.0),)
 
     def push(self, values: Values) -> Push:
-        """-coefficient times the velocity of the centre of mass."""
+        """Force -coefficient v, with v the velocity of the body's centre of mass."""
         coefficient = values["coefficient"]
         return lambda time_s, velocity: -coefficient * velocity()
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 2 % to 40 % of the moving weight at 1 m/s."""
+        """Drag at 1 m/s from 2 % (hard to see) to 40 % (easy) of the moving weight."""
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         return {"coefficient": s.part(0.4, 0.02) * weight_n}
 
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """On a body that one joint moves, drag acts as viscous friction there."""
+        """Whether several joints move the body: with one, drag is viscous friction."""
         many = plant.floating or scales.carriers(spot.body) > 1
         return scales.moves(spot.body) and many

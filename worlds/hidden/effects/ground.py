@@ -18,7 +18,7 @@ class _UnderFeet(HiddenKind):
     """A kind that only a robot on its feet can have."""
 
     def possible(self, plant: "HiddenPlant") -> bool:
-        """The base has to be free."""
+        """Whether the base is free, so that the robot stands on its feet."""
         return plant.floating
 
 
@@ -32,7 +32,7 @@ class ContactFriction(_UnderFeet):
     sizes = (0.2, 0.6)
 
     def sole_friction(self, values: Values) -> float:
-        """The coefficient."""
+        """The friction coefficient of the soles."""
         return values["coefficient"]
 
 
@@ -50,7 +50,7 @@ class ContactCompliance(_UnderFeet):
     sizes = (3000.0, 40000.0)
 
     def foot_spring(self, values: Values, mass_kg: float) -> FootSpring:
-        """The spring; where no damping is given, a tenth of the critical one."""
+        """Spring and damper under a foot, by default at a tenth of critical damping."""
         stiffness, damping = values["stiffness"], values["damping"]
         if math.isnan(damping):
             # Each foot carries half of the robot.
@@ -70,19 +70,19 @@ class GroundSlope(HiddenKind):
     )
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to pitch and roll."""
+        """Tilt the ground or the mount by pitch and roll."""
         surroundings.pitch_rad += values["pitch"]
         surroundings.roll_rad += values["roll"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.5 degrees to 4 on feet and 8 on a fixed base, in any direction."""
+        """Tilt from 0.5 degrees (hard to see) to 4 on feet or 8 on a fixed base."""
         most_deg = 4.0 if s.plant.floating else 8.0
         tilt = math.radians(s.part(most_deg, 0.5))
         way = s.rng.uniform(0, 2 * math.pi)
         return {"pitch": tilt * math.cos(way), "roll": tilt * math.sin(way)}
 
     def possible(self, plant: "HiddenPlant") -> bool:
-        """With a single joint it cannot be distinguished from an encoder's offset."""
+        """Whether it has several joints: with one, a tilt is an encoder's offset."""
         return len(plant.joints) > 1
 
 
@@ -96,5 +96,5 @@ class UnevenGround(_UnderFeet):
     sizes = (0.008, 0.0007)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Bumps of this height, or those that are there if they are higher."""
+        """Raise the bumps to this height unless they are higher already."""
         surroundings.bumps_m = max(surroundings.bumps_m, values["height"])

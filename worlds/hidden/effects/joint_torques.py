@@ -30,16 +30,16 @@ class ViscousFriction(HiddenKind):
     apart = ("servo_damping",)
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """-coefficient v."""
+        """Torque -coefficient v, with v the joint's speed."""
         coefficient = values["coefficient"]
         return lambda time_s, angle, speed, servo: -coefficient * speed
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 2 % to 20 % of the servo's torque at the highest speed."""
+        """At top speed from 2 % (hard to see) to 20 % (easy) of the servo's torque."""
         return {"coefficient": s.part(0.2, 0.02) * s.torque_nm / s.speed_rad_s}
 
     def cancels(self, plant: "HiddenPlant") -> bool:
-        """Where all damping is back-EMF, less of it and viscous friction cancel."""
+        """Whether all damping is back-EMF: less of it and more friction then cancel."""
         return not plant.kd_nm_s_rad.any()
 
 
@@ -54,12 +54,12 @@ class JointSpring(HiddenKind):
     )
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """-stiffness (q - rest)."""
+        """Torque -stiffness (q - rest), with q the joint's angle."""
         stiffness, rest = values["stiffness"], values["rest"]
         return lambda time_s, angle, speed, servo: -stiffness * (angle - rest)
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 1 % to 30 % of the servo's stiffness; at rest within the motion."""
+        """Stiffness from 1 % (hard to see) to 30 % (easy) of the servo's."""
         low, high = s.scales.reach_rad[s.joint]
         return {
             "stiffness": s.part(0.3, 0.01) * float(s.plant.kp_nm_rad[s.joint]),
@@ -82,7 +82,7 @@ class EndStop(HiddenKind):
     )
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Nothing before the stop; beyond it, a torque back that never pulls."""
+        """Nothing before the stop; beyond it a spring and damper that only push."""
         stop, side = values["angle"], values["side"]
         stiffness = contact.stiffness_nm_rad(_STOP_NM_RAD)
         damping = contact.damping_nm_s_rad(stiffness)
@@ -96,7 +96,7 @@ class EndStop(HiddenKind):
         return push
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 90 % to 30 % of the way from the middle of the motion to its end."""
+        """A stop at 90 % (hard to see) to 30 % (easy) of the motion's half width."""
         low, high = s.scales.reach_rad[s.joint]
         side, half = s.sign, (high - low) / 2
         return {
@@ -118,7 +118,7 @@ class Cogging(HiddenKind):
     outside = True
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Torque sin(per_turn q + phase)."""
+        """Ripple `torque` sin(per_turn q + phase), with q the joint's angle."""
         amplitude, per_turn = values["torque"], values["per_turn"]
         phase = values["phase"]
         return lambda time_s, angle, speed, servo: (
@@ -126,7 +126,7 @@ class Cogging(HiddenKind):
         )
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 3 % to 30 % of the servo's torque, 12 to 59 times a turn."""
+        """Torque from 3 % (hard to see) to 30 % (easy) of the servo's usual one."""
         return {
             "torque": s.part(0.3, 0.03) * s.torque_nm,
             "per_turn": float(s.rng.integers(12, 60)),
@@ -147,7 +147,7 @@ class PeriodicTorque(HiddenKind):
     outside = True
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Torque sin(2 pi frequency t + phase)."""
+        """Disturbance `torque` sin(2 pi frequency t + phase), with t the time."""
         amplitude, frequency = values["torque"], values["frequency"]
         phase = values["phase"]
 
@@ -158,7 +158,7 @@ class PeriodicTorque(HiddenKind):
         return wave
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 2 % to 20 % of the servo's torque, at 0.7 to 6 Hz."""
+        """Torque from 2 % (hard to see) to 20 % (easy) of the servo's usual one."""
         return {
             "torque": s.part(0.2, 0.02) * s.torque_nm,
             "frequency": float(s.rng.uniform(0.7, 6.0)),

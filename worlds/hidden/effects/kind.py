@@ -1,4 +1,4 @@
-"""What one kind of hidden physics says of itself: the base class of all kinds."""
+"""The base class of all kinds of hidden physics, and the types of their parts."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -37,7 +37,7 @@ _LAST = 1000
 
 @dataclass(frozen=True)
 class Quantity:
-    """One parameter of a kind.
+    """One parameter of a kind of hidden physics: its name, unit and sensible range.
 
     Attributes:
       name: as in `name@place:parameter=value`.
@@ -84,7 +84,7 @@ class StiffContact:
 
 
 class HiddenKind:
-    """One kind of hidden physics: its parameters, its physics, its size and its place.
+    """One kind of hidden physics: its parameters, physics, size and place.
 
     A subclass overrides the methods of what it changes; by default they change nothing.
 
@@ -165,7 +165,7 @@ class HiddenKind:
         return True
 
     def cancels(self, plant: "HiddenPlant") -> bool:
-        """Whether the kinds in `apart` cannot be distinguished from this on a robot."""
+        """Whether a robot cannot distinguish this kind from those in `apart`."""
         return True
 
     def spots(

@@ -22,7 +22,7 @@ class Backlash(HiddenKind):
     apart = ("joint_elasticity",)  # a joint has play or a spring
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
-        """Teeth that are rigid, or as stiff as the time step allows."""
+        """Play between teeth that are rigid, or as stiff as the time step allows."""
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return Transmission(stiffness, 0.0, values["gap"], contact.step_s)
 
@@ -39,7 +39,7 @@ class JointElasticity(HiddenKind):
     apart = ("backlash",)  # a joint has play or a spring
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
-        """A spring without play."""
+        """A spring and damper without play."""
         return Transmission(
             values["stiffness"],
             values["damping"],
@@ -49,7 +49,7 @@ class JointElasticity(HiddenKind):
         )
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 2000 to 50 N m/rad, damped by 1 % to 5 % of the critical damping."""
+        """Stiffness from 2000 (hard to see) to 50 N m/rad (easy), lightly damped."""
         stiffness = s.part(50.0, 2000.0)
         critical = 2 * math.sqrt(stiffness * float(s.scales.inertia_kg_m2[s.joint]))
         return {

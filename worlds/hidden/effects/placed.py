@@ -34,7 +34,7 @@ KINDS: Mapping[str, HiddenKind] = {
 
 @dataclass(frozen=True)
 class Hidden:
-    """One effect at its place.
+    """A hidden effect at its place, such as 0.02 rad of play in the left knee.
 
     Attributes:
       name: one of `KINDS`.
@@ -81,7 +81,7 @@ class Hidden:
 
     @property
     def kind(self) -> HiddenKind:
-        """Physics, units and places of effects of this name."""
+        """The kind of this effect: its physics, units and places."""
         return KINDS[self.name]
 
     @property
@@ -139,7 +139,7 @@ class Hidden:
 
 
 def surroundings(effects: Iterable[Hidden]) -> Surroundings:
-    """What effects change in the robot's signals and ground, all together."""
+    """Signals and ground of a robot with these hidden effects."""
     changed = Surroundings()
     for effect in effects:
         effect.kind.change_surroundings(changed, effect.values)

@@ -23,15 +23,15 @@ class EncoderOffset(HiddenKind):
     quantities = (Quantity("offset", "rad", -1.0, 1.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Shift the readings, and with them the angle that the servo controls."""
+        """Add the offset to the encoder's readings, which the servo controls."""
         servos.offset_rad[joint] += values["offset"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.005 to 0.1 rad, to either side."""
+        """Offset from 0.005 (hard to see) to 0.1 rad (easy), to either side."""
         return {"offset": s.sign * s.part(0.1, 0.005)}
 
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """On a fixed base only gravity distinguishes one angle from another."""
+        """Whether gravity shows it: a joint on a fixed base has to carry weight."""
         lever_m = scales.bodies.branch_lever_m[spot.joint]
         return plant.floating or bool(lever_m >= LEAST_LEVER_M)
 
@@ -44,16 +44,16 @@ class TorqueLimit(HiddenKind):
     quantities = (Quantity("torque", "N m", 0.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Lower the limit; a higher one than the nominal changes nothing."""
+        """Lower the servo's largest torque, if it is not lower already."""
         most = servos.max_torque_nm
         most[joint] = min(most[joint], values["torque"])
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.9 to 0.4 times the largest torque of the nominal motion."""
+        """Limit from 0.9 (hard to see) to 0.4 times (easy) the largest torque used."""
         return {"torque": s.part(0.4, 0.9) * float(s.scales.peak_nm[s.joint])}
 
     def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """A joint that hardly needs its servo's torque does not miss it."""
+        """Whether the motion needs a noticeable share of the servo's largest torque."""
         effort = scales.peak_nm[spot.joint] / plant.max_torque_nm[spot.joint]
         return bool(effort >= _LEAST_EFFORT)
 
@@ -67,12 +67,12 @@ class SpeedLimit(HiddenKind):
     needs_motion = True
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Lower the speed at which the set-point follows."""
+        """Lower the speed at which the servo's set-point follows its command."""
         most = servos.max_speed_rad_s
         most[joint] = min(most[joint], values["speed"])
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.9 to 0.4 times the highest speed of the command."""
+        """Limit from 0.9 (hard to see) to 0.4 times (easy) the command's top speed."""
         return {"speed": s.part(0.4, 0.9) * s.speed_rad_s}
 
 
@@ -84,11 +84,11 @@ class ServoGain(HiddenKind):
     quantities = (Quantity("factor", "1", 0.0, 10.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Multiply kp."""
+        """Multiply the servo's stiffness kp by the factor."""
         servos.kp_nm_rad[joint] *= values["factor"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 3 % to 40 % more or less."""
+        """Factor that differs from 1 by 0.03 (hard to see) to 0.4 (easy)."""
         return {"factor": 1.0 + s.sign * s.part(0.4, 0.03)}
 
 
@@ -101,21 +101,22 @@ class ServoDamping(HiddenKind):
     apart = ("viscous_friction",)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Multiply kd and the back-EMF constant."""
+        """Multiply the servo's damping kd and back-EMF by the factor."""
         servos.kd_nm_s_rad[joint] *= values["factor"]
         servos.back_emf_nm_s_rad[joint] *= values["factor"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 5 % to 40 %; only less where all damping is back-EMF.
+        """Factor that differs from 1 by 0.05 (hard to see) to 0.4 (easy).
 
-        More back-EMF cannot be distinguished from viscous friction.
+        It is below 1 where all damping is back-EMF: more of that is the same as viscous
+        friction.
         """
         part = s.part(0.4, 0.05)
         sign = s.sign if s.plant.kd_nm_s_rad[s.joint] > 0 else -1.0
         return {"factor": 1.0 + sign * part}
 
     def cancels(self, plant: "HiddenPlant") -> bool:
-        """Where all damping is back-EMF, less of it and viscous friction cancel."""
+        """Whether all damping is back-EMF: less of it and more friction then cancel."""
         return not plant.kd_nm_s_rad.any()
 
 
@@ -127,11 +128,11 @@ class ServoFade(HiddenKind):
     quantities = (Quantity("rate", "1/s", 0.0, 10.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Let kp fade from the beginning of the recording."""
+        """Let the servo's stiffness kp fade from the beginning of the recording."""
         servos.fade_1_s[joint] += values["rate"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 3 % to 25 % over the recording."""
+        """Rate that takes 3 % (hard to see) to 25 % (easy) over the whole recording."""
         return {"rate": s.part(0.25, 0.03) / s.duration_s}
 
 
@@ -147,7 +148,7 @@ class JointCrosstalk(HiddenKind):
     outside = True
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Add a leak; `source` is the other joint's column.
+        """Add a share of the command of the joint whose column is `source`.
 
         Raises:
           BadValueError: the source is not the number of another joint.
@@ -158,7 +159,7 @@ class JointCrosstalk(HiddenKind):
         servos.leaks.append((joint, source, values["share"]))
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 1 % to 20 % of any other joint's command, of either sign."""
+        """A share of 1 % (hard to see) to 20 % (easy) of any other joint's command."""
         others = [i for i in range(len(s.plant.joints)) if i != s.joint]
         return {
             "source": float(s.rng.choice(others)),
@@ -166,5 +167,5 @@ class JointCrosstalk(HiddenKind):
         }
 
     def possible(self, plant: "HiddenPlant") -> bool:
-        """Another joint is needed."""
+        """Whether the robot has another joint."""
         return len(plant.joints) > 1

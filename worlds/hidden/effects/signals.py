@@ -20,7 +20,7 @@ class CommandLatency(HiddenKind):
     sizes = (0.06, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to the delay."""
+        """Add to the delay of the commands."""
         surroundings.command_delay_s += values["delay"]
 
 
@@ -34,11 +34,11 @@ class SensorDelay(HiddenKind):
     sizes = (0.04, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to the delay."""
+        """Add to the delay of the encoders' readings."""
         surroundings.encoder_delay_s += values["delay"]
 
     def possible(self, plant: "HiddenPlant") -> bool:
-        """On a fixed base late readings cannot be distinguished from late commands."""
+        """Whether the base is free: else late readings act as late commands do."""
         return plant.floating
 
 
@@ -51,14 +51,14 @@ class GyroBias(HiddenKind):
     quantities = tuple(Quantity(axis, "rad/s", -5.0, 5.0) for axis in "xyz")
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to the bias, axis by axis."""
+        """Add to the bias of each axis of the gyroscope."""
         surroundings.gyroscope_bias_rad_s += [values[axis] for axis in "xyz"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """From 0.003 to 0.05 rad/s, in any direction."""
+        """Bias from 0.003 (hard to see) to 0.05 rad/s (easy), in any direction."""
         bias = s.part(0.05, 0.003) * s.direction
         return dict(zip("xyz", bias.tolist(), strict=True))
 
     def possible(self, plant: "HiddenPlant") -> bool:
-        """Only robots with a description have a gyroscope."""
+        """Whether the robot has a gyroscope: those with a description do."""
         return plant.description is not None
