@@ -44,9 +44,12 @@ def small_house(tmp_path):
         (tmp_path / package / "__init__.py").touch()
     for contract in PROJECT["tool"]["importlinter"]["contracts"]:
         for room in contract.get("containers", ()):
-            for shelf in re.findall(r"\w+", " ".join(contract["layers"])):
-                (tmp_path / room / shelf).mkdir(exist_ok=True)
-                (tmp_path / room / shelf / "__init__.py").touch()
+            for shelf in re.findall(r"[\w.]+", " ".join(contract["layers"])):
+                folder = tmp_path / room
+                for part in shelf.split("."):
+                    folder = folder / part
+                    folder.mkdir(exist_ok=True)
+                    (folder / "__init__.py").touch()
     for name, code in files.items():
         path = tmp_path / name
         for folder in path.relative_to(tmp_path).parents:
