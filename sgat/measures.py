@@ -24,14 +24,9 @@ def root_mean_square(errors: FloatArray) -> FloatArray:
 
 
 def r_squared(predicted: FloatArray, actual: FloatArray) -> FloatArray:
-    """(d,) share of the variance of values that is predicted.
+    """(d,) share of the variance of actual values (N, d) that is predicted.
 
-    1 is perfect, 0 is no better than predicting the mean, NaN stands for values that
-    are constant.
-
-    Args:
-      predicted: (N, d).
-      actual: (N, d).
+    1 is perfect, 0 is no better than predicting the mean, NaN stands for constants.
     """
     error = np.mean((predicted - actual) ** 2, axis=0)
     return np.asarray(1 - error / _variance(actual))
@@ -85,15 +80,9 @@ def coverage(residuals: FloatArray, levels: Sequence[float]) -> FloatArray:
 def lagged_pairs(
     values: FloatArray, episode: IntArray, lag: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Pairs of rows that are `lag` ticks apart in the same episode.
+    """Rows (pairs, d) of values (N, d), and the rows `lag` ticks before them.
 
-    Args:
-      values: (N, d).
-      episode: (N,) number of the episode of each row.
-      lag: ticks.
-
-    Returns:
-      Two arrays (pairs, d): the later rows and the earlier rows.
+    Both rows of a pair belong to the same episode.
 
     Raises:
       BadValueError: no episode is longer than the lag.
@@ -105,13 +94,7 @@ def lagged_pairs(
 
 
 def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> FloatArray:
-    """(lags, d) correlation with the residual 1, 2 ... ticks before; 0 for white noise.
-
-    Args:
-      residuals: (N, d).
-      episode: (N,) number of the episode of each row.
-      lags: largest lag [ticks].
-    """
+    """(lags, d) correlation of residuals (N, d) with those 1, 2 ... ticks before."""
     off = residuals - residuals.mean(axis=0)
     rows = []
     for lag in range(1, lags + 1):
@@ -121,31 +104,18 @@ def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> Floa
 
 
 def cross_correlation(residuals: FloatArray) -> FloatArray:
-    """(d, d) correlation between dimensions at the same tick; NaN for constants.
-
-    Args:
-      residuals: (N, d).
-    """
+    """(d, d) correlation of residuals (N, d) at the same tick; NaN for constants."""
     off = residuals - residuals.mean(axis=0)
     spread = np.sqrt(_variance(off))
     return np.asarray(off.T @ off / len(off) / np.outer(spread, spread))
 
 
 def excess_kurtosis(residuals: FloatArray) -> FloatArray:
-    """(d,) fourth moment over squared variance, minus 3.
-
-    0 for a normal distribution, positive for heavy tails.
-
-    Args:
-      residuals: (N, d).
-    """
+    """(d,) kurtosis of residuals (N, d) minus 3: 0 is normal, above are heavy tails."""
     off = residuals - residuals.mean(axis=0)
     return np.asarray(np.mean(off**4, axis=0) / _variance(off) ** 2 - 3)
 
 
 def _variance(values: FloatArray) -> FloatArray:
-    """(d,) variance of (N, d) values; NaN for constants.
-
-    Rounding could give a constant a variance above 0.
-    """
+    """(d,) variance of values (N, d); exactly constant columns give NaN."""
     return np.where(np.ptp(values, axis=0) > 0, values.var(axis=0), np.nan)

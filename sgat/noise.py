@@ -93,11 +93,9 @@ class NoiseStream:
         return len(self._generators)
 
     def draw(self) -> tuple[FloatArray, FloatArray]:
-        """Go on by one tick.
+        """Noise (n, d) of the next tick, and (n,) uniform numbers from 0 to 1.
 
-        Returns:
-          (n, d) standardised noise, and (n,) independent numbers, uniform from 0 to 1,
-          which choose among the components of a mixture.
+        The uniform numbers choose among the components of a mixture.
         """
         if self._tick == len(self._noise):
             last = self._noise[-1] if len(self._noise) else None

@@ -81,11 +81,7 @@ class Transitions:
         )
 
     def subset(self, mask: BoolArray) -> "Transitions":
-        """The transitions that a mask selects.
-
-        Args:
-          mask: (N,) rows to keep. Rows of an episode that remain count as consecutive.
-        """
+        """The rows that a mask (N,) selects; each episode's stay consecutive."""
         return Transitions(
             self.state[mask],
             self.action[mask],
@@ -96,12 +92,7 @@ class Transitions:
     def split(
         self, share: float, rng: np.random.Generator
     ) -> tuple["Transitions", "Transitions"]:
-        """Two parts: most of the episodes, and a random share that is held out.
-
-        Args:
-          share: of the episodes to hold out, between 0 and 1.
-          rng: chooses the episodes.
-        """
+        """Most of the episodes, and a random share of them that is held out."""
         held_out = held_out_rows(self.episode, share, rng)
         return self.subset(~held_out), self.subset(held_out)
 

@@ -47,11 +47,7 @@ class RealCourse:
         return terrain.parse(self.terrain)[0] == "flat"
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """One ground for each seed; flat grounds are one shared object.
-
-        Args:
-          seeds: of the grounds.
-        """
+        """One ground for each seed; flat grounds are one shared object."""
         name, parameters = terrain.parse(self.terrain)
         if self.flat:
             return [terrain.make(name, 0, **parameters)] * len(seeds)
@@ -92,11 +88,7 @@ class SimPlace:
             raise BadValueError("lumps_m is empty; give at least one amplitude")
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """One ground for each seed: flat, or lumps as long as the real world's.
-
-        Args:
-          seeds: of the grounds.
-        """
+        """One ground for each seed: flat, or lumps as long as the real world's."""
         if not self.lumps_m:
             return [terrain.make("flat", 0)] * len(seeds)
         return [self._lumps(seed) for seed in seeds]
@@ -163,10 +155,5 @@ class Places:
     def sim(
         self, lumps_m: float | tuple[float, ...] = 0.0, start_m: float = SHORT_START_M
     ) -> SimPlace:
-        """The sim, flat or on lumps.
-
-        Args:
-          lumps_m: amplitude of the lumps [m], or several; see `SimPlace`.
-          start_m: radius of the flat ground around the start [m].
-        """
+        """The sim, flat or on lumps; arguments in m, see `SimPlace`."""
         return SimPlace(lumps_m, start_m, self.correction)

@@ -110,11 +110,7 @@ class WalkModels:
 
 
 def action_envelope(deviation_rad: float) -> ActionNoise:
-    """White noise on the legs' commands: the method ANE, which needs no real data.
-
-    Args:
-      deviation_rad: standard deviation of the noise [rad].
-    """
+    """White noise on the legs' commands, by its deviation [rad]: the method ANE."""
     bound = _bound()
     return ActionNoise(deviation_rad, -bound, bound)
 

@@ -47,12 +47,7 @@ class GroundedRater:
     rules: TrialRules = RATED
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """(n,) mean rewards [cm/s]; see `experiments.walking.tuning.Rater`.
-
-        Args:
-          vectors: (n, 16) gaits.
-          seed: of the walks.
-        """
+        """(n,) mean rewards [cm/s] of gaits (n, 16); see `Rater`."""
         trials = walk_in_sim(self.sim, vectors, self.repeats, seed, self.rules)
         rewards = _reward_cm_s(trials, self.rules)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
@@ -73,12 +68,7 @@ class RandomisedRater:
     friction: tuple[float, float] = (0.4, 1.0)
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """(n,) mean rewards [cm/s]; see `experiments.walking.tuning.Rater`.
-
-        Args:
-          vectors: (n, 16) gaits.
-          seed: of the dynamics and the walks.
-        """
+        """(n,) mean rewards [cm/s] of gaits (n, 16); see `Rater`."""
         grounds = [terrain.make("flat", 0)] * len(vectors)
         rewards = []
         for child in seed.spawn(self.repeats):
@@ -88,11 +78,7 @@ class RandomisedRater:
         return np.asarray(np.mean(rewards, axis=0))
 
     def options(self, rng: np.random.Generator) -> WorldOptions:
-        """Options of the sim with randomly drawn dynamics and the real sensors' noise.
-
-        Args:
-          rng: draws latency and friction.
-        """
+        """Options of the sim with random latency and friction, and noisy sensors."""
         step_s = worlds.kind("sim").options.timestep_s
         latency_s = step_s * round(rng.uniform(*self.latency_s) / step_s)
         noise = worlds.kind("real").options.noise
@@ -114,12 +100,7 @@ class RealRater:
     course: RealCourse
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """(n,) rewards [cm/s]; see `experiments.walking.tuning.Rater`.
-
-        Args:
-          vectors: (n, 16) gaits.
-          seed: of the grounds and the walks.
-        """
+        """(n,) rewards [cm/s] of gaits (n, 16); see `Rater`."""
         grounds = self.course.grounds(seed.spawn(REAL_GROUNDS))
         trials = []
         for first in range(0, len(vectors), MOST_AT_ONCE):

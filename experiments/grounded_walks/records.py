@@ -70,13 +70,7 @@ class WalkRecords:
 def record_real(
     vectors: FloatArray, seed: np.random.SeedSequence, course: RealCourse
 ) -> RealWalks:
-    """Let gaits walk in the real world.
-
-    Args:
-      vectors: (n, 16) gaits, in the units of `walk_engine.PARAMETERS`.
-      seed: of everything random in the walks.
-      course: the ground, and the physics that the sim lacks.
-    """
+    """Let gaits (n, 16) walk in the real world, with all randomness from the seed."""
     exploration, robot = REAL_EXPLORATION_RAD, robots.get(ROBOT)
     trials, real = walk(
         course, robot, vectors, child_of(seed, 0), exploration, ON_COURSE
@@ -91,14 +85,7 @@ def record_walks(
     seed: np.random.SeedSequence,
     places: Places,
 ) -> WalkRecords:
-    """Let gaits walk in the flat and in the uneven sim, and add the real walks.
-
-    Args:
-      real: walks of the real world.
-      of_sim: (n, 16) gaits for the sims, in the units of `walk_engine.PARAMETERS`.
-      seed: of everything random in the walks.
-      places: makes the sims.
-    """
+    """Let gaits (n, 16) walk in the flat and the uneven sim, and add the real walks."""
     robot, in_sim, on_uneven = robots.get(ROBOT), child_of(seed, 1), child_of(seed, 2)
     flat, uneven = (
         walk(place, robot, of_sim, child, EXPLORATION_RAD)[1]

@@ -14,11 +14,7 @@ HEAVIEST_N, LONGEST_STEP_S = 10_000.0, 10.0
 
 
 def senses_box(joints: int) -> Box:
-    """The space of the vectors that `senses_of` gives.
-
-    Args:
-      joints: number of joints of the robot.
-    """
+    """The space of the vectors of `senses_of`, for a number of joints."""
     parts = (
         (joints, -TURN_RAD, TURN_RAD),
         (joints, -FASTEST_RAD_S, FASTEST_RAD_S),
@@ -35,13 +31,9 @@ def senses_box(joints: int) -> Box:
 
 
 def senses_of(episode: WalkEpisode, box: Box) -> FloatArray:
-    """(n,) measurements of the last tick, and the engine's next command.
+    """(n,) measurements of the last tick and the engine's next command.
 
-    The columns and their units are in the docstring of `WalkEnv`.
-
-    Args:
-      episode: of the robot.
-      box: from `senses_box`; values beyond a bound are set to it.
+    Columns and units are in the docstring of `WalkEnv`; values beyond the box are cut.
     """
     seen = episode.observation
     vector = np.concatenate(

@@ -62,12 +62,7 @@ class EnvWorld:
     def make(
         self, of_ground: np.random.SeedSequence, of_noise: np.random.SeedSequence
     ) -> World:
-        """The world of one episode.
-
-        Args:
-          of_ground: seed of a terrain that is given in words.
-          of_noise: seed of the sensors' noise and of the transformer's.
-        """
+        """The world of one episode, by the seeds of its ground and of its noise."""
         grounds = [self._ground(of_ground)]
         robot, seeds = self.description, [of_noise]
         world = worlds.make(self.inner, robot, grounds, seeds, self.options)
@@ -90,11 +85,7 @@ class EnvWorld:
 def episode_seeds(
     generator: np.random.Generator,
 ) -> tuple[np.random.SeedSequence, np.random.SeedSequence, np.random.SeedSequence]:
-    """Seeds of an episode's ground, its noise and its start pose.
-
-    Args:
-      generator: the environment's `np_random`.
-    """
+    """Seeds of an episode's ground, its noise and its start pose."""
     root = np.random.SeedSequence(int(generator.integers(2**63)))
     ground, noise, pose = root.spawn(3)
     return ground, noise, pose

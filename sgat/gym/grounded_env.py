@@ -73,11 +73,7 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     def step(
         self, action: FloatArray
     ) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
-        """One step of the environment with the transformed action.
-
-        Args:
-          action: (a,) what the policy asks for, in the environment's units.
-        """
+        """One step of the environment with the transformed action (a,)."""
         asked = np.array(action, dtype=float)
         given = self._transformer(self._state, asked[None])[0]
         given = given.astype(self.env.action_space.dtype)

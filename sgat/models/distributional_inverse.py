@@ -32,14 +32,7 @@ class ActionDistribution(NamedTuple):
     covariance: FloatArray
 
     def sample(self, z: FloatArray) -> FloatArray:
-        """Samples made from standardised noise.
-
-        Args:
-          z: (n, a) independent standard normal numbers.
-
-        Returns:
-          (n, a) actions.
-        """
+        """(n, a) actions made of standard normal numbers z (n, a)."""
         values, vectors = np.linalg.eigh(self.covariance)
         root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
         return np.asarray(self.mean + (root @ z[..., None])[..., 0])
@@ -68,26 +61,13 @@ class DistributionalInverse:
     """
 
     def __init__(self, config: ForwardConfig | None = None) -> None:
-        """Prepare a model; `fit` or `load` gives it its network.
-
-        Args:
-          config: network and distribution of the sim's forward model; by default with a
-            full covariance.
-        """
+        """Choose the sim's forward model; by default it has a full covariance."""
         self.sim = ForwardModel(
             ForwardConfig(head="full") if config is None else config
         )
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn the sim's dynamics.
-
-        Args:
-          transitions: of the sim, at least two episodes.
-          seed: of the training; the same seed gives the same bits.
-
-        Returns:
-          This model.
-        """
+        """Learn from at least two episodes of the sim; the seed decides every bit."""
         self.sim.fit(transitions, seed)
         return self
 
@@ -129,11 +109,7 @@ class DistributionalInverse:
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file of `save`; every answer is equal to the last bit.
-
-        Raises:
-          BadModelError: the file holds no forward model.
-        """
+        """Read a file of `save`; every answer is equal to the last bit."""
         inverse = cls()
         inverse.sim = ForwardModel.load(path)
         return inverse

@@ -37,25 +37,12 @@ class ForwardModel:
     """
 
     def __init__(self, config: ForwardConfig | None = None) -> None:
-        """Prepare a model; `fit` or `load` gives it its networks.
-
-        Args:
-          config: networks and distribution; one network and independent normal
-            distributions by default.
-        """
+        """Choose network and distribution; `fit` or `load` sets the numbers."""
         self.config = ForwardConfig() if config is None else config
         self._fitted: ScaledNetwork | None = None
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn from transitions.
-
-        Args:
-          transitions: of at least two episodes.
-          seed: of the training; the same seed gives the same bits.
-
-        Returns:
-          This model.
-        """
+        """Learn from at least two episodes; the same seed gives the same bits."""
         head = self.config.make_head(transitions.outcomes)
         self._fitted = ScaledNetwork.fit(
             np.hstack([transitions.state, transitions.action]),
@@ -85,37 +72,22 @@ class ForwardModel:
         return self._network.targets.scale
 
     def action_scale(self, actions: int) -> FloatArray:
-        """(actions,) standard deviations of the training actions; 1 for constant ones.
-
-        Args:
-          actions: number of columns of an action.
-        """
+        """(actions,) standard deviations of the training actions; 1 if constant."""
         return self._network.inputs.scale[-actions:]
 
     def predict(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """Mean next state, as GAT uses it.
-
-        Args:
-          state: (n, s) states.
-          action: (n, a) actions.
-
-        Returns:
-          (n, p) in the state's units; the mean over all networks of an ensemble.
-        """
+        """(n, p) mean next state for states (n, s) and actions (n, a), as in GAT."""
         means = [self._head.mean(raw, np) for raw in self._each(state, action)]
         return self._next_state(state, np.mean(means, axis=0))
 
     def moments(
         self, state: FloatArray, action: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Mean and covariance of the next state, over all networks of an ensemble.
+        """Mean (n, p) and covariance (n, p, p) of the next state, over all networks.
 
         Args:
           state: (n, s) states.
           action: (n, a) actions.
-
-        Returns:
-          (n, p) means in the state's units and (n, p, p) covariances in their squares.
         """
         head, every = self._head, list(self._each(state, action))
         means = np.array([head.mean(raw, np) for raw in every], dtype=float)
@@ -129,15 +101,12 @@ class ForwardModel:
     def sample(
         self, state: FloatArray, action: FloatArray, stream: NoiseStream
     ) -> FloatArray:
-        """One sampled next state for each robot, as SGAT uses it.
+        """(n, p) one sampled next state for each robot, as SGAT uses it.
 
         Args:
           state: (n, s) states.
           action: (n, a) actions.
           stream: noise of the n robots, with as many dimensions as a next state.
-
-        Returns:
-          (n, p) in the state's units.
         """
         z, choice = stream.draw()
         member = (stream.member() * self.config.members).astype(np.intp)
@@ -145,15 +114,7 @@ class ForwardModel:
         return self._next_state(state, head.sample(head.parts(raw, np), z, choice))
 
     def action_effect(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """Derivative of the mean next state with respect to the action.
-
-        Args:
-          state: (n, s) states.
-          action: (n, a) actions.
-
-        Returns:
-          (n, p, a) in the state's units per unit of the action.
-        """
+        """(n, p, a) derivative of the mean next state by the action (n, a)."""
         actions = action.shape[1]
         network = self._network
         x = network.inputs.to_scaled(np.hstack([state, action]))
@@ -167,9 +128,7 @@ class ForwardModel:
     def scaled_change(self) -> Callable[[Tensor], Tensor]:
         """The mean change of the state as a function that torch can differentiate.
 
-        Returns:
-          A function of (n, s + a) scaled states and actions; its result is the (n, p)
-          scaled change.
+        It gives the scaled change (n, p) for scaled states beside actions (n, s + a).
         """
         network = self._network.network
         layers = zip(network.weights, network.biases, strict=True)
@@ -182,13 +141,9 @@ class ForwardModel:
         return change
 
     def score(self, transitions: Transitions) -> float:
-        """Mean log-likelihood per transition and dimension.
+        """Mean log-likelihood per transition and dimension; larger is better.
 
-        Larger is better. A density has the inverse of the state's unit, so positive
-        values are possible.
-
-        Args:
-          transitions: (s, a, s') that the model was not fitted to.
+        A density has the inverse of the state's unit, so positive values are possible.
         """
         head = self._head
         y = torch.tensor(self._network.targets.to_scaled(transitions.change))
@@ -203,17 +158,11 @@ class ForwardModel:
         return (float(mixture.mean()) - float(units)) / self.outcomes
 
     def residuals(self, transitions: Transitions) -> FloatArray:
-        """Standardised residuals: the noise for which `sample` gives the real states.
+        """(N, p) standardised residuals, the noise that `sample` would have needed.
 
         White and standard normal if the model is right. In an ensemble each episode
         belongs to one network, as in sampling. Which component of a mixture a next
         state is assigned to follows a fixed sequence that is evenly spread.
-
-        Args:
-          transitions: N of them, preferably not those that the model was fitted to.
-
-        Returns:
-          (N, p) without a unit.
         """
         _, index = np.unique(transitions.episode, return_inverse=True)
         member = index % self.config.members

@@ -29,12 +29,7 @@ on a single action was learned a third too large."""
 
 
 def bounded(raw: Any, xp: Any) -> Any:
-    """Softly limit raw numbers to `LOG_VARIANCE`, with slope 1 in the middle.
-
-    Args:
-      raw: any shape.
-      xp: numpy or torch.
-    """
+    """Softly limit raw numbers to `LOG_VARIANCE`; `xp` is numpy or torch."""
     low, high = LOG_VARIANCE
     middle, half = (low + high) / 2, (high - low) / 2
     return middle + half * xp.tanh((raw - middle) / half)
@@ -57,47 +52,22 @@ class Head(ABC):
 
     @abstractmethod
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """The parameters that raw outputs (..., width) stand for.
-
-        Args:
-          raw: outputs of the network.
-          xp: numpy or torch, the kind of `raw`.
-        """
+        """The parameters that raw outputs (..., width) of the module `xp` stand for."""
 
     @abstractmethod
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) log p(y), in scaled units, computed by torch's own distributions.
-
-        Args:
-          parts: parameters as torch tensors.
-          y: (..., d) values.
-        """
+        """(...) log p(y) of values y (..., d), by torch's own distributions."""
 
     def loss(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) the loss in training: by default the negative log-likelihood.
-
-        Args:
-          parts: parameters as torch tensors.
-          y: (..., d) values.
-        """
+        """(...) the training loss of y (..., d): the negative log-likelihood."""
         return -self.log_density(parts, y)
 
     def mean(self, raw: Any, xp: Any) -> Any:
-        """(..., d) mean; in most families it is the first d raw outputs.
-
-        Args:
-          raw: (..., width) outputs of the network.
-          xp: numpy or torch, the kind of `raw`.
-        """
+        """(..., d) mean for raw outputs (..., width); usually the first d of them."""
         return raw[..., : self.dimensions]
 
     def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """(n, d, a) derivative of the mean with respect to the action.
-
-        Args:
-          raw: (n, width) outputs of the network.
-          slope: (n, width, a) derivative of the outputs.
-        """
+        """(n, d, a) derivative of the mean by actions, from (n, width, a) raw."""
         return slope[:, : self.dimensions]
 
     @abstractmethod
@@ -106,7 +76,7 @@ class Head(ABC):
 
     @abstractmethod
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) samples.
+        """(n, d) samples made of standard noise.
 
         Args:
           parts: parameters of n distributions, as arrays.
@@ -116,13 +86,7 @@ class Head(ABC):
 
     @abstractmethod
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) standardised noise for which `sample` would give the values y.
-
-        Args:
-          parts: parameters of n distributions, as arrays.
-          y: (n, d) values.
-          choice: (n,) uniform numbers from 0 to 1 that choose a mixture's component.
-        """
+        """(n, d) noise z for which `sample` would give the values y (n, d)."""
 
 
 @dataclass(frozen=True)

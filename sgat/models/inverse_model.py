@@ -30,24 +30,12 @@ class InverseModel:
     """
 
     def __init__(self, config: NetworkConfig | None = None) -> None:
-        """Prepare a model; `fit` or `load` gives it its network.
-
-        Args:
-          config: shape and training of the network.
-        """
+        """Choose shape and training; `fit` or `load` sets the numbers."""
         self.config = NetworkConfig() if config is None else config
         self._fitted: ScaledNetwork | None = None
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn from transitions of the sim.
-
-        Args:
-          transitions: of at least two episodes.
-          seed: of the training; the same seed gives the same bits.
-
-        Returns:
-          This model.
-        """
+        """Learn from at least two episodes; the same seed gives the same bits."""
         self._fitted = ScaledNetwork.fit(
             np.hstack([transitions.state, transitions.change]),
             transitions.action,
@@ -60,26 +48,14 @@ class InverseModel:
         return self
 
     def predict(self, state: FloatArray, next_state: FloatArray) -> FloatArray:
-        """Actions that lead to the next states.
-
-        Args:
-          state: (n, s) states.
-          next_state: (n, p) wanted next states, with the columns of the training data.
-
-        Returns:
-          (n, a) actions.
-        """
+        """(n, a) actions that lead from states (n, s) to next states (n, p)."""
         change = next_state - state[:, : next_state.shape[1]]
         member = np.zeros(len(state), np.intp)
         scaled = self._network.raw(np.hstack([state, change]), member)
         return self._network.targets.from_scaled(scaled)
 
     def score(self, transitions: Transitions) -> FloatArray:
-        """(a,) share of each action's variance that is predicted, at most 1.
-
-        Args:
-          transitions: of the sim, which the model was not fitted to.
-        """
+        """(a,) share of the variance of the actions that is predicted, at most 1."""
         predicted = self.predict(transitions.state, transitions.next_state)
         return r_squared(predicted, transitions.action)
 
@@ -89,11 +65,7 @@ class InverseModel:
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file of `save`; every answer is equal to the last bit.
-
-        Raises:
-          BadModelError: the file holds no inverse model.
-        """
+        """Read a file of `save`; every answer is equal to the last bit."""
         config, network = read_model(path, _KIND, NetworkConfig)
         if network.network.outputs != len(network.targets.mean):
             raise BadModelError(f"{path} is no model file, or a damaged one")

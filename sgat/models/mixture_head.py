@@ -97,21 +97,11 @@ class MixtureHead(Head):
 
 
 def _pick(weights: FloatArray, choice: FloatArray) -> IntArray:
-    """(n,) the component in whose share of 0 to 1 the uniform number falls.
-
-    Args:
-      weights: (n, k) that sum to 1.
-      choice: (n,) uniform numbers.
-    """
+    """(n,) components, drawn by weights (n, k) with uniform numbers (n,)."""
     passed = np.cumsum(weights, axis=-1) <= choice[:, None]
     return np.asarray(np.minimum(passed.sum(axis=-1), weights.shape[-1] - 1))
 
 
 def _rows(values: FloatArray, chosen: IntArray) -> FloatArray:
-    """(n, d) the chosen component's values.
-
-    Args:
-      values: (n, k, d).
-      chosen: (n,) component of each row.
-    """
+    """(n, d) values (n, k, d) of the chosen component (n,)."""
     return values[np.arange(len(values)), chosen]

@@ -44,11 +44,6 @@ def read_model(
     Only tensors and plain values are read (torch's `weights_only`). Nothing else that a
     file may contain is run.
 
-    Args:
-      path: the file.
-      kind: kind of model that the file must hold.
-      config_type: class of its settings.
-
     Raises:
       BadModelError: the file is missing, damaged, or holds another kind of model.
     """

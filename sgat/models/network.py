@@ -39,12 +39,7 @@ class Network:
         return int(self.weights[-1].shape[2])
 
     def member(self, which: int, x: FloatArray) -> Float32Array:
-        """(n, outputs) answers of one network.
-
-        Args:
-          which: its number.
-          x: (n, inputs).
-        """
+        """(n, outputs) answers of network number `which` for inputs x (n, inputs)."""
         values: Any = x.astype(np.float32)
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             values = np.tanh(values @ weight[which] + bias[which])
@@ -52,13 +47,7 @@ class Network:
         return last
 
     def slope(self, which: int, x: FloatArray, inputs: int) -> Float32Array:
-        """(n, outputs, inputs) derivative of one network by its last inputs.
-
-        Args:
-          which: number of the network.
-          x: (n, all inputs).
-          inputs: number of last input columns to differentiate by.
-        """
+        """(n, outputs, inputs) derivative of one network by its last inputs."""
         values: Any = x.astype(np.float32)
         slope: Any = np.eye(self.inputs, dtype=np.float32)[-inputs:]
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
@@ -68,12 +57,7 @@ class Network:
         return last
 
     def mixed(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs) answers, each row by its own network.
-
-        Args:
-          x: (n, inputs).
-          member: (n,) number of the network for each row.
-        """
+        """(n, outputs) answers for x (n, inputs); `member` (n,) numbers networks."""
         if self.members == 1:
             return self.member(0, x)
         result = np.empty((len(x), self.outputs), np.float32)

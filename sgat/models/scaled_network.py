@@ -75,12 +75,7 @@ class ScaledNetwork:
         return cls(inputs, targets, network)
 
     def raw(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs) raw outputs.
-
-        Args:
-          x: (n, inputs) in their own units.
-          member: (n,) number of the network for each row.
-        """
+        """(n, outputs) raw answers for x (n, inputs), each row by its own network."""
         if x.ndim != 2 or x.shape[1] != self.network.inputs:
             raise BadValueError(
                 f"a model of {self.network.inputs} inputs was given the shape {x.shape}"
@@ -101,11 +96,7 @@ class ScaledNetwork:
 
     @classmethod
     def from_tensors(cls, tensors: dict[str, Tensor]) -> Self:
-        """The network that `to_tensors` has described.
-
-        Raises:
-          ValueError: the shapes do not fit together.
-        """
+        """The network of `to_tensors`; ValueError if the shapes do not fit together."""
         arrays = {name: tensor.numpy() for name, tensor in tensors.items()}
         inputs, targets = (
             Scaling(

@@ -23,12 +23,7 @@ epoch."""
 
 
 def squared_error(raw: Tensor, y: Tensor) -> Tensor:
-    """(members, n) squared errors of the first d outputs.
-
-    Args:
-      raw: (members, n, outputs).
-      y: (n, d) targets.
-    """
+    """(members, n) squared errors of the first d raw outputs against y (n, d)."""
     return (raw[..., : y.shape[-1]] - y).square().sum(dim=-1)
 
 
@@ -131,12 +126,7 @@ def _first_parameters(
 
 
 def raw_outputs(parameters: Sequence[Tensor], x: Tensor) -> Tensor:
-    """(members, n, outputs): the same as `Network` computes, with gradients.
-
-    Args:
-      parameters: weight, bias, weight, bias ..., each with a first axis of members.
-      x: (n, inputs) scaled inputs.
-    """
+    """(members, n, outputs) answers of networks to x (n, inputs), with gradients."""
     values = x.expand(len(parameters[0]), *x.shape)
     for weight, bias in zip(parameters[:-2:2], parameters[1:-2:2], strict=True):
         values = torch.tanh(torch.baddbmm(bias, values, weight))

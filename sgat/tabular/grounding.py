@@ -32,19 +32,13 @@ def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMd
 def action_transformer(
     sim: FiniteMdp, forward: FloatArray, samples: bool
 ) -> FloatArray:
-    """(S, A, A) probability that an action becomes another action.
+    """(S, A, A) probability that an action becomes another; see `grounded_sim`.
 
     g(s, a) = f_inv(s, f_real(s, a)). For finite states, GAT's deterministic forward
     model is the most likely next state (the first of equally likely ones), since a mean
     of states has no meaning. Next states that no action of the sim leads to cannot be
     imitated: the probabilities of the other ones are scaled up. If none is left, the
     action stays as it is.
-
-    Args:
-      sim: a deterministic simulator.
-      forward: (S, A, S) probabilities of the real next states.
-      samples: whether next states are sampled (SGAT) or the most likely one is taken
-        (GAT).
     """
     inverse = inverse_model(sim)
     wanted = np.where((inverse != NONE)[:, np.newaxis], forward, 0)

@@ -53,11 +53,7 @@ def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray
 def policy_values(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
     """(S,) expected sum of rewards from each state on; 0 where episodes end.
 
-    Solves v = P (r + g v), where the rows of P belong to the policy's actions.
-
-    Args:
-      mdp: the world.
-      policy: (S,) actions.
+    Solves v = P (r + g v), where the rows of P belong to the policy's actions (S,).
     """
     steps = _steps(mdp, policy)
     system = np.eye(mdp.states) - GOES_ON * steps
@@ -65,12 +61,7 @@ def policy_values(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
 
 
 def action_values(mdp: FiniteMdp, values: FloatArray) -> FloatArray:
-    """(S, A) value of taking an action now.
-
-    Args:
-      mdp: the world.
-      values: (S,) values of the states afterwards.
-    """
+    """(S, A) value of an action now, if the states after it have the values (S,)."""
     after: FloatArray = mdp.transition @ (mdp.reward + GOES_ON * values)
     after[mdp.ends] = 0
     return after

@@ -38,23 +38,11 @@ class ActionNoise:
         self._stream: NoiseStream | None = None
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode.
-
-        Args:
-          seeds: n seeds of the robots' noise.
-        """
+        """Start an episode of n robots, each with its own seed."""
         self._stream = NoiseStream(WhiteNoise(len(self._low)), seeds)
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """Noisy actions of one tick; call it once per tick.
-
-        Args:
-          state: (n, s) states, which are not used.
-          action: (n, a) actions that the policy asks for.
-
-        Returns:
-          (n, a) actions within the bounds.
-        """
+        """(n, a) noisy actions of one tick; the states (n, s) are not used."""
         if self._stream is None or self._stream.n != len(action):
             raise BadValueError(f"reset with {len(action)} seeds before they act")
         noise, _ = self._stream.draw()

@@ -88,35 +88,26 @@ class ActionTransformer:
 
     @property
     def inverse_columns(self) -> int | None:
-        """Number of first columns of a state that the inverse model sees; None: all."""
+        """Number of state columns that the inverse model sees; None for all."""
         columns: int | None = self._columns.stop
         return columns
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode.
-
-        Args:
-          seeds: n seeds of the robots' noise.
-        """
+        """Start an episode of n robots, each with its own seed."""
         if self.noise is not None:
             self._stream = NoiseStream(self.noise, seeds)
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """Transform the actions of one tick; with noise, call it once per tick.
+        """(n, a) actions for the sim, of states (n, s) and the policy's actions (n, a).
 
-        Args:
-          state: (n, s) states.
-          action: (n, a) actions that the policy asks for.
-
-        Returns:
-          (n, a) actions for the sim, within the bounds.
+        With noise, each call is one tick.
         """
         found = self._find(state, action)
         found = action + self.smoothing * (found - action)
         return np.clip(found, self._low, self._high)
 
     def save(self, folder: Path) -> dict[str, Any]:
-        """Write both models into a folder; see `KeptTransformer.save`.
+        """Write both models into a folder; see `KeptTransformer`.
 
         Raises:
           BadValueError: the noise is not white; other laws hold data.
@@ -138,7 +129,7 @@ class ActionTransformer:
     def load(
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
-        """Read both models back; see `KeptTransformer.load`."""
+        """Read both models back; see `KeptTransformer`."""
         kind = DistributionalInverse if header["distributional"] else InverseModel
         white = header["noise_dimensions"]
         return cls(

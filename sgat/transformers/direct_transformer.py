@@ -62,13 +62,7 @@ class DirectTransformer:
     def __init__(
         self, low: FloatArray, high: FloatArray, config: NetworkConfig | None = None
     ) -> None:
-        """Prepare a transformer; `fit` or `load` gives it its network.
-
-        Args:
-          low: (a,) least action.
-          high: (a,) largest action.
-          config: shape and training of the network.
-        """
+        """Choose the action's bounds (a,), and shape and training of the network."""
         self.config = NetworkConfig() if config is None else config
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
         self._fitted: ScaledNetwork | None = None
@@ -121,22 +115,14 @@ class DirectTransformer:
         """Start an episode; the seeds are not used, since nothing here is random."""
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """The actions for the sim.
-
-        Args:
-          state: (n, s) states.
-          action: (n, a) actions that the policy asks for.
-
-        Returns:
-          (n, a) actions within the bounds.
-        """
+        """(n, a) actions for the sim, of states (n, s) and asked actions (n, a)."""
         network = self._network
         member = np.zeros(len(state), np.intp)
         raw = network.raw(np.hstack([state, action]), member)
         return np.clip(network.targets.from_scaled(raw), self._low, self._high)
 
     def save(self, folder: Path) -> dict[str, Any]:
-        """Write the network into a folder; see `KeptTransformer.save`."""
+        """Write the network into a folder; see `KeptTransformer`."""
         write_model(folder / DIRECT, _KIND, self.config, self._network)
         return {}
 
@@ -144,11 +130,7 @@ class DirectTransformer:
     def load(
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
-        """Read the network back; see `KeptTransformer.load`.
-
-        Raises:
-          BadModelError: the folder holds no direct transformer.
-        """
+        """Read the network back; see `KeptTransformer`."""
         path = folder / DIRECT
         config, network = read_model(path, _KIND, NetworkConfig)
         if network.network.outputs != len(network.targets.mean):
@@ -214,9 +196,6 @@ class UnevenSim(Grounding):
 
         It learns from the directly moved columns of next states, such as the joints':
         the sim's own lumps move the torso.
-
-        Raises:
-          BadValueError: there are no transitions of an uneven sim.
         """
         return data.once(self.name, lambda: _fit_direct(data))
 

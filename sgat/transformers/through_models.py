@@ -21,16 +21,13 @@ MEMBERS = 4
 
 @dataclass(frozen=True)
 class ThroughModels(Grounding):
-    """Grounding by g(s, a) = f_inv(s, f_real(s, a)).
+    """Grounding by g(s, a) = f_inv(s, f_real(s, a)); see also `Grounding`.
 
     Attributes:
-      name: see `Grounding`.
-      title: see `Grounding`.
       noise: "none": f_real answers its mean, as in GAT; "white": it answers a sample,
         as in SGAT; "blocks": a sample made of consecutive residuals of real data.
       head: family of the distributions that f_real predicts.
-      members: networks in f_real.
-      means: see `Grounding`.
+      members: number of networks in f_real.
     """
 
     name: str

@@ -13,21 +13,14 @@ class Transformer(Protocol):
     """Stands between a policy and n robots of a world, and changes their actions."""
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode.
-
-        Args:
-          seeds: one for each of the n robots.
-        """
+        """Start an episode of n robots, each with its own seed."""
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """The actions that the world is given.
+        """(n, a) actions that the world is given, in the unit of the policy's.
 
         Args:
-          state: (n, s) states of the robots, in the world's units.
+          state: (n, s) states of the robots.
           action: (n, a) actions that the policy asks for.
-
-        Returns:
-          (n, a) actions, in the same units as the policy's.
         """
 
 
@@ -55,11 +48,4 @@ class KeptTransformer(Transformer, Protocol):
     def load(
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
-        """Read back what `save` has written.
-
-        Args:
-          folder: holds the models.
-          header: what `save` has returned.
-          low: (a,) least action.
-          high: (a,) largest action.
-        """
+        """Read back what `save` has written, with the least and largest action (a,)."""

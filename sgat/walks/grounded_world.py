@@ -41,22 +41,14 @@ class GroundedWorld(WorldWrapper):
         self._seeds = list(seeds)
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground; see `World.reset`.
-
-        Args:
-          pose_rad: (n, joints) joint positions [rad].
-        """
+        """Put every robot on its ground, in poses (n, joints) [rad]."""
         observation = self.world.reset(pose_rad)
         self._senses.reset(observation)
         self._transformer.reset(self._seeds)
         return observation
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance by one tick with the transformed command; see `World.step`.
-
-        Args:
-          command_rad: (n, joints) position targets [rad].
-        """
+        """Advance by one tick with commands (n, joints) [rad], transformed."""
         senses = self._senses
         action = self._transformer(senses.state(), senses.action(command_rad))
         transformed_rad = senses.command(action, command_rad)

@@ -45,11 +45,7 @@ class WalkSenses:
     """
 
     def __init__(self, joints: Sequence[int]) -> None:
-        """Choose the joints.
-
-        Args:
-          joints: columns of (n, joints) arrays that are grounded.
-        """
+        """Choose the columns of (n, joints) arrays that are grounded."""
         self.joints = list(joints)
         self.outcomes = len(self.joints) + 5
         self.sim_columns = self.outcomes + len(self.joints)
@@ -86,10 +82,8 @@ class WalkSenses:
     ) -> FloatArray:
         """(n, s) states one tick later, for predictions of several ticks.
 
-        Args:
-          state: (n, s) states.
-          action: (n, j) actions.
-          outcome: (n, p) predicted next states; the other columns follow from them.
+        `outcome` (n, p) is the predicted next state after states (n, s) and actions (n,
+        j); the other columns follow from them.
         """
         j = len(self.joints)
         moved = outcome[:, :j] - state[:, :j]
@@ -98,30 +92,17 @@ class WalkSenses:
         return np.hstack([outcome, moved, *later])
 
     def action(self, command_rad: FloatArray) -> FloatArray:
-        """(n, j) actions that commands stand for [rad].
-
-        Args:
-          command_rad: (n, joints) position targets [rad].
-        """
+        """(n, j) actions that commands (n, joints) stand for, both in rad."""
         return np.asarray(command_rad[:, self.joints] - self._last_rad)
 
     def command(self, action: FloatArray, command_rad: FloatArray) -> FloatArray:
-        """(n, joints) commands [rad] that carry out actions.
-
-        Args:
-          action: (n, j) actions [rad].
-          command_rad: (n, joints) position targets [rad], which the other joints keep.
-        """
+        """Commands (n, joints) [rad], changed to carry out actions (n, j) [rad]."""
         changed = command_rad.copy()
         changed[:, self.joints] = action + self._last_rad
         return changed
 
     def remember(self, command_rad: FloatArray) -> None:
-        """Add the command of this tick to the history.
-
-        Args:
-          command_rad: (n, joints) position targets [rad].
-        """
+        """Add the commands (n, joints) [rad] of this tick to the history."""
         self._past.append(command_rad[:, self.joints])
 
 

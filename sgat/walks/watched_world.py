@@ -59,11 +59,7 @@ class WatchedWorld(WorldWrapper):
         self._generator = np.random.default_rng(seed)
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground and forget all transitions; see `World.reset`.
-
-        Args:
-          pose_rad: (n, joints) joint positions [rad].
-        """
+        """Start anew in poses (n, joints) [rad]; forget earlier transitions."""
         observation = self.world.reset(pose_rad)
         self._senses.reset(observation)
         self._noise = np.zeros((self.n, len(self._senses.joints)))
@@ -72,11 +68,7 @@ class WatchedWorld(WorldWrapper):
         return observation
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance by one tick, with noise on the command; see `World.step`.
-
-        Args:
-          command_rad: (n, joints) position targets [rad].
-        """
+        """Advance by one tick, with noise added to the commands (n, joints) [rad]."""
         senses, walking = self._senses, self.active
         self._noise = self._next_noise()
         state = senses.state()

@@ -13,11 +13,7 @@ class WorldWrapper:
     """
 
     def __init__(self, world: World) -> None:
-        """Wrap a world.
-
-        Args:
-          world: the world inside.
-        """
+        """Wrap a world."""
         self.world = world
 
     @property
@@ -46,27 +42,15 @@ class WorldWrapper:
         return self.world.active
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground; see `World.reset`.
-
-        Args:
-          pose_rad: (n, joints) joint positions [rad].
-        """
+        """Put every robot on its ground, in poses (n, joints) [rad]."""
         return self.world.reset(pose_rad)
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance the active robots by one tick; see `World.step`.
-
-        Args:
-          command_rad: (n, joints) position targets [rad].
-        """
+        """Advance the active robots by one tick with commands (n, joints) [rad]."""
         return self.world.step(command_rad)
 
     def stop(self, robots: BoolArray) -> None:
-        """Take robots out of the batch; see `World.stop`.
-
-        Args:
-          robots: (n,) mask.
-        """
+        """Take the robots of a mask (n,) out of the batch."""
         self.world.stop(robots)
 
     def truth(self) -> Truth:

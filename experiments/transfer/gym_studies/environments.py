@@ -48,11 +48,7 @@ class Domain:
         return self._behind(transformer, self._plain())
 
     def noisy_sim(self, noise: float) -> Environment:
-        """The sim with noise on its actions.
-
-        Args:
-          noise: standard deviation, in the unit of `real`.
-        """
+        """The sim with noise on its actions, in the unit of `real`."""
         return self._behind(self._noise(noise), self._plain())
 
     def real(self, setting: str, noise: float) -> Environment:

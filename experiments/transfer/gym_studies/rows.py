@@ -101,12 +101,7 @@ def _below_real(row: Row) -> Claim:
 
 
 def returns_table(rows: Sequence[Row], way: str) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows of mean returns, with standard errors over seeds.
-
-    Args:
-      rows: from `rows_of`.
-      way: how the policies were tried, one of `WAYS`.
-    """
+    """Headings and rows of mean returns on real, tried in one of `WAYS`."""
     names = list(rows[0]["methods"])
     texts = [
         [row["setting"], f"{row['noise']:g}"]
@@ -117,11 +112,7 @@ def returns_table(rows: Sequence[Row], way: str) -> tuple[list[str], list[list[s
 
 
 def measures_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows of numbers on how each policy was found.
-
-    Args:
-      rows: from `rows_of`.
-    """
+    """Headings and rows of numbers on how each policy was found."""
     texts = []
     for row in rows:
         for name, method in row["methods"].items():

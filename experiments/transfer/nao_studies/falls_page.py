@@ -39,12 +39,7 @@ speeds."""
 
 
 def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
-    """How well each grounding predicts falls and speeds.
-
-    Args:
-      state: fall rates and speeds [cm/s] of each gait, for "real" and for each
-        grounding.
-    """
+    """How well each grounding predicts the falls and speeds of the stage "real"."""
     real = {name: np.array(values) for name, values in state["real"].items()}
     rows: list[Row] = []
     for name in GROUNDINGS:
@@ -62,12 +57,7 @@ def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
 
 
 def correlation(predicted: FloatArray, real: FloatArray) -> float | None:
-    """Pearson's correlation; None if one of the two does not vary.
-
-    Args:
-      predicted: (gaits,) values.
-      real: (gaits,) values.
-    """
+    """Pearson's correlation of (gaits,) values; None if one side does not vary."""
     if predicted.std() == 0 or real.std() == 0:
         return None
     return float(np.corrcoef(predicted, real)[0, 1])

@@ -49,14 +49,9 @@ def table_of(cells: Sequence[Cell]) -> list[list[str]]:
 
 
 def more_falls_p(often: Cell, seldom: Cell) -> float:
-    """Fisher's exact test: p value of the difference in falls.
+    """Fisher's exact test, one-sided: p value of the first cell's more frequent falls.
 
-    One-sided: the first cell falls more often (Fisher 1922). The null hypothesis is
-    that both fall equally often.
-
-    Args:
-      often: cell that seems to fall more often.
-      seldom: the other cell.
+    The null hypothesis is that both cells fall equally often (Fisher 1922).
     """
     from scipy.stats import fisher_exact
 
@@ -67,14 +62,9 @@ def more_falls_p(often: Cell, seldom: Cell) -> float:
 
 
 def faster_p(fast: Cell, slow: Cell) -> float:
-    """Welch's test: p value of the difference in speed.
+    """Welch's test, one-sided: p value of the first cell's higher speed.
 
-    One-sided: the first cell is faster (Welch 1947). The null hypothesis is that both
-    are equally fast.
-
-    Args:
-      fast: cell that seems to be faster.
-      slow: the other cell.
+    The null hypothesis is that both cells are equally fast (Welch 1947).
     """
     from scipy.stats import ttest_ind_from_stats
 
