@@ -84,7 +84,7 @@ def run_hidden(
     return replace(
         run,
         sense=_upright(run.sense, around.tilt()),
-        ok=run.ok and (ground is None or _stands(run.sense, ground)),
+        ok=run.ok and (ground is None or stands(run.sense, ground)),
     )
 
 
@@ -117,8 +117,14 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
     )
 
 
-def _stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
-    """Whether a floating base has numbers and has not fallen, in the ground's frame."""
+def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
+    """Whether a floating base has finite numbers and never falls (`worlds.falls`).
+
+    Args:
+      felt: "position_m" (rows, 3) and "orientation" (rows, 4) w, x, y, z of the base,
+        in the ground's frame.
+      ground: what it stands on.
+    """
     place_m, turn = felt["position_m"], felt["orientation"]
     if not (np.isfinite(place_m).all() and np.isfinite(turn).all()):
         return False
