@@ -1,0 +1,281 @@
+"""How each command of the pages is run in a test: smaller, or not at all and why.
+
+A page's commands are run in its order in one fresh folder, so that each finds what the
+steps before it wrote. What is changed are options that a user has: sizes are turned
+down, and a viewer is not opened.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Run:
+    """A command that is run.
+
+    Attributes:
+      options: put behind the command; where an option stands twice the last one counts.
+      without: words that are left out.
+      writes: files that must be there afterwards and can be opened, as glob patterns
+        below the folder.
+      says: part of what must be printed.
+    """
+
+    options: str = ""
+    without: tuple[str, ...] = ()
+    writes: tuple[str, ...] = ()
+    says: str = ""
+
+
+@dataclass(frozen=True)
+class NotRun:
+    """A command that no test can run, and what stands in for it.
+
+    Attributes:
+      reason: why not.
+      brother: a smaller command that is run in the same place of the journey.
+      status: exit status of the brother.
+      says: part of what the brother must print.
+    """
+
+    reason: str
+    brother: str
+    status: int = 0
+    says: str = ""
+
+
+Step = Run | NotRun
+
+SEARCH = "--population 4 --generations 1 --trials 1"
+FILM = "--duration 0.3 --width 64 --height 64"
+SMALL_STUDY = (
+    "--trials 2 --population 4 --generations 1 --repeats 1 --real-walks 4 "
+    "--more-real-walks 2 --sim-walks 4 --real-population 4 --real-generations 1"
+)
+STUDY = f"--methods 'no grounding' SGAT {SMALL_STUDY}"
+TUNED = (
+    "report.html", "result.json", "result.md", "config.json", "provenance.json",
+    "history.json", "walk.rrd", "walk.png", "search.png", "recordings/*.parquet",
+)  # fmt: skip
+CONCEALED = ("set/cases/case_000/**/*.parquet", "set/sealed.sha256")
+DIAGNOSED = ("report.html", "diagnosis.json", "audit.json", "overlay.rrd")
+
+
+def below(folder: str, names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names as they are found below a folder."""
+    return tuple(f"{folder}/{name}" for name in names)
+
+
+def make(target: str, reason: str) -> NotRun:
+    """A target of the Makefile that takes too long; what it would do is printed."""
+    return NotRun(reason, f"make -n {target}", says="groundwalk")
+
+
+REAL = NotRun(
+    "minutes to an hour, with recordings of real robots that are not in the repository",
+    "groundwalk real-robots so101 --data nowhere",
+    status=2,
+    says="nowhere",
+)
+"""Without the recordings there is one clear line."""
+
+JOURNEYS: dict[str, dict[str, Step]] = {
+    "README.md": {
+        "make walk": make("walk", "six minutes; optimize-gait below is the same"),
+        "make test": NotRun("it runs this test", "make -n test", says="pytest"),
+        "groundwalk optimize-gait --population 150 --generations 15 --seed 1 "
+        "--out runs/mine": Run(SEARCH, writes=below("runs/mine", TUNED), says="sim"),
+        "groundwalk optimize-gait --resume runs/mine": Run(says="tuned"),
+        "groundwalk evaluate start runs/mine/result.json --trials 30": Run(
+            "--trials 1 --out runs/evaluated",
+            writes=below("runs/evaluated", ("report.html", "result.json", "walk.png")),
+        ),
+        "groundwalk evaluate start --worlds real --terrain lumps:amplitude_m=0.006": (
+            Run("--trials 1", says="real")
+        ),
+        "groundwalk optimize-gait --robot talos": Run(
+            f"{SEARCH} --out runs/talos", writes=below("runs/talos", TUNED)
+        ),
+        "groundwalk terrain-stress start runs/mine/result.json": Run(
+            "--families lumps --worlds sim --rungs 2 --trials 1 --out runs/stressed",
+            writes=below("runs/stressed", ("report.html", "result.json", "*.png")),
+        ),
+        "groundwalk visualize runs/mine --open": Run(
+            without=("--open",), writes=("runs/mine/walk.rrd", "runs/mine/search.rrd")
+        ),
+        "groundwalk render runs/mine --only tuned --out walk.gif": Run(
+            FILM, writes=("walk.gif",)
+        ),
+        "groundwalk transfer toy": Run(
+            "--out runs/toy", writes=("runs/toy/report.html", "runs/toy/result.json")
+        ),
+        "groundwalk transfer nao": Run(
+            f"{STUDY} --out runs/nao",
+            writes=("runs/nao/report.html", "runs/nao/result.json", "runs/nao/*.png"),
+        ),
+        "groundwalk transfer nao-falls": NotRun(
+            "a minute at its smallest, most of it spent on fitting networks",
+            "groundwalk transfer cliff --noise 0.1 --episodes 100 --real-episodes 5",
+            says="holds",
+        ),
+        "groundwalk record --robot nao --world real --motion chirp --hidden "
+        "backlash@LKneePitch:gap=0.03 --out air.parquet": Run(
+            "--duration 3", writes=("air.parquet",)
+        ),
+        "groundwalk diagnose air.parquet --robot nao": Run(
+            "--out runs/air", writes=below("runs/air", DIAGNOSED), says="verdict"
+        ),
+        "groundwalk concealed make set --cases 20 --seed 7": Run(
+            "--cases 1", writes=CONCEALED
+        ),
+        "groundwalk export nao --format urdf --out nao.urdf": Run(writes=("nao.urdf",)),
+        "groundwalk list robots": Run(says="nao"),
+        "groundwalk list terrains": Run(says="lumps"),
+        "groundwalk list gaits": Run(says="walk2014"),
+        "groundwalk list effects": Run(says="backlash"),
+        "groundwalk doctor": Run(says="mujoco"),
+        "make results": make("results", "hours: it writes every page of docs/results"),
+        "make results-pictures": make("results-pictures", "a minute of drawing"),
+        "make env": NotRun("it sets up what this test runs in", "make -n env"),
+        "python -m experiments.optimize_gait": NotRun(
+            "the same as groundwalk optimize-gait above",
+            "python -m experiments.optimize_gait --help",
+            says="--population",
+        ),
+        "make bench": NotRun("minutes of timing", "make -n bench", says="benchmarks"),
+    },
+    "concealed.md": {
+        "groundwalk concealed make set": Run(
+            "--cases 1 --seed 7",
+            writes=CONCEALED,
+        ),
+        "groundwalk concealed run set": Run(writes=("set/answers/case_000.json",)),
+        "groundwalk concealed run set --by sysid": Run(),
+        "groundwalk concealed score set": Run(
+            writes=("set/score.json", "set/score.md", "set/score.png")
+        ),
+        "make results-concealed": make("results-concealed", "two hours"),
+    },
+    "diagnosis.md": {
+        "groundwalk record --robot so101 --motion multisine --hidden "
+        "coulomb_friction@elbow_flex:torque=0.1 --out a.parquet": Run(
+            "--duration 4", writes=("a.parquet", "a.nominal.urdf")
+        ),
+        "groundwalk record --robot so101 --motion ramps --seed 2 --hidden "
+        "coulomb_friction@elbow_flex:torque=0.1 --out b.parquet": Run(
+            "--duration 4", writes=("b.parquet",)
+        ),
+        "groundwalk diagnose a.parquet b.parquet --robot a.nominal.urdf "
+        "--out runs/elbow": Run(
+            writes=below("runs/elbow", (*DIAGNOSED, "corrected.xml", "corrected.json")),
+            says="elbow_flex",
+        ),
+        "groundwalk record --robot nao --motion multisine --duration 20 --hidden "
+        "speed_limit@LKneePitch:speed=2.5 --out knee.parquet": Run(
+            "--duration 3", writes=("knee.parquet",)
+        ),
+        "groundwalk diagnose knee.parquet --robot nao --out runs/knee": Run(
+            writes=below("runs/knee", (*DIAGNOSED, "corrected.json")), says="LKneePitch"
+        ),
+        "groundwalk optimize-gait --sim runs/knee": Run(
+            f"{SEARCH} --out runs/tuned", writes=("runs/tuned/report.html",)
+        ),
+        "groundwalk transfer nao --sim runs/knee --hidden "
+        "speed_limit@LKneePitch:speed=2.5": Run(
+            f"{STUDY} --out runs/nao", writes=("runs/nao/report.html",)
+        ),
+        "groundwalk diagnose air.parquet --robot nao": NotRun(
+            "how commands look in general; those above are of this kind",
+            "groundwalk diagnose --help",
+            says="--reference",
+        ),
+        "make results-diagnosed-gait": make("results-diagnosed-gait", "an hour"),
+        "groundwalk real-robots so101 --data data": REAL,
+        "groundwalk real-robots emps --data data": REAL,
+        "groundwalk real-robots go2 --data data": REAL,
+        "make results-diagnosis DATA=data": NotRun(
+            "recordings of real robots, which are not in the repository",
+            "make -n results-diagnosis DATA=data",
+        ),
+    },
+    "architecture.md": {
+        "make lint": NotRun("a minute, beside the tests", "make -n lint", says="ruff"),
+        "python docs/draw_rooms.py docs/architecture.png": Run(
+            "rooms.png", without=("docs/architecture.png",), writes=("rooms.png",)
+        ),
+    },
+    "uneven_ground.md": {
+        "groundwalk evaluate start docs/results/walk/result.json --worlds real "
+        "--trials 10": Run("--trials 1", says="real"),
+        "groundwalk optimize-gait --terrain lumps:amplitude_m=0.008 --population 30 "
+        "--generations 5 --out runs/lumps": Run(
+            SEARCH, writes=below("runs/lumps", TUNED)
+        ),
+        "groundwalk evaluate runs/lumps/result.json --worlds real --trials 10": Run(
+            "--trials 1", says="real"
+        ),
+        'groundwalk transfer nao --methods "SGAT, uneven sim" --real-walks 24 '
+        "--more-real-walks 12 --sim-walks 48 --population 30 --generations 3 "
+        "--trials 10 --out runs/grounded": Run(
+            SMALL_STUDY, writes=("runs/grounded/report.html",)
+        ),
+        "groundwalk transfer nao --resume runs/grounded": Run(says="SGAT"),
+        "make walk": make("walk", "six minutes; optimize-gait above is the same"),
+    },
+    "robots.md": {
+        "groundwalk optimize-gait --robot g1 --out runs/g1": Run(
+            SEARCH, writes=below("runs/g1", TUNED)
+        ),
+        "groundwalk optimize-gait --robot my_robot.urdf": Run(
+            f"{SEARCH} --out runs/own", writes=below("runs/own", TUNED)
+        ),
+        "groundwalk evaluate runs/g1/result.json --robot g1": Run("--trials 1"),
+        "groundwalk visualize runs/g1 --open": Run(
+            without=("--open",), writes=("runs/g1/walk.rrd",)
+        ),
+        "groundwalk export g1 --format mjcf": Run(says="<mujoco"),
+        "groundwalk humanoids": NotRun(
+            "a quarter of an hour for all robots that have a name",
+            "groundwalk humanoids --robots g1 --population 4 --generations 1 "
+            "--trials 1 --real-trials 1",
+            says="g1",
+        ),
+        "groundwalk list robots": Run(says="g1"),
+        "groundwalk humanoids --robots my_robot.urdf": Run(
+            "--population 4 --generations 1 --trials 1 --real-trials 1 "
+            "--out runs/humanoids",
+            writes=("runs/humanoids/report.html", "runs/humanoids/humanoids.png"),
+        ),
+    },
+    "seeing.md": {
+        "groundwalk evaluate start walk2014 --trials 3 --out runs/mine": Run(
+            "--trials 1", writes=("runs/mine/report.html", "runs/mine/walk.rrd")
+        ),
+        "groundwalk visualize runs/mine --open": Run(
+            without=("--open",), writes=("runs/mine/walk.rrd",)
+        ),
+        "groundwalk visualize runs/mine/recordings/sim_start.parquet "
+        "runs/mine/recordings/real_start.parquet --out both.rrd": Run(
+            writes=("both.rrd",)
+        ),
+        "groundwalk render runs/mine --only start --out walk.gif": Run(
+            FILM, writes=("walk.gif",)
+        ),
+        "groundwalk render runs/mine/recordings/real_start.parquet --frames 6 "
+        "--out strip.png": Run("--width 64 --height 64", writes=("strip.png",)),
+    },
+    "terrain_stress.md": {
+        "groundwalk terrain-stress start docs/results/walk/result.json "
+        "--out runs/stress": Run(
+            "--families lumps --rungs 2 --trials 1",
+            writes=below("runs/stress", ("report.html", "result.json", "*.png")),
+        ),
+        "groundwalk terrain-stress --resume runs/stress": Run(says="lumps"),
+        "groundwalk terrain-stress start --families stairs friction --worlds real "
+        "--trials 20": Run("--rungs 2 --trials 1", says="friction"),
+        "make results-terrain-stress": make("results-terrain-stress", "an hour"),
+        "groundwalk terrain-stress start": Run(
+            "--families lumps --worlds sim --rungs 2 --trials 1"
+        ),
+    },
+}
+"""By page and by the command as it stands there."""

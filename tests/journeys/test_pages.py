@@ -1,0 +1,34 @@
+"""What the pages tell people to type works: each command, in the order of its page."""
+
+import pytest
+from made_up_urdf import two_legged
+from steps import JOURNEYS, NotRun
+from travel import ROOT, take
+from typed_pages import PAGES, typed
+
+pytestmark = pytest.mark.slow
+
+TYPED = [page for page in PAGES if typed(page)]
+
+
+@pytest.mark.parametrize("page", TYPED, ids=lambda page: page.name)
+def test_a_page(page, tmp_path):
+    """Readers begin in a clone: what it holds of docs/results is there,
+    and so is the URDF of a robot of their own."""
+    (tmp_path / "docs").symlink_to(ROOT / "docs")
+    (tmp_path / "my_robot.urdf").write_text(two_legged())
+    for command in typed(page):
+        take(tmp_path, command, JOURNEYS[page.name][command])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_command_of_a_page_belongs_to_its_journey(page):
+    """A command that a page gains, loses or changes needs a step here."""
+    assert set(JOURNEYS.get(page.name, {})) == set(typed(page))
+
+
+def test_what_is_not_run_says_why():
+    steps = [step for journey in JOURNEYS.values() for step in journey.values()]
+    left_out = [step for step in steps if isinstance(step, NotRun)]
+    assert all(step.reason and step.brother for step in left_out)
+    assert len(left_out) < len(steps) / 2
