@@ -154,7 +154,7 @@ Read = tuple[Plant, list[Trace], list[Trace]]
 
 
 def _read(config: Diagnose) -> Read:
-    """Read all recordings."""
+    """Read the robot model, its recordings and the reference recordings."""
     plant, traces = read_traces(config.recordings, config.robot, config.gains)
     reference = read_reference(config.reference, config.robot, plant, config.gains)
     return plant, traces, reference

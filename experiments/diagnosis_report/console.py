@@ -103,7 +103,7 @@ def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
 
 
 def _found(effect: Found) -> str:
-    """For example "play (backlash) at ...: gap 0.030 rad (0.027 to 0.034); 97 %"."""
+    """One effect: "play (backlash) at ...: gap 0.030 rad (0.027 to 0.034); 97 %"."""
     values = ", ".join(f"{name} {value}" for name, value in parameter_rows(effect))
     return f"{at_words(effect)}: {values}; {percent(effect.probability)} sure"
 

@@ -65,7 +65,11 @@ def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
 
 
 def share(right: Iterable[bool]) -> Figure:
-    """Share of what is true, with Wilson's interval."""
+    """Share of true values among all, as a figure with Wilson's interval.
+
+    Args:
+      right: whether each thing counted is right.
+    """
     values = list(right)
     if not values:
         return {"value": None, "n": 0, "low": None, "high": None}
@@ -109,7 +113,12 @@ def calibration_error(marks: Sequence[Mark]) -> float:
 
 
 def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
-    """Mean stated probability, and share of right names, in each bin with cases."""
+    """Calibration by bins of stated probability, for the bins that hold cases.
+
+    Returns:
+      For each bin the mean stated probability ("stated"), the number of cases ("n") and
+      the share whose first effect has a true name ("right").
+    """
     bins: dict[int, list[Mark]] = {}
     for each in marks:
         if each.probability is not None:

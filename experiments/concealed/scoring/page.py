@@ -50,7 +50,7 @@ class Goal:
 
     @property
     def asked(self) -> str:
-        """The bounds in words."""
+        """The goal in words, such as "at least 0.9"; empty without bounds."""
         if self.low is not None and self.high is not None:
             return f"{self.low:.0%} to {self.high:.0%}"
         if self.low is not None:
