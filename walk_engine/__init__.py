@@ -1,7 +1,11 @@
-"""Gait parameters to joint commands, for n robots at once; never steps a world.
+"""The walk engine: turns gait parameters into joint commands, for n robots at once.
 
-engine = WalkEngine(biped, [gaits.get("walk2014")])
-command = engine.step(Velocity.forward(), gyroscope_rad_s, foot_force_n)
+It never steps a world: it is given measurements and returns commands. Gaits that have a
+name are in `walk_engine.gaits`.
+
+Example:
+  >>> engine = WalkEngine(robots.biped(robots.get("nao")), [gaits.get("walk2014")])
+  >>> command = engine.step(Velocity.forward(), gyroscope_rad_s, foot_force_n)
 """
 
 from walk_engine.engine import WalkEngine

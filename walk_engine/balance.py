@@ -1,12 +1,12 @@
 """Gyroscope feedback to the ankles.
 
-Turning rates are positive about the torso's axes (x forward, y left, z up), ankle
-angles about the same axes when the leg is straight, so both signs follow from one
-thought. A torso that pitches forward has a positive rate about y. A positive ankle
-pitch turns the foot about y against the shin, toes down, so the pressure moves
-forward under the foot and pushes back. Likewise a torso that rolls to its right has a
-positive rate about x, and a positive ankle roll turns the foot's right edge down.
-Both gains are therefore added with a plus, on both feet.
+Turning rates are positive about the torso's axes (x forward, y left, z up); ankle
+angles are positive about the same axes when the leg is straight. A torso that pitches
+forward has a positive rate about y. A positive ankle pitch turns the foot about y
+against the shin, toes down, so that the pressure moves forward under the foot and
+pushes back. A torso that rolls to its right has a positive rate about x, and a positive
+ankle roll turns the foot's right edge down. Both feedback terms are therefore added
+with a positive sign, on both feet.
 """
 
 import numpy as np
@@ -18,7 +18,16 @@ from walk_engine.walk_state import StateArray, WalkState
 
 
 def weight_of_new(gait: GaitColumns, tick_s: float, config: EngineConfig) -> FloatArray:
-    """Weight of a new sample for which the filter's time constant does not change."""
+    """Weight (n,) of a new gyroscope sample in the low-pass filter.
+
+    The gait's parameter `gyro_filter` holds for 100 Hz; this is the weight with the
+    same time constant at another tick.
+
+    Args:
+      gait: values of the n robots by parameter.
+      tick_s: time between two samples [s].
+      config: the engine's constants.
+    """
     kept: FloatArray = 1.0 - gait["gyro_filter"]
     return 1.0 - kept ** (tick_s / config.gyro_filter_tick_s)
 
@@ -26,14 +35,19 @@ def weight_of_new(gait: GaitColumns, tick_s: float, config: EngineConfig) -> Flo
 def low_pass(
     before_rad_s: FloatArray, rate_rad_s: FloatArray, weight: FloatArray
 ) -> FloatArray:
-    """First-order filter of (k, n) rates."""
+    """Filter rates (k, n) [rad/s] at first order; the new ones have weights (n,)."""
     return before_rad_s + weight * (rate_rad_s - before_rad_s)
 
 
 def feedback_share(state: StateArray, support: StateArray) -> FloatArray:
-    """Which ankles (2, n) take the feedback.
+    """Share (2, n), 0 or 1, of the feedback that each ankle gets: left, then right.
 
-    The support foot while stepping, none while READY, else both.
+    While stepping the ankle of the support foot gets it, in the state READY none, in
+    all other states both.
+
+    Args:
+      state: (n,) states of the robots, `WalkState`.
+      support: (n,) the supporting foot: 1 left, -1 right, 0 both.
     """
     both = np.where(state == WalkState.READY, 0.0, 1.0)
     return np.where(support == 0, both, np.stack((support > 0, support < 0)))

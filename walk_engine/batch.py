@@ -1,6 +1,7 @@
-"""Records of arrays over n robots, and how to change them for some robots only.
+"""Changes records of arrays over n robots, for some of the robots only.
 
-A record is a NamedTuple of arrays, or of records, whose last axis counts the robots.
+A record is a NamedTuple of arrays, or of records. The last axis of every array counts
+the robots.
 """
 
 from typing import NamedTuple, TypeVar
@@ -13,7 +14,13 @@ Record = TypeVar("Record", bound=NamedTuple)
 
 
 def select(chosen: BoolArray, new: Record, old: Record) -> Record:
-    """The new record where a robot is chosen, the old one elsewhere."""
+    """Merge two records: the new one for chosen robots, the old one for the others.
+
+    Args:
+      chosen: (n,) mask of the robots.
+      new: record of arrays (..., n).
+      old: record of the same kind.
+    """
     fields = (
         select(chosen, one, other)
         if isinstance(one, tuple)

@@ -1,16 +1,17 @@
-"""Joint angles of legs whose axes need not meet, by damped Gauss-Newton steps.
+"""Inverse kinematics of legs whose joint axes do not meet in one point.
 
-Let p and R be where the leg's angles q put its last joint, p* and R* where they shall.
-With the joints' axes a_k and places p_k, the Jacobian's columns are
-(a_k x (p - p_k), a_k). The error is e = (p* - p, 1/2 sum_i R e_i x R* e_i), its second
-half the turn from R to R* to second order, and a step is
+Damped Gauss-Newton steps. Let p and R be the position and rotation of the last joint
+for the leg's angles q, and p* and R* their targets. With the joints' axes a_k and
+positions p_k, the columns of the Jacobian J are (a_k x (p - p_k), a_k). The error is
+e = (p* - p, 1/2 sum_i R e_i x R* e_i); its second half is, to second order, the turn
+from R to R*. A step is
 
     q <- q + J^T (J J^T + d^2 E)^-1 e,
 
-lengths in units of the leg's. The damping d and a longest step keep angles finite
-where the leg is straight or the target out of reach. The start is the closed form of
-the leg most like it, so that few steps are enough: as many for every robot, so that
-none depends on what its neighbours do.
+with lengths in units of the leg's length. The damping d and a largest step keep the
+angles finite if the leg is straight or the target out of reach. The steps start from
+the closed form of the most similar leg whose axes do meet, so that few are enough. All
+robots take the same number of steps, so that no robot's bits depend on its neighbours.
 """
 
 import numpy as np
@@ -19,20 +20,24 @@ from groundwalk.arrays import FloatArray
 from robots.leg_geometry import LEG_JOINTS, LegChain
 
 STEPS = 5
+"""Number of Gauss-Newton steps."""
+
 DAMPING = 0.003
+"""The damping d, in leg lengths per radian."""
+
 LONGEST_RAD = 0.5
-"""By which a step may change an angle."""
+"""Largest change of an angle in one step [rad]."""
 
 
 class ChainLegs:
-    """A left and a right leg, each with its own joints."""
+    """Solves the inverse kinematics of a left and a right leg of six joints each."""
 
     def __init__(self, chains: tuple[LegChain, LegChain], length_m: float) -> None:
         """Prepare.
 
         Args:
           chains: the left leg and the right one.
-          length_m: of a leg; the unit of lengths in what a step weighs.
+          length_m: length of a leg [m], the unit of lengths in the equations.
         """
         # Second axis: the two legs, one for each of the first axis' joints.
         self._origins = np.stack([chain.origins_m for chain in chains], axis=1)
@@ -44,11 +49,12 @@ class ChainLegs:
     def angles(
         self, by_role_rad: FloatArray, ankle_m: FloatArray, foot: FloatArray
     ) -> FloatArray:
-        """Angles by role that put both feet where they shall be.
+        """Angles that put both feet at their targets, ordered by role.
 
         Args:
-          by_role_rad: (6, 2, n) angles to start from, as of the leg most like it.
-          ankle_m: (2, n, 3) where the ankles shall be, in the torso's frame.
+          by_role_rad: (6, 2, n) angles to start from, those of the most similar leg
+            whose axes meet.
+          ankle_m: (2, n, 3) target positions of the ankles in the torso's frame.
           foot: (2, n, 3, 3) rotations from the feet's frames to the torso's.
 
         Returns:
@@ -74,12 +80,21 @@ class ChainLegs:
     def error(
         self, q: FloatArray, target_m: FloatArray, foot: FloatArray
     ) -> FloatArray:
-        """(2, n, 6) what is missing to a pose: lengths in leg lengths, then turns."""
+        """Deviation (2, n, 6) from a target pose.
+
+        Args:
+          q: (6, 2, n) joint angles in the order of the chain [rad].
+          target_m: (2, n, 3) target positions of the last joints [m].
+          foot: (2, n, 3, 3) target rotations of the feet.
+
+        Returns:
+          Three deviations in leg lengths, then three in radians.
+        """
         places, rotations, _ = self._forward(q)
         return self._error(places[-1], rotations, target_m, foot)
 
     def _in_chain(self, chain: LegChain, by_role_rad: FloatArray) -> FloatArray:
-        """(6, n) the joints' own angles in the chain's order."""
+        """Convert angles (6, n) by role to the joints' own, in the chain's order."""
         own = chain.signs[:, None] * (by_role_rad - chain.zero_rad[:, None])
         angles = np.empty_like(own)
         angles[chain.order] = own
@@ -88,7 +103,7 @@ class ChainLegs:
     def _step(
         self, q: FloatArray, target_m: FloatArray, foot: FloatArray
     ) -> FloatArray:
-        """(6, 2, n) one step."""
+        """Change (6, 2, n) of the angles [rad] in one Gauss-Newton step."""
         places, rotations, axes = self._forward(q)
         error = self._error(places[-1], rotations, target_m, foot)
         arms = (places[-1] - places) / self._length_m
@@ -112,7 +127,7 @@ class ChainLegs:
         return np.concatenate([shift, turn], axis=-1)
 
     def _forward(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Where the joints are, (6, 2, n, 3), the feet's rotations, and the axes."""
+        """Positions (6, 2, n, 3) of the joints, rotations of the feet, joint axes."""
         sine, cosine = np.sin(q)[..., None, None], 1.0 - np.cos(q)[..., None, None]
         shape = (*q.shape[1:], 3, 3)
         rotation = np.broadcast_to(np.eye(3), shape)
@@ -129,6 +144,6 @@ class ChainLegs:
 
 
 def _skew(axis: FloatArray) -> FloatArray:
-    """The (3, 3) matrix that takes the cross product with an axis."""
+    """The matrix (3, 3) whose product with a vector is the axis' cross product."""
     a, b, c = axis
     return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])

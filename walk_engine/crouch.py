@@ -1,4 +1,4 @@
-"""How far down a robot is, from standing upright to the height to walk in."""
+"""The depth of a robot's crouch, between standing upright and its walking height."""
 
 import numpy as np
 
@@ -7,18 +7,22 @@ from walk_engine.time_profiles import parabolic_step
 from walk_engine.walk_state import StateArray, WalkState
 
 _AT_START = np.ones(len(WalkState))
+"""Depth of the crouch at the begin of each state."""
+
 _AT_START[[WalkState.STANDING, WalkState.CROUCHING]] = 0.0
 
 _CHANGE = np.zeros(len(WalkState))
+"""Change of the depth in the course of each state."""
+
 _CHANGE[[WalkState.CROUCHING, WalkState.RISING]] = 1.0, -1.0
 
 
 def crouched(state: StateArray, time_s: FloatArray, duration_s: float) -> FloatArray:
-    """0 standing upright, 1 at the height to walk in, for each robot.
+    """Depth (n,) of each robot's crouch: 0 standing upright, 1 at its walking height.
 
     Args:
-      state: (n,) what the robots are doing.
-      time_s: (n,) time since the current move began.
-      duration_s: how long crouching and rising take.
+      state: (n,) states of the robots, `WalkState`.
+      time_s: (n,) time since the current move began [s].
+      duration_s: duration of crouching and of rising [s].
     """
     return _AT_START[state] + _CHANGE[state] * parabolic_step(time_s, duration_s)

@@ -22,7 +22,7 @@ from walk_engine.walk_state import StateArray
 
 
 class _Memory(NamedTuple):
-    """All that the engine remembers from tick to tick; the last axis counts robots."""
+    """The engine's state between two ticks; the last axis of arrays counts robots."""
 
     progress: Progress
     rate_rad_s: FloatArray  # (2, n) filtered pitch and roll rate
@@ -32,9 +32,14 @@ class _Memory(NamedTuple):
 class WalkEngine:
     """Walk2014's gait generator for n robots of one kind, each with its own gait.
 
-    It knows no world: call `step` once a tick with what the robots measured, and send
-    them the commands that it returns. Robots do not influence each other, not in the
-    last bit. Mirrored input gives mirrored commands.
+    It knows no world: call `step` once a tick with the robots' measurements, and send
+    them the commands that it returns. Robots do not influence each other, not even in
+    the last bit. Mirrored input gives mirrored commands.
+
+    Example:
+      >>> engine = WalkEngine(robots.biped(robots.get("nao")), [gaits.get("start")])
+      >>> engine.start_pose().shape
+      (1, 22)
     """
 
     def __init__(
@@ -50,13 +55,15 @@ class WalkEngine:
 
         Args:
           biped: the robots' legs and joints.
-          gaits: n gaits, or their vectors as an (n, 16) array, in the NAO's size.
-          tick_s: time between two calls of `step`.
-          first_swing: the foot that is lifted first.
-          config: constants that no gait changes.
+          gaits: n gaits, or their vectors as an (n, 16) array, for the NAO's size; they
+            are scaled to the robot's size.
+          tick_s: time between two calls of `step` [s].
+          first_swing: the foot that swings first.
+          config: constants that are the same for all gaits.
 
         Raises:
-          BadValueError: no gait or a bad one, a tick that is not positive, or no foot.
+          BadValueError: no gait is given or a bad one, the tick is not positive, or
+            `first_swing` is no foot.
         """
         if not (np.isfinite(tick_s) and tick_s > 0):
             raise BadValueError(f"the tick is {tick_s} s; it must be positive")
@@ -87,21 +94,21 @@ class WalkEngine:
 
     @property
     def state(self) -> StateArray:
-        """(n,) what each robot is doing, a `WalkState`."""
+        """(n,) the state of each robot, a `WalkState`."""
         return self._memory.progress.state.copy()
 
     @property
     def support(self) -> StateArray:
-        """(n,) the foot that supports: 1 left, -1 right, 0 both."""
+        """(n,) the supporting foot of each robot: 1 left, -1 right, 0 both."""
         return self._memory.progress.support
 
     @property
     def step_time_s(self) -> FloatArray:
-        """(n,) time since the current step or move began, 0 at rest."""
+        """(n,) time since the current step or move began [s]; 0 at rest."""
         return self._memory.progress.ticks * self._tick_s
 
     def start_pose(self) -> FloatArray:
-        """(n, joints) the crouched pose in which a robot is ready to walk."""
+        """(n, joints) the crouched pose [rad] in which a robot is ready to walk."""
         feet = resting_feet(self._gait["com_offset"])
         target = self._posture.targets(feet, np.ones(self.n), np.zeros((2, 2, self.n)))
         return self._limits.within_range(target).T.copy()
@@ -124,14 +131,15 @@ class WalkEngine:
         """Advance by one tick.
 
         Args:
-          request: what the robots shall do; read when a step begins.
-          gyroscope_rad_s: (n, 3) the torso's turning rates about its own axes.
-          foot_force_n: (n, 8) the force sensors, in the order of the biped's.
-          active: (n,) the robots that take part, all by default. Time stands still
-            for the others; their last command is repeated.
+          request: the request to the robots; it is read when a step begins.
+          gyroscope_rad_s: (n, 3) turning rates of the torso about its axes [rad/s].
+          foot_force_n: (n, 8) readings of the force sensors [N], in the order of
+            `biped.foot_sensor_xy_m`.
+          active: (n,) whether a robot takes part; all do by default. Time stands still
+            for the others, whose last command is repeated.
 
         Returns:
-          (n, joints) joint position commands, a new array.
+          (n, joints) joint position commands [rad], a new array.
 
         Raises:
           BadValueError: an array does not have its shape.

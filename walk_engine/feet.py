@@ -1,16 +1,16 @@
-"""Where the feet are during a step, relative to the hips; the equations of Walk2014.
+"""Positions of the feet relative to the hips during a step; equations of Walk2014.
 
-Let f, l and u be the plan's way forward, way to the left and turn, s the linear and w
-the parabolic profile over the step:
+Let f, l and u be the plan's distance forward, distance to the left and turn, s the
+linear and w the parabolic profile over the step:
 
-- the support foot goes to f/4 behind the hip with s, the swing foot to f/4 ahead with
-  w, so that in steady walking both take steps of f/2;
+- the support foot moves to f/4 behind the hip with s, the swing foot to f/4 ahead of it
+  with w; in steady walking both take steps of length f/2;
 - if the foot on the side of l swings, it opens the legs with w to half the angle that l
-  is seen under from the hip; what was open before closes with 1 - w, so the other foot
-  brings them together again;
+  subtends at the hip; an opening of the step before closes with 1 - w, so that the
+  other foot brings the legs together again;
 - the toes turn with w: outward by 2/3 of u if the outer foot swings, inward by 1/3 if
-  the inner one does;
-- the swing foot rises to the plan's lift and comes back.
+  the inner foot swings;
+- the swing foot rises to the plan's lift and comes down again.
 
 Arrays (2, n) hold the left foot in row 0 and the right one in row 1.
 """
@@ -31,14 +31,14 @@ from walk_engine.time_profiles import (
 
 
 class Feet(NamedTuple):
-    """Where the feet are. All but the first two are the same for both feet.
+    """Positions of the feet; only `behind_m` and `lift_m` differ between the feet.
 
     Attributes:
-      behind_m: (2, n) ankle behind the hip, com_offset_m not counted.
-      lift_m: (2, n) sole above the ground.
-      opening_rad: (n,) legs turned outward about the hips' x axes.
-      toe_out_rad: (n,) hip yaw joints turned so that the toes point outward.
-      com_offset_m: (n,) hip ahead of the middle of the ankles.
+      behind_m: (2, n) distance of the ankle behind the hip, without com_offset_m.
+      lift_m: (2, n) height of the sole above the ground.
+      opening_rad: (n,) outward turn of the legs about the hips' x axes.
+      toe_out_rad: (n,) outward turn of the toes by the hip yaw joints.
+      com_offset_m: (n,) distance of the hip ahead of the middle of the ankles.
     """
 
     behind_m: FloatArray
@@ -49,7 +49,7 @@ class Feet(NamedTuple):
 
 
 def resting_feet(com_offset_m: FloatArray) -> Feet:
-    """Feet side by side on the ground."""
+    """Feet side by side on the ground, for the com_offset_m (n,) of n robots."""
     n = len(com_offset_m)
     pair, zero = np.zeros((2, n)), np.zeros(n)
     return Feet(pair, pair, zero, zero, com_offset_m)
@@ -64,15 +64,15 @@ def feet_in_step(
     leg_height_m: FloatArray,
     config: EngineConfig,
 ) -> Feet:
-    """The feet at a time after the step began.
+    """Positions of the feet at a time within a step.
 
     Args:
-      time_s: (n,) time since the step began.
-      plan: what the step shall do.
-      origin: where the feet were when it began.
-      left_swings: (n,) which foot swings.
-      gait: the gaits.
-      leg_height_m: (n,) hip above ankle, both feet on the ground.
+      time_s: (n,) time since the step began [s].
+      plan: the planned step.
+      origin: positions of the feet when the step began.
+      left_swings: (n,) whether the left foot swings.
+      gait: values of the n robots by gait parameter.
+      leg_height_m: (n,) height of the hip above the ankle with both feet down [m].
       config: the engine's constants.
     """
     swings = np.stack((left_swings, ~left_swings))
@@ -97,7 +97,7 @@ def feet_in_step(
 def _opening(
     outward_m: FloatArray, progress: FloatArray, origin: Feet, leg_height_m: FloatArray
 ) -> FloatArray:
-    """Angle of the legs; `outward_m` is the cycle's way to the swing foot's side."""
+    """Opening (n,) [rad] for a cycle's distance to the side of the swing foot."""
     step = np.arctan(np.maximum(outward_m, 0.0) * progress / leg_height_m)
     return 0.5 * step + origin.opening_rad * (1.0 - progress)
 
@@ -105,7 +105,7 @@ def _opening(
 def _toe_out(
     outward_rad: FloatArray, progress: FloatArray, origin: Feet, config: EngineConfig
 ) -> FloatArray:
-    """Angle of the toes; `outward_rad` is the turn to the swing foot's side."""
+    """Toe angle (n,) [rad]; `outward_rad` is the turn to the swing foot's side."""
     outer = config.outward_turn_share
     target = np.where(outward_rad > 0, outer, 1.0 - outer) * outward_rad
     return origin.toe_out_rad + (target - origin.toe_out_rad) * progress

@@ -26,7 +26,12 @@ class Gait(Mapping[str, float]):
     Every gait is complete and within the bounds of `PARAMETERS`.
 
     Attributes:
-      vector: the values in the order of `PARAMETERS`.
+      vector: the 16 values in the order of `PARAMETERS`.
+
+    Example:
+      >>> gait = gaits.get("start").replace(max_forward=0.2)
+      >>> gait["max_forward"]
+      0.2
     """
 
     vector: tuple[float, ...]
@@ -42,10 +47,13 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def from_vector(cls, vector: npt.ArrayLike) -> "Gait":
-        """Make a gait of (16,) values in the order of `PARAMETERS`.
+        """Make a gait from its vector.
+
+        Args:
+          vector: (16,) values in the order of `PARAMETERS`.
 
         Raises:
-          BadValueError: naming the first parameter that is out of bounds.
+          BadValueError: a parameter is out of bounds; the message names the first one.
         """
         values = np.asarray(vector, dtype=np.float64)
         if values.ndim != 1:
@@ -54,11 +62,11 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, float]) -> "Gait":
-        """Make a gait of named values.
+        """Make a gait from the values of all parameters, by name.
 
         Raises:
-          UnknownNameError: a name is no parameter.
-          BadValueError: a parameter is missing, no number or out of bounds.
+          UnknownNameError: a name is not that of a parameter.
+          BadValueError: a parameter is missing, not a number or out of bounds.
         """
         for name in values:
             if name not in NAMES:
@@ -73,7 +81,7 @@ class Gait(Mapping[str, float]):
         """Read a gait from JSON: `{"gait": {name: value}}` or `{name: value}`.
 
         Raises:
-          BadValueError: naming the file and what is wrong with it.
+          BadValueError: the file holds no gait; the message says why.
         """
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
@@ -96,11 +104,11 @@ class Gait(Mapping[str, float]):
         return np.array(self.vector)
 
     def replace(self, **changes: float) -> "Gait":
-        """The same gait with some parameters changed."""
+        """A copy of the gait with some parameters changed, given by name."""
         return Gait.from_mapping({**self, **changes})
 
     def __getitem__(self, name: str) -> float:
-        """The value of one parameter; KeyError if there is none of that name."""
+        """The value of a parameter; KeyError if no parameter has this name."""
         if name not in NAMES:
             raise KeyError(name)
         return self.vector[NAMES.index(name)]
@@ -110,7 +118,7 @@ class Gait(Mapping[str, float]):
         return iter(NAMES)
 
     def __len__(self) -> int:
-        """16."""
+        """The number of parameters, 16."""
         return len(NAMES)
 
 
@@ -121,7 +129,7 @@ def stack(gaits: Sequence[Gait] | FloatArray) -> FloatArray:
       gaits: gaits, or an (n, 16) array of their vectors.
 
     Raises:
-      BadValueError: there is none, or one is no gait.
+      BadValueError: no gait is given, or a vector is no gait.
     """
     rows = [
         gait if isinstance(gait, Gait) else Gait.from_vector(gait) for gait in gaits
@@ -152,7 +160,7 @@ def from_unit(units: npt.ArrayLike) -> FloatArray:
 
 
 def _checked(parameter: Parameter, value: float) -> float:
-    """The value as a float, refused if it is no number within the bounds."""
+    """Convert a value to a float; refuse it if it is not a number within bounds."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not (is_number and parameter.low <= value <= parameter.high):
         raise BadValueError(

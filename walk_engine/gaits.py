@@ -1,4 +1,4 @@
-"""The gaits that have a name."""
+"""Gaits that have a name: walk2014, and start, from which searches begin."""
 
 from groundwalk.errors import UnknownNameError
 from walk_engine.gait import PARAMETERS, Gait
@@ -6,23 +6,27 @@ from walk_engine.gait import PARAMETERS, Gait
 _WALK2014 = Gait(tuple(parameter.default for parameter in PARAMETERS))
 
 _GAITS = {
-    # The constants of the 2014 code release, asked to walk as fast as it allowed.
+    # The constants of the 2014 code release, at the largest speed that it allowed.
     "walk2014": _WALK2014,
-    # The same at a modest speed: where a search starts.
+    # The same constants at a modest speed.
     "start": _WALK2014.replace(max_forward=0.23),
 }
 
 
 def names() -> tuple[str, ...]:
-    """The names that `get` knows."""
+    """Names of all gaits that `get` returns."""
     return tuple(_GAITS)
 
 
 def get(name: str) -> Gait:
-    """The gait of that name.
+    """Look up a gait by its name.
 
     Raises:
-      UnknownNameError: there is none of that name.
+      UnknownNameError: no gait has this name.
+
+    Example:
+      >>> get("start")["max_forward"]
+      0.23
     """
     if name not in _GAITS:
         raise UnknownNameError("gait", name, _GAITS)

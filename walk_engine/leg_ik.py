@@ -1,14 +1,15 @@
-"""Joint angles of a leg that put its ankle where it shall be, in closed form.
+"""Inverse kinematics, in closed form, of a leg whose joint axes meet.
 
-All of this is the left leg; mirror y of the target and both roll angles (`MIRROR`)
-for the right one.
+The equations are for the left leg. For the right one, mirror y of the target and both
+roll angles (`MIRROR`).
 
-With the yaw angle given, the others follow one after the other. Undo the yaw of the
-vector from hip to ankle, p = R_yaw^T (ankle - hip): the knee follows from |p| (law of
-cosines), the roll is the angle of p in the y-z plane, the pitch that in the leg's own
-plane. Seen from the shin, the sole's normal is v = R_leg^T normal, and the ankle must
-make it v = (cos r sin a, -sin r, cos r cos a): its roll is r = -asin(v_y), its pitch
-a = atan2(v_x, v_z). Walk2014 finds the same pose with three damped least-squares steps.
+The yaw angle is given; the other angles follow one after the other. Undo the yaw of the
+vector from hip to ankle, p = R_yaw^T (ankle - hip). The knee angle follows from |p|
+(law of cosines), the roll is the angle of p in the y-z plane, the pitch is its angle in
+the plane of the leg. In the frame of the shin the sole's normal must be
+v = R_leg^T normal = (cos r sin a, -sin r, cos r cos a), from which follow the ankle's
+roll r = -asin(v_y) and pitch a = atan2(v_x, v_z). Walk2014 finds the same pose with
+three damped least-squares steps.
 """
 
 import math
@@ -22,7 +23,7 @@ MIRROR = (1.0, -1.0, 1.0, 1.0, 1.0, -1.0)
 """Factors that turn the angles of a left leg into those of its mirror image."""
 
 _MARGIN_M = 1e-6
-"""Targets are kept so far inside of what a straight or a folded leg reaches."""
+"""Distance [m] that targets keep from the reach of a straight or a folded leg."""
 
 _Vector = tuple[FloatArray, FloatArray, FloatArray]
 
@@ -30,19 +31,19 @@ _Vector = tuple[FloatArray, FloatArray, FloatArray]
 def inverse(
     leg: LegGeometry, yaw_rad: FloatArray, ankle_m: FloatArray, tilt_rad: FloatArray
 ) -> FloatArray:
-    """Angles that put the ankle at a point with the sole level.
+    """Joint angles that put the ankle at a point while the sole is level.
 
-    A target out of reach is pulled along its line through the hip to where the leg
-    gets; the result is always finite.
+    A target out of reach is moved towards or away from the hip until the leg reaches
+    it; the result is always finite.
 
     Args:
       leg: lengths and axes of the left leg.
-      yaw_rad: angle of the first hip joint, any shape.
-      ankle_m: (3, that shape) the ankle in the torso frame.
-      tilt_rad: that shape; how far the torso leans forward over the level sole.
+      yaw_rad: (...) angle of the first hip joint [rad].
+      ankle_m: (3, ...) target of the ankle in the torso's frame [m].
+      tilt_rad: (...) forward lean of the torso over the level sole [rad].
 
     Returns:
-      (6, that shape) yaw, roll, pitch, knee, ankle pitch, ankle roll.
+      (6, ...) yaw, roll, pitch, knee, ankle pitch and ankle roll [rad].
     """
     turn = np.cos(yaw_rad), np.sin(yaw_rad)
     x, y, z = (ankle_m[i] - leg.hip_m[i] for i in range(3))
@@ -66,7 +67,7 @@ def inverse(
 def _yaw_undone(
     leg: LegGeometry, turn: tuple[FloatArray, FloatArray], vector: _Vector
 ) -> _Vector:
-    """Turn a vector back about the yaw axis (Rodrigues), given the cosine and sine."""
+    """Rotate a vector by the negative yaw (Rodrigues), given cosine and sine of it."""
     a, b, c = leg.yaw_axis
     x, y, z = vector
     cosine, sine = turn
@@ -81,9 +82,9 @@ def _yaw_undone(
 def _within_reach(
     leg: LegGeometry, target: _Vector
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Pull a target to the nearest length that the leg can take; also returns it."""
+    """Move a target to the nearest distance that the leg reaches; return both."""
     x, y, z = target
-    # The hip itself has no direction: take it for a point below.
+    # A target at the hip has no direction: use a point just below instead.
     z = np.where(x * x + y * y + z * z < _MARGIN_M**2, -_MARGIN_M, z)
     length = np.sqrt(x * x + y * y + z * z)
     shortest = math.fabs(leg.thigh_m - leg.tibia_m) + _MARGIN_M

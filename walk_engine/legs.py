@@ -1,4 +1,4 @@
-"""Both legs: from where the ankles shall be to the angles of their joints."""
+"""Inverse kinematics of both legs, from ankle positions to joint angles."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -12,14 +12,15 @@ from walk_engine.leg_ik import MIRROR, inverse
 
 
 class Legs(ABC):
-    """What turns poses of the feet into angles."""
+    """Turns positions of the feet into joint angles of a left and a right leg."""
 
     def __init__(self, leg: LegGeometry, signs: Sequence[FloatArray]) -> None:
         """Prepare.
 
         Args:
-          leg: the left leg, or the one with axes that meet which is most like it.
-          signs: (2, 1) of each leg: -1 where a joint of its ankle turns the other way.
+          leg: the left leg, or the most similar leg whose axes meet.
+          signs: for each leg (2, 1), -1 if the ankle's pitch or roll joint turns the
+            other way, else 1.
         """
         self._leg = leg
         self._signs = signs
@@ -31,17 +32,18 @@ class Legs(ABC):
         tilt_rad: FloatArray,
         ankle_rad: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
-        """Angles (6, n) of the left and of the right leg, the soles level.
+        """Joint angles with which the soles are level, plus extra ankle angles.
 
         Args:
-          ankle_m: (3, 2, n) both ankles in the torso's frame, the right one mirrored.
-          toe_out_rad: (2, n) how far the hip yaw joints turn the toes outward.
-          tilt_rad: (2, n) how far the torso leans forward.
-          ankle_rad: (2, 2, n) added to pitch and roll of each foot's ankle, which are
+          ankle_m: (3, 2, n) both ankles in the torso's frame [m], the right mirrored.
+          toe_out_rad: (2, n) outward turn of the toes by the hip yaw joints [rad].
+          tilt_rad: (2, n) forward lean of the torso [rad].
+          ankle_rad: (2, 2, n) angles added to pitch and roll of each ankle [rad],
             positive about +y and +x.
 
         Returns:
-          Yaw, roll, pitch, knee, ankle pitch and ankle roll as the joints count them.
+          (6, n) angles [rad] of the left and of the right leg, in the signs of the
+          robot's joints: yaw, roll, pitch, knee, ankle pitch, ankle roll.
         """
         left, right = self._level(ankle_m, toe_out_rad, tilt_rad)
         left[4:] += self._signs[0] * ankle_rad[:, 0]
@@ -52,18 +54,18 @@ class Legs(ABC):
     def _level(
         self, ankle_m: FloatArray, toe_out_rad: FloatArray, tilt_rad: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """The same without anything added to the ankles."""
+        """Joint angles of both legs with level soles; arguments as for `angles`."""
 
 
 def legs_of(biped: Biped) -> Legs:
-    """The legs of a robot: in closed form where their axes meet."""
+    """The inverse kinematics of a robot, in closed form if its joint axes meet."""
     if biped.chains is None:
         return MirroredLegs(biped.leg)
     return TwoChains(biped.leg, biped.chains)
 
 
 class MirroredLegs(Legs):
-    """Legs whose axes meet, one the mirror image of the other."""
+    """Legs whose joint axes meet and that are mirror images of each other."""
 
     def __init__(self, leg: LegGeometry) -> None:
         """Prepare for the left leg's lengths and axes."""
@@ -79,13 +81,13 @@ class MirroredLegs(Legs):
 
 
 class TwoChains(Legs):
-    """Legs of any six joints each."""
+    """Legs of six joints each, whose axes need not meet; solved in steps."""
 
     def __init__(self, leg: LegGeometry, chains: tuple[LegChain, LegChain]) -> None:
         """Prepare.
 
         Args:
-          leg: the leg with axes that meet which is most like the left one.
+          leg: the most similar leg whose axes meet, to start the steps from.
           chains: the left and the right leg.
         """
         super().__init__(leg, [chain.signs[4:, None] for chain in chains])
@@ -104,7 +106,12 @@ class TwoChains(Legs):
 
 
 def _foot_rotation(turn_rad: FloatArray, tilt_rad: FloatArray) -> FloatArray:
-    """(2, n, 3, 3) from a level foot, turned to the left, to a torso that leans."""
+    """Rotations (2, n, 3, 3) from the frame of a level foot to the torso's.
+
+    Args:
+      turn_rad: (2, n) turn of the foot to the left.
+      tilt_rad: (2, n) forward lean of the torso.
+    """
     cos_t, sin_t = np.cos(turn_rad), np.sin(turn_rad)
     cos_p, sin_p = np.cos(tilt_rad), np.sin(tilt_rad)
     zero = np.zeros_like(cos_t)

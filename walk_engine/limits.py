@@ -1,4 +1,4 @@
-"""What the joints can follow: their ranges and their motors' speeds."""
+"""Limits of joint commands: the joints' ranges and their motors' speeds."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from robots.leg_geometry import Biped
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """Bounds of joint commands; arrays (joints, 1).
+    """Bounds of joint commands; all arrays are (joints, 1).
 
     Attributes:
-      low_rad: lower ends of the ranges.
-      high_rad: upper ends of the ranges.
-      change_rad: largest change within a tick.
+      low_rad: lower ends of the joints' ranges.
+      high_rad: upper ends of the joints' ranges.
+      change_rad: largest change of a command within a tick.
     """
 
     low_rad: FloatArray
@@ -24,16 +24,30 @@ class Limits:
 
     @classmethod
     def of(cls, biped: Biped, tick_s: float, speed_fraction: float) -> "Limits":
-        """The limits of a robot whose commands use a part of its motors' speed."""
+        """Compute the limits of a robot.
+
+        Args:
+          biped: the robot.
+          tick_s: duration of a tick [s].
+          speed_fraction: share of the motors' no-load speed that commands may use.
+        """
         low, high = biped.joint_range_rad.T[:, :, None].copy()
         return cls(low, high, biped.max_speed_rad_s[:, None] * speed_fraction * tick_s)
 
     def within_range(self, target_rad: FloatArray) -> FloatArray:
-        """Cut (joints, n) targets to the joints' ranges."""
+        """Clip joint targets (joints, n) [rad] to the joints' ranges."""
         return np.clip(target_rad, self.low_rad, self.high_rad)
 
     def towards(self, before_rad: FloatArray, target_rad: FloatArray) -> FloatArray:
-        """The command next to the last one on the way to the target, (joints, n)."""
+        """Move from the last commands towards targets, as far as one tick allows.
+
+        Args:
+          before_rad: (joints, n) the last commands [rad].
+          target_rad: (joints, n) the targets [rad].
+
+        Returns:
+          (joints, n) the new commands [rad].
+        """
         change = np.clip(
             self.within_range(target_rad) - before_rad,
             -self.change_rad,

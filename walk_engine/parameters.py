@@ -10,16 +10,20 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of a gait.
+    """One of the 16 parameters of a gait.
 
     Attributes:
-      name: what it is called in a `Gait` and in JSON.
+      name: its name in a `Gait` and in JSON.
       unit: SI unit, "1" for a plain number.
-      default: the value of Walk2014, or what leaves Walk2014 unchanged.
+      default: the value of Walk2014, or the value that leaves Walk2014 unchanged.
       low: smallest value that a gait may have.
       high: largest value that a gait may have.
-      meaning: what it does.
-      source: where the default and the bounds come from.
+      meaning: its effect on the walk.
+      source: origin of the default and the bounds.
+
+    Example:
+      >>> PARAMETERS[0].name, PARAMETERS[0].unit
+      ('step_period', 's')
     """
 
     name: str
@@ -115,3 +119,4 @@ PARAMETERS: tuple[Parameter, ...] = (
 )
 
 NAMES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS)
+"""Names of the parameters, in the order of `PARAMETERS`."""

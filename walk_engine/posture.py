@@ -1,4 +1,4 @@
-"""From the feet to joint angles: height, lean, legs and arms."""
+"""Joint angles from positions of the feet: height, lean, legs and arms."""
 
 import numpy as np
 
@@ -11,10 +11,16 @@ from walk_engine.step_plan import GaitColumns
 
 
 class Posture:
-    """The pose of every joint of n robots of one kind."""
+    """Computes the joint angles of n robots of one kind."""
 
     def __init__(self, biped: Biped, gait: GaitColumns, config: EngineConfig) -> None:
-        """Prepare for robots with these gaits (16 arrays of n values)."""
+        """Prepare.
+
+        Args:
+          biped: the robots' legs and joints.
+          gait: values of the n robots by gait parameter.
+          config: the engine's constants.
+        """
         leg = biped.leg
         self._biped = biped
         self._gait = gait
@@ -30,14 +36,16 @@ class Posture:
     def targets(
         self, feet: Feet, down: FloatArray, ankle_rad: FloatArray
     ) -> FloatArray:
-        """Joint targets (joints, n), not yet limited.
+        """Joint targets (joints, n) [rad], not yet limited.
 
-        Joints of neither leg nor shoulder stay at the angle of their range next to 0.
+        Joints that belong to neither a leg nor a shoulder stay at 0, or at the angle of
+        their range that is nearest to 0.
 
         Args:
-          feet: where the feet shall be.
-          down: (n,) see `crouched`; the lean and the offset of the hip grow with it.
-          ankle_rad: (2, 2, n) added to the ankles' pitch and roll, for each foot.
+          feet: target positions of the feet.
+          down: (n,) depth of the crouch, see `crouched`. The torso's lean and the
+            offset of the hip are proportional to it.
+          ankle_rad: (2, 2, n) angles added to pitch and roll of each ankle [rad].
         """
         biped = self._biped
         target = np.repeat(self._rest_rad[:, None], len(down), axis=1)
@@ -57,7 +65,7 @@ class Posture:
     def _leg_angles(
         self, feet: Feet, down: FloatArray, ankle_rad: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Angles (6, n) of the left and of the right leg, the soles level."""
+        """Angles (6, n) [rad] of the left and of the right leg with level soles."""
         leg = self._biped.leg
         hip_m = self._standing_m + (self._gait["hip_height"] - self._standing_m) * down
         below_m = hip_m - leg.ankle_height_m - feet.lift_m
@@ -76,9 +84,9 @@ class Posture:
 
 
 def _pair(values: FloatArray) -> FloatArray:
-    """The same (n,) values for both feet, (2, n).
+    """Repeat values (n,) for both feet, (2, n).
 
-    Copied, not broadcast: the arrays that go into sines and the like are contiguous,
-    so that every robot's numbers come out the same whatever the number of robots.
+    They are copied, not broadcast: only on contiguous arrays do NumPy's sines give
+    every robot the same bits whatever the number of robots.
     """
     return np.stack((values, values))

@@ -1,4 +1,4 @@
-"""What a step shall do; decided in its first tick and kept until it ends."""
+"""The plan of a step, which is made in its first tick and kept until it ends."""
 
 from typing import NamedTuple
 
@@ -10,11 +10,11 @@ from walk_engine.engine_config import EngineConfig
 from walk_engine.velocity import Velocity
 
 GaitColumns = dict[str, FloatArray]
-"""For each gait parameter its values, one for each robot."""
+"""Values (n,) of each gait parameter, by its name, for n robots."""
 
 
 class Speeds(NamedTuple):
-    """What the robots shall carry out, within the limits; arrays (n,)."""
+    """Requested speeds of the robots, cut to the limits; all arrays are (n,)."""
 
     forward_m_s: FloatArray
     left_m_s: FloatArray
@@ -22,7 +22,7 @@ class Speeds(NamedTuple):
 
     @property
     def moving(self) -> BoolArray:
-        """Where any speed differs from zero."""
+        """(n,) whether any speed of a robot differs from zero."""
         moving: BoolArray = (
             (self.forward_m_s != 0) | (self.left_m_s != 0) | (self.turn_rad_s != 0)
         )
@@ -30,17 +30,18 @@ class Speeds(NamedTuple):
 
 
 class StepPlan(NamedTuple):
-    """One step of each robot; arrays (n,).
+    """The planned step of each robot; all arrays are (n,).
 
-    Lengths and angles are those of a whole cycle of two steps, as in Walk2014.
+    Distances and angles are those of a whole cycle of two steps, as in Walk2014.
 
     Attributes:
-      period_s: duration.
+      period_s: duration of the step.
       lift_m: height of the swing foot at its apex.
-      forward_m: way forward in a cycle.
-      left_m: way to the left in a cycle.
-      turn_rad: both steps' change of the hip yaw joints in a cycle, left positive.
-      com_offset_m: hip ahead of the middle of the ankles at the end of the step.
+      forward_m: distance forward in a cycle.
+      left_m: distance to the left in a cycle.
+      turn_rad: change of the hip yaw joints in a cycle of two steps, left positive.
+      com_offset_m: distance of the hip ahead of the middle of the ankles at the end of
+        the step.
     """
 
     period_s: FloatArray
@@ -52,7 +53,7 @@ class StepPlan(NamedTuple):
 
 
 def within_limits(request: Velocity, gait: GaitColumns, config: EngineConfig) -> Speeds:
-    """Cut each speed to its limit, for each robot on its own."""
+    """Cut each requested speed of each robot to its limit."""
     fastest = gait["max_forward"]
     left, turn = np.zeros_like(fastest), np.zeros_like(fastest)
     left += np.clip(request.left_m_s, -config.max_left_m_s, config.max_left_m_s)
@@ -67,12 +68,19 @@ def plan_step(
     leg: LegGeometry,
     config: EngineConfig,
 ) -> StepPlan:
-    """Plan a step of each robot at the speeds given.
+    """Plan a step of each robot.
 
-    The first step (`starting`) only rocks the robot: it lifts a foot, less high than
-    a step at these speeds would, and goes nowhere. In Walk2014 turns are multiplied
-    by 1.43, which makes up for feet that slip. Without slip, a hip yaw joint turns
-    the foot by the z component of its axis, and each degree is used twice in a cycle.
+    The first step only rocks the robot: it lifts a foot, less high than a later step,
+    and covers no distance. Walk2014 multiplies turns by 1.43 to make up for slipping
+    feet. Without slip, a hip yaw joint turns the foot by the z component of its axis,
+    and each degree is used twice in a cycle.
+
+    Args:
+      speeds: the robots' speeds within their limits.
+      starting: (n,) whether the step is a robot's first.
+      gait: values of the n robots by gait parameter.
+      leg: lengths and axes of the left leg.
+      config: the engine's constants.
     """
     share = np.abs(speeds.left_m_s) / config.max_left_m_s
     period_s = gait["step_period"] + config.side_step_extra_s * share

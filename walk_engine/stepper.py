@@ -38,15 +38,15 @@ from walk_engine.walk_state import (
 
 
 class Progress(NamedTuple):
-    """How far each of n robots is.
+    """The progress of n robots within their steps.
 
     Attributes:
-      state: (n,) what it is doing, a `WalkState`.
+      state: (n,) the robots' states, `WalkState`.
       ticks: (n,) ticks since the step or the move began; 0 at rest.
-      left_swings: (n,) whether the left foot swings, at rest: swings next.
-      plan: what the current step shall do.
-      origin: where the feet were when the step began.
-      sensing: what the force sensors told.
+      left_swings: (n,) whether the left foot swings; at rest, whether it swings next.
+      plan: the plan of the current step.
+      origin: positions of the feet when the step began.
+      sensing: the state of the force sensing.
     """
 
     state: StateArray
@@ -69,7 +69,14 @@ class Stepper:
     def __init__(
         self, biped: Biped, gait: GaitColumns, tick_s: float, config: EngineConfig
     ) -> None:
-        """Prepare for robots with these gaits (16 arrays of n values)."""
+        """Prepare.
+
+        Args:
+          biped: the robots' legs and joints.
+          gait: values of the n robots by gait parameter.
+          tick_s: duration of a tick [s].
+          config: the engine's constants.
+        """
         self._leg = biped.leg
         self._gait = gait
         self._tick_s = tick_s
@@ -80,7 +87,11 @@ class Stepper:
         self._still = Speeds(*np.zeros((3, len(self._leg_height_m))))
 
     def start(self, left_first: bool) -> Progress:
-        """Robots that are ready to walk, the left or the right foot first."""
+        """The progress of robots that are ready to walk.
+
+        Args:
+          left_first: whether the left foot swings first.
+        """
         n = len(self._leg_height_m)
         return Progress(
             state=np.full(n, WalkState.READY, dtype=np.int8),
@@ -94,15 +105,16 @@ class Stepper:
     def advance(
         self, before: Progress, request: Velocity, force_n: FloatArray
     ) -> tuple[Progress, Feet, FloatArray]:
-        """One tick on.
+        """Advance all robots by one tick.
 
         Args:
-          before: the progress so far.
-          request: what the robots shall do.
-          force_n: (8, n) readings of the force sensors.
+          before: the progress before.
+          request: the request to the robots.
+          force_n: (8, n) readings of the force sensors [N].
 
         Returns:
-          The progress, the feet, and how far each robot is crouched (`crouched`).
+          The new progress, the positions of the feet, and the depth (n,) of each
+          robot's crouch, see `crouched`.
         """
         now = self._begin(before, request)
         time_s = now.ticks * self._tick_s
@@ -121,7 +133,7 @@ class Stepper:
         return self._end(now, time_s, feet, sensing), feet, down
 
     def _begin(self, before: Progress, request: Velocity) -> Progress:
-        """Read the request where a step may begin, and plan the step."""
+        """Read the request of robots that may begin a step, and plan the step."""
         reads = before.ticks == 0
         speeds = within_limits(request, self._gait, self._config)
         stand = np.broadcast_to(request.stand, reads.shape)
@@ -138,7 +150,7 @@ class Stepper:
     def _end(
         self, now: Progress, time_s: FloatArray, feet: Feet, sensing: Sensing
     ) -> Progress:
-        """Change the support foot and the state where a step or a move is over."""
+        """Change support foot and state of robots whose step or move is over."""
         config, period_s = self._config, now.plan.period_s
         changes = step_is_over(
             time_s,
@@ -163,5 +175,5 @@ class Stepper:
         )
 
     def _plan(self, speeds: Speeds, starting: BoolArray) -> StepPlan:
-        """Plan a step at speeds within the limits."""
+        """Plan a step of each robot, see `plan_step`."""
         return plan_step(speeds, starting, self._gait, self._leg, self._config)

@@ -1,7 +1,7 @@
-"""When the weight has moved to the other foot, as the force sensors tell.
+"""Detects by the force sensors when the weight has moved to the other foot.
 
-Walk2014's step ends not by the clock but when the centre of pressure crosses the
-robot's middle, which is how it adapts to pushes and to uneven ground.
+A step of Walk2014 does not end at a fixed time but when the centre of pressure crosses
+the robot's middle. That is how the walk adapts to pushes and to uneven ground.
 """
 
 from typing import NamedTuple
@@ -20,11 +20,11 @@ _LEFT, _RIGHT = (0, 1, 2, 3), (5, 4, 7, 6)
 
 
 class Sensing(NamedTuple):
-    """What the force sensors told so far.
+    """The state of the force sensing of n robots.
 
     Attributes:
-      largest_n: (8, n) each sensor's largest reading, its scale.
-      side: (n,) where the weight was last: 1 left, -1 right, 0 not known yet.
+      largest_n: (8, n) each sensor's largest reading so far, used as its scale.
+      side: (n,) the side that carried the weight last: 1 left, -1 right, 0 unknown.
     """
 
     largest_n: FloatArray
@@ -32,22 +32,22 @@ class Sensing(NamedTuple):
 
 
 def nothing_sensed(robots: int, config: EngineConfig) -> Sensing:
-    """What is known before the first reading."""
+    """The state before the first reading, for a number of robots."""
     return Sensing(np.full((8, robots), config.sensor_start_n), np.zeros(robots))
 
 
 def sense(
     before: Sensing, force_n: FloatArray, lateral_m: FloatArray, config: EngineConfig
 ) -> Sensing:
-    """Take in one reading.
+    """Update the state with one reading of the force sensors.
 
-    While no foot carries weight the last side is kept. (Walk2014 takes it for the
-    middle, and misses a crossing that falls into such a tick.)
+    While no foot carries weight the last side is kept. (Walk2014 assumes the middle
+    then, and misses a crossing in such a tick.)
 
     Args:
-      before: what was known.
-      force_n: (8, n) the sensors' readings.
-      lateral_m: (8,) see `sensor_lateral_m`.
+      before: the state before.
+      force_n: (8, n) readings of the sensors [N].
+      lateral_m: (8,) positions of the sensors, see `sensor_lateral_m`.
       config: the engine's constants.
     """
     largest_n = np.clip(force_n, before.largest_n, config.sensor_full_n)
@@ -57,7 +57,7 @@ def sense(
 
 
 def crossed(before: Sensing, now: Sensing) -> BoolArray:
-    """Where the weight went from one side to the other between two readings."""
+    """(n,) whether the weight changed its side between two states."""
     return before.side * now.side < 0
 
 
@@ -68,29 +68,49 @@ def step_is_over(
     min_phase: FloatArray,
     config: EngineConfig,
 ) -> BoolArray:
-    """Where the support foot changes: at a crossing that is not too early, or late."""
+    """(n,) whether the step is over, so that the support foot changes.
+
+    It is over when the weight changes its side, but not before a share of the period,
+    and at the latest after several periods.
+
+    Args:
+      time_s: (n,) time since the step began [s].
+      period_s: (n,) planned duration of the step [s].
+      has_crossed: (n,) whether the weight has changed its side in this tick.
+      min_phase: (n,) earliest end, as a share of the period.
+      config: the engine's constants.
+    """
     late_enough = time_s > min_phase * period_s
     too_late = time_s > config.timeout_periods * period_s
     return (late_enough & has_crossed) | too_late
 
 
 def next_swing(now: Sensing, left_swings: BoolArray) -> BoolArray:
-    """Whether the left foot swings next: the one without the weight, if it is known."""
+    """(n,) whether the left foot swings next: the foot that carries less weight.
+
+    Args:
+      now: the state of the force sensing.
+      left_swings: (n,) whether the left foot swings now; the feet take turns if it is
+        unknown which one carries the weight.
+    """
     return np.where(now.side == 0, ~left_swings, now.side < 0)
 
 
 def sensor_lateral_m(biped: Biped) -> FloatArray:
-    """Where the (8,) sensors are to the left of the torso, the feet below the hips."""
+    """(8,) lateral positions of the force sensors [m], left of the torso's middle.
+
+    The feet are assumed to be straight below the hips.
+    """
     hip_m = biped.leg.hip_m[1]
     hips_m: FloatArray = np.repeat([hip_m, -hip_m], 4)
     return biped.foot_sensor_xy_m[:, 1] + hips_m
 
 
 def _lateral_cop_m(pressure: FloatArray, lateral_m: FloatArray) -> FloatArray:
-    """Pressure-weighted mean position (n,), 0 without load.
+    """Lateral centre of pressure (n,) [m]; 0 without load.
 
-    Added up one by one in mirrored order, so that neither the number of robots nor a
-    mirrored world changes a bit.
+    The sensors are added one by one, each with its mirror image, so that neither the
+    number of robots nor mirroring changes a bit of the result.
     """
     moment = total = np.zeros(pressure.shape[1])
     for left, right in zip(_LEFT, _RIGHT, strict=True):

@@ -1,8 +1,9 @@
-"""How a movement of one step is spread over time, as parts of the whole movement.
+"""Profiles over time of the movements in a step, as shares of the whole movement.
 
-Time and period are arrays of one shape, or numbers. All profiles are clamped: before
-the movement 0, after it their end value, so that a step that lasts longer than its
-period waits in its final pose. (Walk2014 snaps to the ends half a tick earlier.)
+Time and period are arrays of one shape, or numbers. All profiles are clamped: they are
+0 before the movement and keep their final value after it. A step that lasts longer than
+its period therefore waits in its final pose. (Walk2014 jumps to the final value half a
+tick earlier.)
 """
 
 import numpy as np
@@ -13,19 +14,19 @@ Times = float | FloatArray
 
 
 def linear_step(time_s: Times, period_s: Times) -> FloatArray:
-    """From 0 to 1 over the period at constant speed."""
+    """Rise from 0 to 1 over the period at constant speed."""
     return np.clip(np.divide(time_s, period_s), 0.0, 1.0)
 
 
 def parabolic_step(
     time_s: Times, period_s: Times, dead_fraction: Times = 0.0
 ) -> FloatArray:
-    """From 0 to 1 over the period: constant acceleration, then constant deceleration.
+    """Rise from 0 to 1 with constant acceleration, then constant deceleration.
 
     Args:
-      time_s: time since the step began.
-      period_s: duration of the step.
-      dead_fraction: part of the period without motion, half of it at each end.
+      time_s: time since the step began [s].
+      period_s: duration of the step [s].
+      dead_fraction: share of the period without motion, half of it at each end.
     """
     dead_s = period_s * np.multiply(0.5, dead_fraction)
     part = np.clip((time_s - dead_s) / (period_s - 2 * dead_s), 0.0, 1.0)
@@ -34,9 +35,10 @@ def parabolic_step(
 
 
 def parabolic_return(phase: FloatArray) -> FloatArray:
-    """From 0 at phase 0 to 1 at phase 0.5 and back to 0 at phase 1, along parabolas.
+    """Rise from 0 at phase 0 to 1 at phase 0.5, and back to 0 at phase 1.
 
-    The four quarters accelerate by 16, -16, -16 and 16 per unit of phase squared.
+    The profile consists of parabolas: the accelerations in the four quarters are 16,
+    -16, -16 and 16 per unit of phase squared.
     """
     to_end = 0.5 - np.abs(np.clip(phase, 0.0, 1.0) - 0.5)
     to_apex = 0.5 - to_end
@@ -46,8 +48,8 @@ def parabolic_return(phase: FloatArray) -> FloatArray:
 def warped_phase(phase: FloatArray, apex_phase: Times) -> FloatArray:
     """Stretch phases in [0, 1] so that `apex_phase` becomes 0.5 and the ends stay.
 
-    Linear on either side of the apex. The speed jumps there by a factor, which no
-    profile shows that is at rest at 0.5, such as `parabolic_return`.
+    The map is linear on either side of the apex, where its slope jumps. The jump does
+    not show in a profile that is at rest at 0.5, such as `parabolic_return`.
     """
     rising = phase / apex_phase
     falling = 1.0 + (phase - apex_phase) / (1.0 - np.asarray(apex_phase))

@@ -1,4 +1,4 @@
-"""What a robot is asked to do: walk at a velocity, halt, or stand up."""
+"""Requests to walking robots: walk at a velocity, halt, or stand up."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,20 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True, eq=False)
 class Velocity:
-    """A request for all robots (numbers) or for each (arrays of shape (n,)).
+    """A request to all robots (numbers) or to each of n robots (arrays (n,)).
 
-    A request of zero keeps a robot crouched and ready to walk. What exceeds the gait's
-    `max_forward` or the engine's limits is cut: infinity means as fast as allowed.
+    A request of zero keeps a robot crouched and ready to walk. Speeds beyond the gait's
+    `max_forward` or the engine's limits are cut: infinity means as fast as allowed.
 
     Attributes:
       forward_m_s: speed in the direction that the robot faces.
       left_m_s: speed to its left.
       turn_rad_s: rate of turn to the left.
       stand: True asks to halt and to straighten the legs, whatever the velocity.
+
+    Example:
+      >>> Velocity(forward_m_s=0.1, turn_rad_s=0.2).forward_m_s
+      0.1
     """
 
     forward_m_s: float | FloatArray = 0.0
@@ -28,7 +32,7 @@ class Velocity:
     stand: bool | BoolArray = False
 
     def __post_init__(self) -> None:
-        """Refuse what is no number."""
+        """Refuse NaN."""
         for name in ("forward_m_s", "left_m_s", "turn_rad_s"):
             if np.isnan(getattr(self, name)).any():
                 raise BadValueError(f"velocity {name} is NaN; it must be a number")

@@ -1,9 +1,9 @@
-"""The states of a walking robot and what leads from one to the next.
+"""The states of a walking robot, and the transitions between them.
 
     STANDING -> CROUCHING -> READY -> STARTING -> WALKING -> STOPPING -> READY
                              READY -> RISING -> STANDING
 
-STANDING and READY last until the request ends them, CROUCHING and RISING a set time,
+STANDING and READY last until a request ends them, CROUCHING and RISING a fixed time,
 STARTING and STOPPING one step, WALKING any number of steps. Requests are read at rest
 and in the first tick of a step or a move.
 """
@@ -19,7 +19,12 @@ StateArray = npt.NDArray[np.int8]
 
 
 class WalkState(IntEnum):
-    """What a robot is doing; arrays of states hold these numbers."""
+    """The state of a walking robot; arrays of states hold these numbers.
+
+    Example:
+      >>> WalkState(4).name
+      'WALKING'
+    """
 
     STANDING = 0
     CROUCHING = 1
@@ -54,26 +59,26 @@ _STEPPING = np.isin(np.arange(len(_S)), (_S.STARTING, _S.WALKING, _S.STOPPING))
 
 
 def is_resting(state: StateArray) -> BoolArray:
-    """Where a robot keeps its pose."""
+    """(n,) whether a robot is at rest, in the state STANDING or READY."""
     return _RESTING[state]
 
 
 def is_stepping(state: StateArray) -> BoolArray:
-    """Where one foot supports the robot while the other swings."""
+    """(n,) whether one foot supports the robot while the other one swings."""
     return _STEPPING[state]
 
 
 def on_request(state: StateArray, walk: BoolArray, stand: BoolArray) -> StateArray:
-    """The states after the request was read.
+    """States (n,) after a request.
 
     Args:
-      state: the states so far.
-      walk: which robots are asked to move.
-      stand: which are asked to stand upright, whether or not also to move.
+      state: (n,) the states before.
+      walk: (n,) whether a robot is asked to move.
+      stand: (n,) whether a robot is asked to stand upright, which comes first.
     """
     return _ON_REQUEST[state, np.where(stand, 2, walk)]
 
 
 def when_over(state: StateArray) -> StateArray:
-    """The states after the step or the move is over."""
+    """States (n,) after the end of a step or a move."""
     return _WHEN_OVER[state]
