@@ -111,6 +111,7 @@ def _by_lot(
 
 
 def _contains(one: PlacedEffect, other: PlacedEffect) -> bool:
+    """Whether an effect is a more general form of another."""
     return one.key in (grown.key for grown in grown_from(other))
 
 
@@ -128,4 +129,5 @@ def _best(
 
 
 def _fitted(predictor: Predictor, models: list[Model]) -> list[FittedModel]:
+    """Models after the few steps of a fit that a comparison needs."""
     return fit_all(predictor, models, STEPS, followed=True)

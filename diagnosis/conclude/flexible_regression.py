@@ -75,6 +75,7 @@ class _Lift:
         self._phase = rng.uniform(0, 2 * np.pi, FEATURES)
 
     def __call__(self, inputs: FloatArray) -> FloatArray:
+        """(rows, features) of (rows, inputs)."""
         z = (inputs - self._middle) / self._scale
         cosines = np.cos(z @ self._weight + self._phase)
         return np.hstack([z, cosines, np.ones((len(z), 1))])

@@ -65,13 +65,20 @@ def bursts(predictor: Predictor, residual: FloatArray) -> list[tuple[float, floa
 def bursts_of(
     predictor: Predictor, residual: FloatArray, channel: int
 ) -> tuple[tuple[float, float], ...]:
-    """Start and end of the strongest bursts of one channel [s], in order of time."""
+    """Start and end of the strongest bursts of one channel [s], in order of time.
+
+    Args:
+      predictor: it computed the residual.
+      residual: (N,) in units of noise.
+      channel: index of the channel.
+    """
     return tuple(sorted(_strongest(predictor, residual, predictor.channel == channel)))
 
 
 def _strongest(
     predictor: Predictor, residual: FloatArray, chosen: BoolArray
 ) -> list[tuple[float, float]]:
+    """Start and end of the strongest bursts [s] in the chosen entries of a residual."""
     found: list[tuple[float, float, float]] = []
     for number, trace in enumerate(predictor.traces):
         rows = (predictor.trace == number) & chosen

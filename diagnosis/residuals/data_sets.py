@@ -76,12 +76,7 @@ class DataSets:
         parts = affordable(plant, split(traces))
         every = [*parts.fit, *parts.select, *parts.test]
         whole = Predictor(
-            plant,
-            every,
-            channels,
-            threads=threads,
-            noise=noise,
-            on_replay=on_replay,
+            plant, every, channels, threads=threads, noise=noise, on_replay=on_replay
         )
         whole = _exact(whole)
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
@@ -141,4 +136,5 @@ def affordable(plant: Plant, parts: Split) -> Split:
 
 
 def _names(traces: Sequence[Trace]) -> tuple[str, ...]:
+    """The names of recordings."""
     return tuple(trace.name for trace in traces)

@@ -111,26 +111,13 @@ class Predictor:
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
         self.scored = self._scored.reshape(-1)
-        blocks = np.concatenate(
-            [
-                (t.time_s - t.time_s[0]) // BLOCK_S + 1000 * i
-                for i, t in enumerate(traces)
-            ]
-        )
-        _, block = np.unique(np.repeat(blocks, c), return_inverse=True)
-        self.block = block
+        self.block = np.unique(
+            np.repeat(_block_numbers(traces), c), return_inverse=True
+        )[1]
 
     def part(self, first: int, last: int) -> "Predictor":
         """A predictor of traces `first` to `last - 1`, with the same calibration."""
-        some = Predictor(
-            self.plant,
-            self.traces[first:last],
-            self.channels,
-            self.step_s,
-            self._threads,
-            self._noise,
-            self._on_replay,
-        )
+        some = self._like(self.traces[first:last], self.step_s)
         ends = [0, *self._ends]
         own = slice(ends[first], ends[last])
         some._correction = self._correction[own]
@@ -142,15 +129,12 @@ class Predictor:
 
     def stepped(self, step_s: float) -> "Predictor":
         """A predictor of the same traces with another time step [s], not calibrated."""
-        return Predictor(
-            self.plant,
-            self.traces,
-            self.channels,
-            step_s,
-            self._threads,
-            self._noise,
-            self._on_replay,
-        )
+        return self._like(self.traces, step_s)
+
+    def _like(self, traces: Sequence[Trace], step_s: float) -> "Predictor":
+        """An uncalibrated predictor of other traces or with another time step."""
+        own = self.channels, step_s, self._threads, self._noise, self._on_replay
+        return Predictor(self.plant, traces, *own)
 
     def calibrate(self, model: Model = ()) -> float:
         """Measure the integration error and the influence of wrong start states.
@@ -296,6 +280,13 @@ class Predictor:
             stacks = [stacked(result, own) for result in results]
             parts.append(np.concatenate(stacks, axis=1))
         return np.concatenate(parts)
+
+
+def _block_numbers(traces: Sequence[Trace]) -> FloatArray:
+    """(rows,) numbers of the time blocks, different for each trace."""
+    return np.concatenate(
+        [(t.time_s - t.time_s[0]) // BLOCK_S + 1000 * i for i, t in enumerate(traces)]
+    )
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:

@@ -82,11 +82,13 @@ class _RunUncertainty:
 
     @classmethod
     def of(cls, own: FloatArray) -> Self:
+        """Prepare the projection for (2, rows, c) signatures."""
         # 1 on the diagonal is the prior: a standard normal error of the start
         gram = np.einsum("krc,lrc->ckl", own, own) + np.eye(len(own))
         return cls(own, np.linalg.inv(gram))
 
     def without(self, residual: FloatArray) -> FloatArray:
+        """(n, rows, c) residuals of the window without the signatures."""
         seen = np.einsum("krc,nrc->nck", self.own, residual)
         size = np.einsum("ckl,ncl->nck", self.inverse, seen)
         return np.asarray(residual - np.einsum("krc,nck->nrc", self.own, size))

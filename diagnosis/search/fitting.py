@@ -109,6 +109,7 @@ class Coordinates:
 
     @staticmethod
     def _value(parameter: Parameter, coordinate: float) -> float:
+        """The value at a scaled coordinate, within the parameter's bounds."""
         if parameter.logarithmic:
             value = float(np.exp(coordinate))
         else:
@@ -147,20 +148,40 @@ class Nudges:
 
     @classmethod
     def apart(cls, predictor: Predictor, model: Model) -> "Nudges":
-        """Nudges that change each value of a model by itself."""
+        """Nudges that change each value of a model by itself.
+
+        Args:
+          predictor: not used; other kinds of nudges need it.
+          model: the effects whose values are changed.
+        """
         count = sum(len(placed.values) for placed in model)
         return cls([[i] for i in range(count)])
 
     def steps(self, x: FloatArray, high: FloatArray) -> FloatArray:
-        """(p,) changes of the coordinates x (p,), within the upper bounds high (p,)."""
+        """(p,) changes of the coordinates that keep them within their bounds.
+
+        Args:
+          x: (p,) scaled coordinates.
+          high: (p,) their upper bounds.
+        """
         return np.where(x + STEP <= high, STEP, -STEP)
 
     def nudged(self, x: FloatArray, steps: FloatArray) -> list[FloatArray]:
-        """The points (p,) at which differences are taken, one for each group."""
+        """The points (p,) at which differences are taken, one for each group.
+
+        Args:
+          x: (p,) scaled coordinates.
+          steps: (p,) their changes.
+        """
         return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
 
     def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
-        """(N, p) Jacobian from (1 + groups, N) residuals at a point and its nudges."""
+        """(N, p) Jacobian by finite differences.
+
+        Args:
+          seen: (1 + groups, N) residuals at a point and at its nudges.
+          steps: (p,) changes of the coordinates.
+        """
         found = np.zeros((seen.shape[1], len(steps)))
         for own, other in zip(self.groups, seen[1:], strict=True):
             for i in own:
@@ -282,6 +303,7 @@ def _fit(
     jacobian: FloatArray | None,
     ask: Ask,
 ) -> FittedModel:
+    """Fit one model with SciPy's trust-region least squares; see `fit_all`."""
     from scipy.optimize import least_squares
 
     low, high = coordinates.bounds()

@@ -125,7 +125,8 @@ class Hooks:
         """
         if self._checkpoint is None:
             return work()
-        key = f"{self._part or 'search'}-{self._saved:03d}"
+        part = self._part.replace(" ", "-") or "search"
+        key = f"{part}-{self._saved:03d}"
         self._saved += 1
         stored = self._checkpoint.load(key)
         if stored is not None:

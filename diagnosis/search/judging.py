@@ -182,12 +182,9 @@ class Judge:
     def _judged(
         self, starts: Sequence[Model], jacobians: Sequence[FloatArray | None] | None
     ) -> list[Judged]:
+        """Compute what `judged` returns, without the checkpoint."""
         rough = fit_all(
-            self.fit,
-            starts,
-            self.rules.first_steps,
-            followed=True,
-            jacobians=jacobians,
+            self.fit, starts, self.rules.first_steps, followed=True, jacobians=jacobians
         )
         rough.sort(key=lambda fit: fit.energy)
         count = self._worthy([fit.energy for fit in rough])

@@ -135,16 +135,8 @@ def reference_checks(
     for own, other in (halves, halves[::-1]):
         some = shortened(own, CHECK_S / 2, LEAST_FLOATING_S)
         noise = _learned(plant, other, channels, (), threads, hooks)
-        checks.append(
-            Predictor(
-                plant,
-                some,
-                channels,
-                threads=threads,
-                noise=noise,
-                on_replay=hooks.advance,
-            )
-        )
+        options = None, threads, noise, hooks.advance
+        checks.append(Predictor(plant, some, channels, *options))
         checks[-1].calibrate()
     return checks
 
@@ -180,11 +172,7 @@ def _explained(
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select
     whole = Predictor(
-        plant,
-        [*fit, *select],
-        channels,
-        threads=threads,
-        on_replay=hooks.advance,
+        plant, [*fit, *select], channels, threads=threads, on_replay=hooks.advance
     )
     whole.calibrate()
     first, last = len(fit), len(fit) + len(select)

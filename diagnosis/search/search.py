@@ -65,12 +65,7 @@ class Search:
             swapped = self._round(chosen, replaced, "replacements of ")
             best[chosen] = distinct(judge.ranked(best[chosen] + swapped))
         return SearchResult(
-            judge.nothing,
-            judge.floor,
-            best,
-            chosen,
-            judge.nothing_fit,
-            judge.floor_fit,
+            judge.nothing, judge.floor, best, chosen, judge.nothing_fit, judge.floor_fit
         )
 
     def _round(

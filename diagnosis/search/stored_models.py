@@ -15,11 +15,7 @@ from diagnosis.search.result import Judged
 def pack(judged: Sequence[Judged]) -> Saved:
     """Judged models in the form that a checkpoint stores."""
     models = [
-        {
-            "model": _plain(each.model),
-            "selected": each.selected,
-            "weight": each.weight,
-        }
+        {"model": _plain(each.model), "selected": each.selected, "weight": each.weight}
         for each in judged
     ]
     arrays = {
