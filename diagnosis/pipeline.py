@@ -44,7 +44,7 @@ from diagnosis.search.result import SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict.verdict import Amount, EffectAt, Fit, Verdict, VerdictKind
+from diagnosis.verdict.verdict import Amount, Fit, PlacedEffect, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 
 MORE_FLOATING = 4
@@ -250,7 +250,7 @@ def _verdict(
     material: Material,
     learned: _Learned,
     tested: _Tested,
-    others: tuple[tuple[EffectAt, ...], ...],
+    others: tuple[tuple[PlacedEffect, ...], ...],
 ) -> Verdict:
     """The verdict; a held-out test that contradicts the search changes its kind."""
     data, result, kind = learned.data, tested.result, tested.kind

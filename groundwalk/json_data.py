@@ -33,12 +33,21 @@ from cattrs.cols import (
     mapping_structure_factory,
 )
 from cattrs.errors import BaseValidationError
-from cattrs.gen import make_dict_structure_fn, make_hetero_tuple_structure_fn
+from cattrs.gen import (
+    make_dict_structure_fn,
+    make_dict_unstructure_fn,
+    make_hetero_tuple_structure_fn,
+    override,
+)
 
 from groundwalk.errors import BadValueError, GroundwalkError, UnknownNameError
 
 Kind = TypeVar("Kind")
 Hook = Callable[[Any, Any], Any]
+
+
+NOT_IN_JSON: Mapping[str, bool] = {"json": False}
+"""Metadata of a dataclass field with a default that JSON does not hold."""
 
 
 class _WrongPartError(BadValueError):
@@ -166,6 +175,7 @@ def _converter(complete: bool) -> Converter:
     converter = Converter(unstruct_collection_overrides={tuple: list})
     converter.register_unstructure_hook(float, float)
     converter.register_unstructure_hook(Path, str)
+    converter.register_unstructure_hook_factory(is_dataclass, _unstructure_hook)
     for scalar, (wanted, is_right) in _SCALARS.items():
         check = partial(_check, wanted=wanted, is_right=is_right)
         converter.register_structure_hook(scalar, _checked(check, _call))
@@ -224,10 +234,11 @@ def _tuple_hook(kind: Any, converter: Converter) -> Hook:
 
 
 def _dataclass_hook(complete: bool, kind: Any, converter: Converter) -> Hook:
-    known = [field.name for field in fields(kind)]
+    held = [field for field in fields(kind) if field.metadata.get("json", True)]
+    known = [field.name for field in held]
     needed = [
         field.name
-        for field in fields(kind)
+        for field in held
         if complete or (field.default is MISSING and field.default_factory is MISSING)
     ]
 
@@ -240,7 +251,17 @@ def _dataclass_hook(complete: bool, kind: Any, converter: Converter) -> Hook:
             if key not in value:
                 raise _WrongPartError(f"has no {key!r}")
 
-    return _checked(check, make_dict_structure_fn(kind, converter))
+    return _checked(check, make_dict_structure_fn(kind, converter, **_left_out(kind)))
+
+
+def _left_out(kind: Any) -> dict[str, Any]:
+    """What cattrs is told about the fields of a dataclass that JSON does not hold."""
+    some = (field for field in fields(kind) if not field.metadata.get("json", True))
+    return {field.name: override(omit=True) for field in some}
+
+
+def _unstructure_hook(kind: Any, converter: Converter) -> Callable[[Any], Any]:
+    return make_dict_unstructure_fn(kind, converter, **_left_out(kind))
 
 
 def _checked(check: Callable[[Any], None], convert: Hook) -> Hook:

@@ -8,7 +8,7 @@ from scipy.stats import norm
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.verdict.verdict import EffectAt, Estimate, Found
+from diagnosis.verdict.verdict import Estimate, Found
 
 NORMAL_80 = float(norm.ppf(0.9))
 """Half of an 80 % interval, in standard deviations."""
@@ -53,6 +53,6 @@ def found_effect(
         placed.place,
         estimates,
         float(np.clip(probability, 0.0, 1.0)),
-        tuple(EffectAt(other.name, other.place) for other in confusable_with),
+        tuple(PlacedEffect(other.name, other.place) for other in confusable_with),
         native=kind.native,
     )

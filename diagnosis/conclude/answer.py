@@ -12,7 +12,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict.verdict import EffectAt, Found, VerdictKind, When
+from diagnosis.verdict.verdict import Found, VerdictKind, When
 
 LEAST_CLOSED = 0.95
 """Share of the energy above the noise that a model must remove; with less, something
@@ -102,7 +102,7 @@ def believed_effects(
     return tuple(sorted(found, key=lambda one: -one.probability))
 
 
-def _distinct(effects: Sequence[EffectAt]) -> tuple[EffectAt, ...]:
+def _distinct(effects: Sequence[PlacedEffect]) -> tuple[PlacedEffect, ...]:
     """Effects without repetitions, in their order."""
     return tuple(dict.fromkeys(effects))
 

@@ -6,7 +6,7 @@ from diagnosis.effects.library import effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict.verdict import EffectAt, VerdictKind
+from diagnosis.verdict.verdict import VerdictKind
 
 TIED_NATS = 10.0
 """Models that are less plausible by at most this [nats] may be the truth as well. The
@@ -23,7 +23,7 @@ MOST = 0.98
 of its effects."""
 
 
-def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[EffectAt, ...]:
+def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
     """Effects that explain the recordings as well in place of one of the winner's.
 
     Args:
@@ -33,24 +33,23 @@ def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[EffectAt, ...
     winner = found.winner
     assert winner is not None
     rest = winner.keys - {placed.key}
-    others: dict[str, EffectAt] = {}
+    others: dict[str, PlacedEffect] = {}
     for judged in found.best[found.chosen]:
         own = [other for other in judged.model if other.key not in rest]
         other = len(own) == 1 and own[0].key != placed.key
         if other and found.worse(judged) <= TIED_NATS:
-            others[own[0].key] = EffectAt(own[0].name, own[0].place)
+            others[own[0].key] = PlacedEffect(own[0].name, own[0].place)
     return tuple(others.values())
 
 
-def twins(plant: Plant, placed: PlacedEffect) -> tuple[EffectAt, ...]:
+def twins(plant: Plant, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
     """Effects that no recording of this robot can distinguish from the given one."""
-    others = effect(placed.name).twins(plant, placed.place)
-    return tuple(EffectAt(other.name, other.place) for other in others)
+    return effect(placed.name).twins(plant, placed.place)
 
 
 def alternatives(
     found: SearchResult, kind: VerdictKind
-) -> tuple[tuple[EffectAt, ...], ...]:
+) -> tuple[tuple[PlacedEffect, ...], ...]:
     """Other models with as many effects that explain the recordings as well.
 
     Args:
@@ -63,7 +62,7 @@ def alternatives(
     tied = [one for one in found.best[found.chosen] if found.worse(one) <= TIED_NATS]
     every = {one.keys: one.model for one in (winner, *tied)}
     answers = tuple(
-        tuple(EffectAt(placed.name, placed.place) for placed in model)
+        tuple(PlacedEffect(placed.name, placed.place) for placed in model)
         for model in every.values()
     )
     return answers if kind == "not_identifiable" else answers[1:]

@@ -19,8 +19,8 @@ FORMAT = 1
 
 
 @dataclass(frozen=True)
-class EffectValues:
-    """An effect at a place, and its parameters by name in SI units."""
+class Entry:
+    """An effect as the file has it: values by parameter name, in SI units."""
 
     name: str
     place: str
@@ -40,14 +40,14 @@ class Correction:
 
     robot: str
     base: Base
-    native: tuple[EffectValues, ...]
-    per_tick: tuple[EffectValues, ...]
+    native: tuple[Entry, ...]
+    per_tick: tuple[Entry, ...]
 
     @classmethod
     def of(cls, plant: Plant, model: Model) -> "Correction":
         """What a model changes of a plant."""
         parts = [
-            EffectValues(
+            Entry(
                 placed.name,
                 placed.place,
                 dict(zip(_parameters(plant, placed), placed.values, strict=True)),
@@ -60,7 +60,7 @@ class Correction:
     def of_verdict(cls, verdict: Verdict, robot: str, base: Base) -> "Correction":
         """The best estimates of a verdict, which does not say whose it is."""
         parts = [
-            EffectValues(
+            Entry(
                 found.name,
                 found.place,
                 {name: one.value for name, one in found.parameters.items()},
@@ -88,7 +88,7 @@ class Correction:
         parts = (*self.native, *self.per_tick)
         return tuple(self._placed(plant, part) for part in parts)
 
-    def _placed(self, plant: Plant, part: EffectValues) -> PlacedEffect:
+    def _placed(self, plant: Plant, part: Entry) -> PlacedEffect:
         obstacle = effect(part.name).obstacle(self.base, plant.base)
         if obstacle:
             raise BadModelError(obstacle)
@@ -147,8 +147,8 @@ def _correction(text: str, plant: Plant) -> Correction:
 
 
 def _sorted(
-    parts: Sequence[EffectValues],
-) -> tuple[tuple[EffectValues, ...], tuple[EffectValues, ...]]:
+    parts: Sequence[Entry],
+) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
     """Those that MuJoCo has, and the others."""
     native = [effect(part.name).native for part in parts]
     pairs = list(zip(parts, native, strict=True))
@@ -162,7 +162,7 @@ def _parameters(plant: Plant, placed: PlacedEffect) -> list[str]:
     return [parameter.name for parameter in one.parameters(plant, placed.place)]
 
 
-def _check_place(plant: Plant, part: EffectValues) -> None:
+def _check_place(plant: Plant, part: Entry) -> None:
     kind = effect(part.name).place_kind
     known: Sequence[str] = (kind,)
     if kind == "joint":

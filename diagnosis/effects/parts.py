@@ -5,6 +5,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from diagnosis.verdict.parts import PlacedEffect as PlacedEffect
 from groundwalk.arrays import FloatArray
 
 PlaceKind = Literal[
@@ -48,31 +49,6 @@ class Parameter:
     neutral: float
     typical: float
     logarithmic: bool = False
-
-
-@dataclass(frozen=True)
-class PlacedEffect:
-    """An effect at a place, with or without values.
-
-    Example:
-      >>> PlacedEffect("backlash", "LKneePitch", (0.02,)).key
-      'backlash@LKneePitch'
-
-    Attributes:
-      name: of the effect.
-      place: joint, body, or the word for a place that exists once, such as "feet".
-      values: of all its parameters, in their order; empty where only effect and place
-        matter.
-    """
-
-    name: str
-    place: str
-    values: Values = ()
-
-    @property
-    def key(self) -> str:
-        """Effect and place, for example "backlash@LKneePitch"."""
-        return f"{self.name}@{self.place}"
 
 
 class EffectWords(NamedTuple):

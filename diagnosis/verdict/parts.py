@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from groundwalk.errors import BadValueError
-from groundwalk.json_data import check_number
+from groundwalk.json_data import NOT_IN_JSON, check_number
 
 Course = Literal["always", "burst", "drift"]
 PulseSource = Literal["actuator input", "torque sensor", "position sensor"]
@@ -45,11 +45,36 @@ class Amount:
 
 
 @dataclass(frozen=True)
-class EffectAt:
-    """An effect at a place, without values."""
+class PlacedEffect:
+    """An effect at a place, with or without values.
+
+    Example:
+      >>> PlacedEffect("backlash", "LKneePitch", (0.02,)).key
+      'backlash@LKneePitch'
+      >>> PlacedEffect.parse("drag@torso")
+      PlacedEffect(name='drag', place='torso', values=())
+
+    Attributes:
+      name: of the effect.
+      place: joint, body, or the word for a place that exists once, such as "feet".
+      values: of all its parameters, in their order and in SI units; empty where only
+        effect and place matter. Not written to JSON.
+    """
 
     name: str
     place: str
+    values: tuple[float, ...] = field(default=(), metadata=NOT_IN_JSON)
+
+    @classmethod
+    def parse(cls, key: str) -> "PlacedEffect":
+        """The effect without values whose `key` is given."""
+        name, _, place = key.partition("@")
+        return cls(name, place)
+
+    @property
+    def key(self) -> str:
+        """Effect and place, for example "backlash@LKneePitch"."""
+        return f"{self.name}@{self.place}"
 
 
 @dataclass(frozen=True)
@@ -91,7 +116,7 @@ class Found:
     place: str
     parameters: Mapping[str, Estimate]
     probability: float
-    confusable_with: tuple[EffectAt, ...] = ()
+    confusable_with: tuple[PlacedEffect, ...] = ()
     when: When = When()
     native: bool = True
 

@@ -8,11 +8,11 @@ from typing import Literal
 from diagnosis.verdict.errors import ChannelFit, Errors, Fit
 from diagnosis.verdict.parts import (
     Amount,
-    EffectAt,
     Estimate,
     Found,
     MismatchCell,
     NextExperiment,
+    PlacedEffect,
     Pulse,
     Recordings,
     Unexplained,
@@ -24,13 +24,13 @@ from groundwalk.json_data import check_number, from_plain, parse_object, to_plai
 __all__ = [
     "Amount",
     "ChannelFit",
-    "EffectAt",
     "Errors",
     "Estimate",
     "Fit",
     "Found",
     "MismatchCell",
     "NextExperiment",
+    "PlacedEffect",
     "Pulse",
     "Recordings",
     "Unexplained",
@@ -68,7 +68,7 @@ class Verdict:
 
     kind: VerdictKind
     effects: tuple[Found, ...] = ()
-    alternatives: tuple[tuple[EffectAt, ...], ...] = ()
+    alternatives: tuple[tuple[PlacedEffect, ...], ...] = ()
     smallest_detectable: Mapping[str, Amount] = field(default_factory=dict)
     unexplained: Unexplained | None = None
     limits: tuple[str, ...] = ()

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from diagnosis.verdict.verdict import EffectAt, Fit, Found, Verdict
+from diagnosis.verdict.verdict import Fit, Found, PlacedEffect, Verdict
 from experiments.diagnosis_report.findings import (
     at_many,
     parameter_rows,
@@ -83,7 +83,7 @@ def _verdict(verdict: Verdict, changed: bool) -> str:
     if verdict.kind == "none" and verdict.smallest_detectable:
         smallest = [*verdict.smallest_detectable.items()][:_SHOWN_AMOUNTS]
         amounts = [
-            f"{at_words(EffectAt(*key.split('@', 1)))} of {amount_text(amount)}"
+            f"{at_words(PlacedEffect.parse(key))} of {amount_text(amount)}"
             for key, amount in smallest
         ]
         return f"{kind} that would be as large as {listing(amounts, 'or')}"

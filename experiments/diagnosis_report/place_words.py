@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from diagnosis.effects import effect as kind_of
-from diagnosis.verdict.verdict import EffectAt, Found
+from diagnosis.verdict.verdict import Found, PlacedEffect
 from worlds.recordings.columns import JOINT_QUANTITIES
 
 _SIDED = re.compile(r"([LR])([A-Z][a-z]+(?:[A-Z][a-z]+)*)")
@@ -29,7 +29,7 @@ def place_words(place: str, kind: str = "joint") -> str:
     return f"the {_SIDES[sided[1]]} {' '.join(parts)} ({place})"
 
 
-def at_words(effect: EffectAt | Found) -> str:
+def at_words(effect: PlacedEffect | Found) -> str:
     """An effect with its place: "dry friction at the left knee (LKneePitch)"."""
     words = kind_of(effect.name).words
     if not words.place_kind:
@@ -37,12 +37,12 @@ def at_words(effect: EffectAt | Found) -> str:
     return f"{words.label} at {place_words(effect.place, words.place_kind)}"
 
 
-def answer_words(effects: tuple[EffectAt, ...]) -> str:
+def answer_words(effects: tuple[PlacedEffect, ...]) -> str:
     """Effects of one answer: "dry friction at hip together with late commands"."""
     return " together with ".join(map(at_words, effects))
 
 
-def choice(answers: Sequence[tuple[EffectAt, ...]]) -> str:
+def choice(answers: Sequence[tuple[PlacedEffect, ...]]) -> str:
     """Several answers, of which one is right, with "; or" between them."""
     return "; or ".join(map(answer_words, answers))
 

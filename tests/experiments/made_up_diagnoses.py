@@ -6,12 +6,12 @@ from diagnosis.conclude.held_out_series import ChannelSeries, HeldOutSeries
 from diagnosis.verdict.verdict import (
     Amount,
     ChannelFit,
-    EffectAt,
     Estimate,
     Fit,
     Found,
     MismatchCell,
     NextExperiment,
+    PlacedEffect,
     Recordings,
     Unexplained,
     Verdict,
@@ -49,7 +49,7 @@ PLAY = Found(
     "LKneePitch",
     {"gap": Estimate(0.0304, 0.0271, 0.0338, "rad")},
     probability=0.97,
-    confusable_with=(EffectAt("coulomb_friction", "LKneePitch"),),
+    confusable_with=(PlacedEffect("coulomb_friction", "LKneePitch"),),
     native=False,
 )
 LATENCY = Found(
@@ -136,8 +136,8 @@ EFFECTS = Verdict(
     effects=(PLAY, LATENCY),
     alternatives=(
         (
-            EffectAt("coulomb_friction", "LKneePitch"),
-            EffectAt("command_latency", "commands"),
+            PlacedEffect("coulomb_friction", "LKneePitch"),
+            PlacedEffect("command_latency", "commands"),
         ),
     ),
     limits=(
@@ -187,9 +187,12 @@ UNKNOWN = Verdict(
 OPEN = Verdict(
     "not_identifiable",
     alternatives=(
-        (EffectAt("payload_mass", "LTibia"),),
-        (EffectAt("servo_gain", "LKneePitch"),),
-        (EffectAt("ground_slope", "world"), EffectAt("encoder_offset", "LHipPitch")),
+        (PlacedEffect("payload_mass", "LTibia"),),
+        (PlacedEffect("servo_gain", "LKneePitch"),),
+        (
+            PlacedEffect("ground_slope", "world"),
+            PlacedEffect("encoder_offset", "LHipPitch"),
+        ),
     ),
     limits=("The robot stood still: masses, tilt and servo stiffness act alike.",),
     mismatch=mismatch(2.0),

@@ -1,14 +1,20 @@
 """Made-up truths, answers and oracles of concealed cases."""
 
-from diagnosis.corrected.effects_json import EffectValues
-from diagnosis.verdict.verdict import EffectAt, Estimate, Found, Unexplained, Verdict
+from diagnosis.verdict.verdict import (
+    Estimate,
+    Found,
+    PlacedEffect,
+    Unexplained,
+    Verdict,
+)
 from experiments.concealed.score import DIAGNOSIS, score_of
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase, Truth
+from worlds.hidden.effects import Hidden
 
 KNEE, HIP = "LKneePitch", "LHipPitch"
-DRY = EffectValues("coulomb_friction", KNEE, {"torque": 0.2})
-WET = EffectValues("viscous_friction", HIP, {"coefficient": 0.5})
+DRY = Hidden("coulomb_friction", KNEE, {"torque": 0.2})
+WET = Hidden("viscous_friction", HIP, {"coefficient": 0.5})
 
 
 def found(name, place, value=0.2, low=0.1, high=0.3, probability=0.95, others=()):
@@ -18,7 +24,7 @@ def found(name, place, value=0.2, low=0.1, high=0.3, probability=0.95, others=()
         place,
         {parameter.get(name, "size"): Estimate(value, low, high, "1")},
         probability,
-        tuple(EffectAt(other, place) for other in others),
+        tuple(PlacedEffect(other, place) for other in others),
     )
 
 

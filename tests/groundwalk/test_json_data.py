@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError, GroundwalkError
-from groundwalk.json_data import from_plain, parse_json, parse_object, to_plain
+from groundwalk.json_data import (
+    NOT_IN_JSON,
+    from_plain,
+    parse_json,
+    parse_object,
+    to_plain,
+)
 
 
 @dataclass(frozen=True)
@@ -128,3 +134,15 @@ def test_an_object_has_the_format_that_is_known(text, message):
     with pytest.raises(BadValueError, match=message):
         parse_object(text, "metadata", 1)
     assert parse_object('{"format": 1, "a": 2}', "metadata", 1) == {"a": 2}
+
+
+def test_fields_that_json_does_not_hold_are_left_out():
+    @dataclass(frozen=True)
+    class Part:
+        name: str
+        size: tuple[float, ...] = field(default=(), metadata=NOT_IN_JSON)
+
+    assert to_plain(Part("a", (1.0,))) == {"name": "a"}
+    assert from_plain(Part, {"name": "a"}, "part") == Part("a")
+    with pytest.raises(BadValueError, match="unknown key 'size'"):
+        from_plain(Part, {"name": "a", "size": []}, "part")

@@ -4,11 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from diagnosis.corrected.effects_json import EffectValues
 from diagnosis.effects.library import all_effects
 from diagnosis.verdict.verdict import Found, Verdict
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase
+from worlds.hidden.effects import Hidden
 
 NAMED_KINDS = ("single", "pair", "triple")
 """Kinds of cases in which effects that the diagnosis knows are hidden and excited."""
@@ -123,7 +123,7 @@ def mark(
     )
 
 
-def _at(effect: Found | EffectValues) -> tuple[str, str]:
+def _at(effect: Found | Hidden) -> tuple[str, str]:
     return effect.name, effect.place
 
 
@@ -135,13 +135,13 @@ def _considered(verdict: Verdict) -> set[str]:
     return found | others | answers
 
 
-def _main(found: Found, true: EffectValues) -> list[str]:
+def _main(found: Found, true: Hidden) -> list[str]:
     known = all_effects().get(true.name)
     names = (known and known.main_parameters) or tuple(true.parameters)
     return [name for name in names if name in true.parameters]
 
 
-def _error(found: Found, true: EffectValues, oracle: Oracle | None) -> float:
+def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
     """Error of the main parameters, relative to the size of the true effect.
 
     The parameters form a vector. The error is the distance from the estimate to the
@@ -160,7 +160,7 @@ def _error(found: Found, true: EffectValues, oracle: Oracle | None) -> float:
     return math.hypot(*wrong) / max(math.hypot(*size), 1e-12)
 
 
-def _covered(found: Found, true: EffectValues) -> list[bool]:
+def _covered(found: Found, true: Hidden) -> list[bool]:
     return [
         name in found.parameters
         and found.parameters[name].low

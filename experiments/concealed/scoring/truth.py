@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from diagnosis.corrected.effects_json import EffectValues
 from diagnosis.verdict.verdict import Verdict
 from experiments.concealed.reading import (
     BASELINE_ANSWERS,
@@ -16,6 +15,7 @@ from experiments.concealed.reading import (
 )
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.json_data import from_plain, parse_object
+from worlds.hidden.effects import Hidden
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class TrueCase:
     plant: str
     engine: str
     kind: str
-    effects: tuple[EffectValues, ...] = ()
+    effects: tuple[Hidden, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class _SealedCase:
     plant: str
     engine: str
     kind: str
-    effects: tuple[EffectValues, ...]
+    effects: tuple[Hidden, ...]
     size: float | None = None
     held: tuple[str, ...] = ()
 

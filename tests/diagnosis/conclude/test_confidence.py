@@ -12,11 +12,11 @@ from diagnosis.conclude.confidence import (
     probability,
 )
 from diagnosis.search.result import VALUE_NATS, SearchResult
-from diagnosis.verdict.verdict import EffectAt
+from diagnosis.verdict.verdict import PlacedEffect
 
 ARM = arm()
 VISCOUS, COULOMB = "viscous_friction@elbow", "coulomb_friction@elbow"
-COULOMB_AT = EffectAt("coulomb_friction", "elbow")
+COULOMB_AT = PlacedEffect("coulomb_friction", "elbow")
 GAIN, ELSEWHERE = "servo_gain@shoulder", "viscous_friction@shoulder"
 
 
@@ -53,7 +53,7 @@ def test_of_a_pair_each_effect_has_its_own_rivals():
     assert confusable(pair, placed(VISCOUS)) == (COULOMB_AT,)
     assert confusable(pair, placed(GAIN)) == ()
     assert alternatives(pair, "effects") == (
-        (COULOMB_AT, EffectAt("servo_gain", "shoulder")),
+        (COULOMB_AT, PlacedEffect("servo_gain", "shoulder")),
     )
 
 

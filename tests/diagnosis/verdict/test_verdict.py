@@ -9,12 +9,12 @@ from diagnosis.verdict import verdict as verdicts
 from diagnosis.verdict.verdict import (
     Amount,
     ChannelFit,
-    EffectAt,
     Estimate,
     Fit,
     Found,
     MismatchCell,
     NextExperiment,
+    PlacedEffect,
     Recordings,
     Unexplained,
     Verdict,
@@ -23,7 +23,7 @@ from diagnosis.verdict.verdict import (
 from groundwalk.errors import BadValueError
 
 DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "diagnosis_json.md"
-KNEE = EffectAt("coulomb_friction", "knee")
+KNEE = PlacedEffect("coulomb_friction", "knee")
 PLAY = Found(
     "backlash",
     "knee",
@@ -47,7 +47,7 @@ CHANNEL = ChannelFit(nominal=5e-3, corrected=1e-3, floor=9e-4, unit="rad")
 FULL = Verdict(
     "unknown",
     effects=(PLAY,),
-    alternatives=((KNEE, EffectAt("command_latency", "commands")),),
+    alternatives=((KNEE, PlacedEffect("command_latency", "commands")),),
     smallest_detectable={"drag@torso": Amount(0.5, "N s/m")},
     unexplained=REST,
     limits=("Only 15 Hz.",),
@@ -189,7 +189,8 @@ def test_every_field_is_documented():
     text = DOCUMENT.read_text()
     parts = [getattr(verdicts, name) for name in verdicts.__all__]
     kinds = [part for part in parts if dataclasses.is_dataclass(part)]
-    names = {field.name for kind in kinds for field in dataclasses.fields(kind)}
+    fields = [field for kind in kinds for field in dataclasses.fields(kind)]
+    names = {field.name for field in fields if field.metadata.get("json", True)}
     assert {"kind", "low", "wrong_place", "spread", "bursts"} <= names
     assert [name for name in sorted(names) if not documented(text, name)] == []
     assert not documented(text, "wrong_plaice")

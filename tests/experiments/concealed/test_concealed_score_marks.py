@@ -17,10 +17,13 @@ from made_up_scores import (
     single,
 )
 
-from diagnosis.corrected.effects_json import EffectValues
-from diagnosis.verdict.verdict import EffectAt, Estimate, Fit, Found, Verdict
+from diagnosis.verdict.verdict import Estimate, Fit, Found, PlacedEffect, Verdict
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.reports.statistics import wilson
+from worlds.hidden.effects import Hidden
+
+COGGING = Hidden("cogging", KNEE, {"torque": 0.1, "per_turn": 12.0, "phase": 0.0})
+DRAG = Hidden("drag", "x", {"coefficient": 1.0})
 
 # Names
 
@@ -57,7 +60,10 @@ def test_the_set_is_what_is_found_what_is_confusable_and_the_alternatives():
     confusable = names(found("backlash", KNEE, others=("coulomb_friction",)))
     other = Verdict(
         "not_identifiable",
-        alternatives=((EffectAt("coulomb_friction", HIP),), (EffectAt("drag", "x"),)),
+        alternatives=(
+            (PlacedEffect("coulomb_friction", HIP),),
+            (PlacedEffect("drag", "x"),),
+        ),
     )
     wrong = names(found("backlash", KNEE, others=("load_friction",)))
     score = scored(single(confusable), single(other), single(wrong), single(NOTHING))
@@ -80,7 +86,12 @@ def test_f1_of_pairs_wants_name_and_place():
     score = scored(
         (*pair, names(RIGHT, found("viscous_friction", HIP, 0.5, 0.4, 0.6)), oracle()),
         (*pair, names(RIGHT, found("viscous_friction", KNEE)), oracle()),
-        ("triple", (DRY, WET, EffectValues("drag", "x", {})), None, oracle()),
+        (
+            "triple",
+            (DRY, WET, Hidden("drag", "x", {"coefficient": 1.0})),
+            None,
+            oracle(),
+        ),
         single(names(found("backlash", KNEE))),  # singles do not count
     )
     # 3 hits, 1 extra, 1 + 3 missed
@@ -126,7 +137,7 @@ def test_an_answer_is_right_as_a_whole_or_not(kind, verdict, right):
     hidden = {
         "pair": (DRY, WET),
         "none": (),
-        "outside": (EffectValues("cogging", KNEE, {}),),
+        "outside": (COGGING,),
     }
     known = oracle() if kind in ("single", "pair") else None
     score = scored((kind, hidden.get(kind, (DRY,)), verdict, known))
@@ -153,10 +164,10 @@ def test_errors_and_intervals_of_right_effects():
 
 
 def test_vectors_are_compared_as_vectors_and_factors_from_where_they_do_nothing():
-    com = EffectValues("com_offset", "torso", {"x": 0.03, "y": 0.04, "z": 0.0})
+    com = Hidden("com_offset", "torso", {"x": 0.03, "y": 0.04, "z": 0.0})
     at = {name: Estimate(value, value, value, "m") for name, value in
           {"x": 0.03, "y": 0.04, "z": 0.01}.items()}  # fmt: skip
-    gain = EffectValues("servo_gain", KNEE, {"factor": 1.2})
+    gain = Hidden("servo_gain", KNEE, {"factor": 1.2})
     factor = {"factor": Estimate(1.1, 1.0, 1.3, "1")}
     none_at = {"com_offset@torso": dict.fromkeys("xyz", 0.0)}
     one_at = {f"servo_gain@{KNEE}": {"factor": 1.0}}
@@ -181,9 +192,7 @@ def test_vectors_are_compared_as_vectors_and_factors_from_where_they_do_nothing(
 
 
 def test_a_stiffness_is_measured_against_itself():
-    spring = EffectValues(
-        "joint_elasticity", KNEE, {"stiffness": 100.0, "damping": 1.0}
-    )
+    spring = Hidden("joint_elasticity", KNEE, {"stiffness": 100.0, "damping": 1.0})
     values = {
         "stiffness": Estimate(150.0, 90.0, 160.0, "N m/rad"),
         "damping": Estimate(9.0, 8.0, 10.0, "N m s/rad"),  # does not count
@@ -230,7 +239,7 @@ def test_closed_is_relative_to_the_oracle_and_needs_something_to_close():
 
 def test_false_alarms_and_names_for_what_has_none():
     partly = Verdict("unknown", (RIGHT,), unexplained=UNKNOWN.unexplained)
-    strange = EffectValues("cogging", KNEE, {"torque": 0.1})
+    strange = COGGING
     score = scored(
         ("none", (), NOTHING, None),
         ("none", (), UNKNOWN, None),

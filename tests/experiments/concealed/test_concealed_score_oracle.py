@@ -6,7 +6,6 @@ import mujoco
 import numpy as np
 import pytest
 
-from diagnosis.corrected.effects_json import EffectValues
 from diagnosis.verdict.verdict import Estimate, Found
 from experiments.concealed.reading import read_case
 from experiments.concealed.scoring.oracle import (
@@ -17,6 +16,7 @@ from experiments.concealed.scoring.oracle import (
 from experiments.concealed.scoring.truth import TrueCase
 from groundwalk.errors import RunFolderError
 from worlds import Recording, RecordingMetadata, write_recording
+from worlds.hidden.effects import Hidden
 from worlds.recordings.metadata import ServoGains
 
 XML = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody>
@@ -25,7 +25,7 @@ XML = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody>
 </worldbody></mujoco>"""
 KP, KD, LIMIT, TRUE = 8.0, 0.2, 4.0, 0.08
 STEP_S, TICK_S = 0.0005, 0.01
-VISCOUS = EffectValues("viscous_friction", "swing", {"coefficient": TRUE})
+VISCOUS = Hidden("viscous_friction", "swing", {"coefficient": TRUE})
 
 
 def swing(seed, seconds=3.0):

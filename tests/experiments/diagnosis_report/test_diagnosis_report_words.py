@@ -8,9 +8,9 @@ import pytest
 from diagnosis.effects import all_effects, effect
 from diagnosis.verdict.verdict import (
     Amount,
-    EffectAt,
     Estimate,
     Found,
+    PlacedEffect,
     When,
 )
 from experiments.diagnosis_report.figures import CLOSE_UP_S, close_up
@@ -119,8 +119,8 @@ def test_places_in_words(place, kind, words):
 
 
 def test_effects_and_channels_in_words():
-    assert at_words(EffectAt("drag", "torso")) == "drag at the body torso"
-    assert at_words(EffectAt("command_latency", "commands")) == "late commands"
+    assert at_words(PlacedEffect("drag", "torso")) == "drag at the body torso"
+    assert at_words(PlacedEffect("command_latency", "commands")) == "late commands"
     knee = "the torque of the right knee (RKneePitch)"
     assert channel_words("torque.RKneePitch") == knee
     assert channel_words("gyroscope.x") == "gyroscope x"
