@@ -62,7 +62,8 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
             break
     else:
         raise GroundwalkError(
-            f"case {number} of seed {seed}: in every attempt the robot fell, or the effect hardly showed"
+            f"case {number} of seed {seed}: in every attempt the robot fell, or the "
+            "effect hardly showed"
         )
     name = case_name(number)
     unfinished = cases / f".{name}.partial"
