@@ -11,6 +11,7 @@ import numpy as np
 import tyro
 
 import robots
+from diagnosis.audit import audit
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.pipeline import Diagnosis, diagnose
@@ -41,6 +42,7 @@ from groundwalk.errors import BadRecordingError, BadValueError, GroundwalkError
 from worlds import ServoGains
 
 VERB = "diagnose"
+_NO_SETTINGS = ("recordings", "out", "resume", "json", "audit_only")
 VERDICT, REPORT, OVERLAY, AUDIT = (
     "diagnosis.json", "report.html", "overlay.rrd", "audit.json",
 )  # fmt: skip
@@ -53,7 +55,7 @@ class Diagnose(RunOptions):
     """Find out what physics a sim lacks, from recordings of the robot.
 
     Attributes:
-      recordings: files of format 1, Parquet or CSV; at least one.
+      recordings: files of format 1, Parquet or CSV, or folders of them; at least one.
       reference: recordings of the same robot while it was healthy. What they show is
         taken as given; the question is then what has changed since.
       robot: its name, a model file (.xml or .urdf), or a robot of example-robot-data.
@@ -66,6 +68,7 @@ class Diagnose(RunOptions):
       least_share: smallest share of the sim's squared error that an effect must explain
         to be reported, from 0 to below 1.
       threads: processor threads of the replays.
+      audit_only: only check the recordings: print what limits them, and stop.
     """
 
     recordings: Annotated[
@@ -79,6 +82,7 @@ class Diagnose(RunOptions):
     drive: DriveBy = "servos"
     least_share: float = Rules.least_share
     threads: int = 2
+    audit_only: bool = False
 
     def __post_init__(self) -> None:
         """Refuse options that no diagnosis can work with.
@@ -113,7 +117,10 @@ class Diagnose(RunOptions):
 
 
 def main(config: Diagnose) -> None:
-    """Diagnose, and print the verdict."""
+    """Diagnose and print the verdict, or only audit the recordings."""
+    if config.audit_only:
+        print_audit(config)
+        return
     folder, verdict = run_diagnosis(config)
     if config.json:
         print(verdict.to_json(), end="")
@@ -122,6 +129,29 @@ def main(config: Diagnose) -> None:
         paths = [path for path in written if path.exists()]
         asked = folder.read_json(CONFIG)  # a resumed run has no options of its own
         print_verdict(verdict, paths, changed=bool(asked["reference"]))
+
+
+def print_audit(config: Diagnose) -> None:
+    """Check the recordings as a diagnosis does first, in seconds instead of minutes.
+
+    Raises:
+      BadRecordingError: a recording cannot be used.
+    """
+    plant, traces, reference = _read(config)
+    found = audit([*traces, *reference], plant)
+    if config.json:
+        print(found.to_json())
+        return
+    for trace in found.traces:
+        moving = sum(joint.moves for joint in trace.joints)
+        print(
+            f"{trace.name}: {trace.duration_s:.3g} s, {trace.rate_hz:.3g} rows a "
+            f"second, {moving} of {len(plant.joints)} joints move"
+        )
+    for finding in found.findings:
+        print(f"{finding.severity}: {finding.text}")
+    if found.refused:
+        raise BadRecordingError("these recordings cannot be diagnosed, see above")
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
@@ -233,7 +263,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
     settings = {
         name: str(value)
         for name, value in to_plain(config).items()
-        if value is not None and name not in ("recordings", "out", "resume", "json")
+        if value is not None and name not in _NO_SETTINGS
     }
     files = {
         VERDICT: "the verdict, for programs",

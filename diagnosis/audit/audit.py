@@ -1,4 +1,4 @@
-"""The audit: what recordings are worth before anything is read out of them."""
+"""Audits recordings before a diagnosis: noise, gaps, excitation and contradictions."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,14 +28,17 @@ from diagnosis.traces.trace import Trace
 
 
 def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
-    """Measure all traces and say what they cannot tell.
+    """Measure all traces, and find what makes them unusable or limits conclusions.
 
-    A delay between commands and states is an effect, to be found or not; it is not
-    judged here.
+    A delay between commands and states is no finding: it is an effect that a diagnosis
+    may find.
 
     Args:
-      traces: of the plant.
-      plant: its joint ranges count.
+      traces: recordings of the plant.
+      plant: the nominal robot model.
+
+    Example:
+      See docs/python.md.
     """
     audits, findings = [], []
     for trace in traces:
@@ -78,7 +81,7 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
 def _suspicions(
     trace: Trace, plant: Plant, measured: TraceAudit, smoothed: list[Smoothed]
 ) -> list[Finding]:
-    """What makes a trace unlikely to be what it says."""
+    """Findings that contradict the recording's own metadata or the robot model."""
     moves = [joint.moves for joint in measured.joints]
     return [
         *range_findings(trace, plant),

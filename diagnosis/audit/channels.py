@@ -1,6 +1,7 @@
-"""The channels of a trace: noise, quantum, what is missing, stuck or repeated."""
+"""Audits single channels: noise, quantum, missing, stuck and repeated values."""
 
 import numpy as np
+from scipy.ndimage import find_objects, label
 
 from diagnosis.audit.result import ChannelAudit, Finding, Severity
 from diagnosis.plant.plant import Plant
@@ -26,20 +27,29 @@ _OF_VECTORS = {
     "base.angular_velocity": "base_angular_velocity_rad_s",
 }
 COMMANDS = ("command.", "command_torque.")
+"""Beginnings of the columns that are commanded, not measured."""
 _MOST_MISSING = 0.5
+"""Share of missing values from which a channel cannot be used."""
 _BURST_S = 0.1
+"""Time without values [s] from which on a channel's gap is named."""
 _STUCK_ROWS = 4
+"""Rows at an extreme value that make a stay."""
 _STAYS, _LONG_STAY_ROWS = 2, 10
-"""One short stay may be chance."""
+"""Stays, or rows in a single one, from which on a channel counts as clipped."""
 _ARRIVAL = 4.0
-"""A channel is clipped if it reaches its extreme at this many steps of noise a row."""
+"""Steps of noise per row at which a clipped channel reaches its extreme at least."""
 _REPEATED = 0.05
+"""Share of repeated rows that is worth a finding."""
 
 
 def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
-    """Every channel of a trace by its column's name, (T,) each.
+    """All channels of a trace by the recording's column names, (T,) each.
 
-    A joint's quantity that was never recorded is left out.
+    Joints' quantities that were never recorded are left out.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the robot model; it gives the joints' names.
     """
     channels: dict[str, FloatArray] = {}
     for quantity, field in _OF_JOINTS.items():
@@ -57,7 +67,13 @@ def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
 
 
 def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
-    """Measure one channel."""
+    """Measure noise, clipping and missing values of one channel.
+
+    Args:
+      trace: the recording.
+      name: the channel's column in the recording.
+      values: (T,) NaN where missing.
+    """
     there = values[np.isfinite(values)]
     noise = noise_of(trace.time_s, values)
     constant = len(there) > 0 and bool(np.ptp(there) == 0)
@@ -74,7 +90,7 @@ def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
 
 
 def channel_findings(trace: Trace, channel: ChannelAudit) -> list[Finding]:
-    """What a channel's numbers mean."""
+    """Word the findings about missing and clipped values of one channel."""
     severity: Severity
     found = []
     where = f"{channel.name} of {trace.name}"
@@ -86,7 +102,7 @@ def channel_findings(trace: Trace, channel: ChannelAudit) -> list[Finding]:
     elif channel.longest_missing_s >= _BURST_S:
         text = (
             f"{where}: {channel.missing_share:.1%} of the values are missing, up to "
-            f"{channel.longest_missing_s:.2g} s at a stretch; nothing is said of those"
+            f"{channel.longest_missing_s:.2g} s at a stretch, which are not judged"
         )
         found.append(Finding("limit", text, trace.name, channel.name))
     elif channel.missing_share > 0:
@@ -104,11 +120,12 @@ def channel_findings(trace: Trace, channel: ChannelAudit) -> list[Finding]:
 
 
 def repeated_share(trace: Trace, steps: FloatArray) -> float:
-    """Share of moving rows whose positions are all those of the row before.
+    """Share of the rows in motion that repeat all positions of the row before.
 
     Args:
-      trace: with T rows and j joints.
-      steps: (j,) quanta, 0 for continuous positions: noise alone never repeats them.
+      trace: a recording with j joints.
+      steps: (j,) quanta of the positions; 0 for continuous ones, which noise alone
+        never repeats.
     """
     position = trace.position_rad
     if len(position) < 4:
@@ -120,27 +137,27 @@ def repeated_share(trace: Trace, steps: FloatArray) -> float:
 
 
 def repeated_findings(trace: Trace, share: float) -> list[Finding]:
-    """What repeated rows mean."""
+    """Word the finding about a share of repeated rows; none if it is small."""
     if share < _REPEATED:
         return []
     text = (
         f"{trace.name}: {share:.0%} of the rows taken in motion repeat the positions "
         "of the row before; the sensors are slower than the recording, and delays of "
-        "that length are not told from it"
+        "that length cannot be distinguished from it"
     )
     return [Finding("limit", text, trace.name)]
 
 
 def _clipped_share(name: str, values: FloatArray, step: float) -> float:
-    """Share of rows in long stays at an extreme that was reached at speed.
+    """Share of rows in which a channel stays at an extreme that it reached at speed.
 
-    What slows down before it stands still has come to rest. A foot without load
-    rests at no force at all.
+    A signal that slows down before it stands still has come to rest; it is not clipped.
+    The smallest foot force does not count, since a foot without load rests at zero.
     """
     stays = []
     ends = (np.nanmax(values), np.nanmin(values))
     for extreme in ends[:1] if name.startswith("foot_force") else ends:
-        for start, stop in _runs(values == extreme):
+        for start, stop in _spans(values == extreme):
             if stop - start < _STUCK_ROWS or start < 3:
                 continue
             # the last step to the extreme is cut off, so speed is that before it
@@ -154,17 +171,14 @@ def _clipped_share(name: str, values: FloatArray, step: float) -> float:
 
 
 def _longest_s(time_s: FloatArray, mask: BoolArray) -> float:
-    """Longest stretch of rows in a mask, to the row after it."""
+    """Longest time [s] that a mask holds, from the row before to the row after."""
     longest = 0.0
-    for start, stop in _runs(mask):
+    for start, stop in _spans(mask):
         end = min(stop, len(time_s) - 1)
         longest = max(longest, float(time_s[end] - time_s[max(start - 1, 0)]))
     return longest
 
 
-def _runs(mask: BoolArray) -> list[tuple[int, int]]:
-    """First row and row after the last of each stretch."""
-    edges = np.flatnonzero(
-        np.diff(np.concatenate([[False], mask, [False]]).astype(int))
-    )
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+def _spans(mask: BoolArray) -> list[tuple[int, int]]:
+    """First row of each span of a mask, and the row after its last one."""
+    return [(rows.start, rows.stop) for (rows,) in find_objects(label(mask)[0])]

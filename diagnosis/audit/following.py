@@ -8,22 +8,28 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 _LONGEST_LAG_S = 0.25
+"""Longest delay between command and position that is tried [s]."""
 _LAGS = 8
+"""Number of delays that are tried."""
 _STILL_RAD = 2e-3
+"""A joint that moves less than this [rad] is taken as still."""
 _LEAST_ROWS = 50
+"""Fewest rows that a comparison must have."""
 
 
 @dataclass(frozen=True, eq=False)
 class Following:
-    """The m joints whose command and position both move; constant offsets are left out.
+    """Comparison of the commands and positions of the m joints that move.
+
+    Constant offsets are removed first. In the (m, m) arrays the row is the command's
+    joint and the column the position's.
 
     Attributes:
-      columns: of these joints in the trace.
-      misfit: (m, m) rms of a position (second) less a command (first), at the lag
-        that fits best.
-      correlation: (m, m) at the lag at which it is largest in size.
-      slope: (m,) of a position on its own command.
-      flipped: (m,) as misfit, of a position less its own command upside down.
+      columns: columns of these joints in the trace.
+      misfit: (m, m) rms of position less command, at the lag that fits best.
+      correlation: (m, m) correlation, at the lag at which it is largest in size.
+      slope: (m,) slope of each position over its own command.
+      flipped: (m,) rms of each position plus its own command, at the best lag.
     """
 
     columns: tuple[int, ...]
@@ -34,9 +40,13 @@ class Following:
 
 
 def following(trace: Trace) -> Following:
-    """Compare all commands with all positions, up to a quarter of a second later.
+    """Compare all commands with all positions, at lags of up to 0.25 s.
 
-    Rows in which a value is missing are left out.
+    Args:
+      trace: a recording; rows in which a value is missing are left out.
+
+    Returns:
+      The comparison; without joints if there are no commands or nothing moves.
     """
     command, position = trace.command_rad, trace.position_rad
     nothing = Following((), *(np.zeros(shape) for shape in ((0, 0), (0, 0), 0, 0)))
@@ -70,7 +80,7 @@ def following(trace: Trace) -> Following:
 def _compare(
     command: FloatArray, position: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Misfit (m, m), misfit upside down (m,), correlation (m, m) and slope (m,)."""
+    """Misfit (m, m), flipped (m,), correlation (m, m) and slope (m,) at one lag."""
     there = np.isfinite(command).all(axis=1) & np.isfinite(position).all(axis=1)
     count = max(int(there.sum()), 1)
     c = command[there] - command[there].mean(axis=0) if there.any() else command[:0]
@@ -90,7 +100,7 @@ def _compare(
 
 
 def _spread(values: FloatArray) -> FloatArray:
-    """Range of each column; 0 where nothing is there."""
+    """(j,) range of each column; 0 where all values are missing."""
     there = np.isfinite(values)
     low = np.where(there, values, np.inf).min(axis=0)
     high = np.where(there, values, -np.inf).max(axis=0)

@@ -1,4 +1,4 @@
-"""Torques, accelerations and turning rates whose units cannot be right."""
+"""Finds torques, accelerations and turning rates whose units cannot be right."""
 
 import numpy as np
 
@@ -9,14 +9,20 @@ from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 
 _ABOVE, _FAR_ABOVE = 1.5, 20.0
-"""Times the servo's limit."""
+"""Multiples of a servo's torque limit that are suspicious, and that are impossible."""
 _IN_G = (0.7, 1.4)
+"""Median acceleration of a sensor that reports multiples of gravity."""
 _FASTEST_RAD_S = 35.0
-"""Gyroscopes of robots measure up to 2000 degrees a second."""
+"""Upper end of robots' gyroscopes: 2000 degrees a second."""
 
 
 def torque_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Torques against what the servos can do."""
+    """Compare measured and commanded torques with the servos' limits.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the robot model; it gives the joints' names.
+    """
     found = []
     for quantity, values in (
         ("torque", trace.torque_nm),
@@ -39,7 +45,7 @@ def torque_findings(trace: Trace, plant: Plant) -> list[Finding]:
 
 
 def imu_findings(trace: Trace) -> list[Finding]:
-    """Accelerations against gravity, turning rates against what sensors measure."""
+    """Compare accelerations with gravity, and turning rates with gyroscopes' range."""
     found = []
     if trace.accelerometer_m_s2 is not None:
         norms = _sizes(np.linalg.norm(trace.accelerometer_m_s2, axis=1))
@@ -62,5 +68,5 @@ def imu_findings(trace: Trace) -> list[Finding]:
 
 
 def _sizes(values: FloatArray) -> FloatArray:
-    """Sizes of the values that are there."""
+    """Absolute values, missing ones left out."""
     return np.asarray(np.abs(values[np.isfinite(values)]))

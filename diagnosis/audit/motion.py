@@ -1,4 +1,4 @@
-"""Excitation: how the joints moved, and what that leaves open."""
+"""Audits the excitation: how the joints moved, and which questions that leaves open."""
 
 from collections.abc import Sequence
 
@@ -10,18 +10,21 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 _MOVES_NOISES, _MOVES_QUANTA, _MOVES_RAD = 8.0, 6.0, 1e-3
+"""A joint moves if its range exceeds this many standard deviations of noise, this many
+quanta and this angle [rad]."""
 _FAST = 0.05
-"""Speeds below this share of the largest are standstill."""
+"""Speeds below this share of the largest one count as standstill."""
 _LEAST_REVERSALS = 2
+"""Reversals that distinguish Coulomb friction from a constant torque."""
 
 
 def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointAudit:
-    """How one joint moved.
+    """Measure range, speed and reversals of one joint.
 
     Args:
       joint: its name.
-      channel: of its position.
-      smoothed: the same position.
+      channel: audit of its position channel.
+      smoothed: its smoothed position.
     """
     low, high = float(np.min(smoothed.value)), float(np.max(smoothed.value))
     noise = channel.noise
@@ -42,7 +45,13 @@ def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointA
 def stuck_findings(
     trace: Trace, joints: Sequence[str], channels: dict[str, ChannelAudit]
 ) -> list[Finding]:
-    """Channels that never change although something should change them."""
+    """Find channels that never change although the robot moves.
+
+    Args:
+      trace: the recording.
+      joints: the robot model's.
+      channels: audits of the trace's channels by name.
+    """
     found, dead = [], []
     commanded = []
     for joint in joints:
@@ -70,7 +79,7 @@ def stuck_findings(
 
 
 def excitation_findings(traces: Sequence[TraceAudit]) -> list[Finding]:
-    """What no trace can tell of a joint."""
+    """Find joints whose motion, in all traces together, leaves questions open."""
     found = []
     for column, first in enumerate(traces[0].joints if traces else ()):
         joints = [trace.joints[column] for trace in traces]
@@ -82,20 +91,18 @@ def excitation_findings(traces: Sequence[TraceAudit]) -> list[Finding]:
 
 def _left_open(name: str, moving: Sequence[JointAudit]) -> str:
     if not moving:
-        return (
-            f"{name} never moves: nothing can be said of its friction, inertia or play"
-        )
+        return f"{name} never moves: its friction, inertia and play remain unknown"
     reversals = sum(joint.reversals for joint in moving)
     if reversals < _LEAST_REVERSALS:
         return (
             f"{name} reverses {reversals} times: its Coulomb friction and an offset of "
-            "its torque or its encoder cannot be told apart, nor can play be seen"
+            "its torque or its encoder cannot be distinguished, nor can play be seen"
         )
     return ""
 
 
 def _reversals(rate: FloatArray) -> int:
-    """Changes of direction between times of notable speed."""
+    """Number of changes of direction between times of notable speed."""
     fast = np.abs(rate) > _FAST * np.quantile(np.abs(rate), 0.995)
     direction = np.sign(rate[fast])
     return int(np.count_nonzero(np.diff(direction)))

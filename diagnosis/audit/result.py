@@ -1,4 +1,4 @@
-"""What an audit of recordings found out, as data."""
+"""The result of an audit of recordings, as data and as JSON."""
 
 import json
 import math
@@ -12,14 +12,15 @@ Severity = Literal["note", "limit", "refuse"]
 
 @dataclass(frozen=True)
 class Finding:
-    """Something about the recordings that a reader should know.
+    """One finding of an audit, with its consequence.
 
     Attributes:
-      severity: "note": good to know; "limit": something cannot be said from these
-        data; "refuse": nothing can.
+      severity: "note": for information; "limit": some effects cannot be judged with
+        these data; "refuse": the recording cannot be used.
       text: a plain sentence with trace, channel and number.
-      trace: whose; empty if of all together.
-      channel: such as "position.LKneePitch" or "time"; empty if of the whole trace.
+      trace: name of the trace; empty if the finding is about all of them together.
+      channel: such as "position.LKneePitch" or "time"; empty if the finding is about
+        the whole trace.
     """
 
     severity: Severity
@@ -30,16 +31,16 @@ class Finding:
 
 @dataclass(frozen=True)
 class ChannelAudit:
-    """One channel of a trace, numbers in its unit.
+    """Measurements of one channel of a trace, in the channel's unit.
 
     Attributes:
-      name: as the recording's column.
-      noise_std: of white noise besides rounding.
-      quantum: step to which it is rounded, None if continuous.
-      constant: all values are the same.
-      clipped_share: of rows in which it is stuck at an extreme.
-      missing_share: of rows without a value.
-      longest_missing_s: the longest stretch of them.
+      name: the recording's column.
+      noise_std: standard deviation of white noise, rounding not included.
+      quantum: step to which values are rounded; None if they are continuous.
+      constant: whether all values are the same.
+      clipped_share: share of rows in which the channel is stuck at an extreme.
+      missing_share: share of rows without a value.
+      longest_missing_s: longest time without values [s].
     """
 
     name: str
@@ -52,20 +53,21 @@ class ChannelAudit:
 
     @property
     def noise(self) -> Noise:
-        """Both kinds of noise."""
+        """White noise and rounding together."""
         return Noise(self.noise_std, self.quantum)
 
 
 @dataclass(frozen=True)
 class JointAudit:
-    """How a joint moved in a trace; for a sliding joint read m for rad.
+    """The motion of one joint in a trace; sliding joints have m for rad.
 
     Attributes:
       name: the joint.
-      low_rad, high_rad: the smoothed positions' range.
-      speed_rad_s: that 99 % of the rows stay below.
-      reversals: changes of direction.
-      moves: by more than noise and quantum.
+      low_rad: smallest smoothed position.
+      high_rad: largest smoothed position.
+      speed_rad_s: 99 % of the rows are slower than this.
+      reversals: number of changes of direction.
+      moves: whether the range exceeds noise and quantum.
     """
 
     name: str
@@ -78,19 +80,19 @@ class JointAudit:
 
 @dataclass(frozen=True)
 class TraceAudit:
-    """One trace.
+    """Measurements of one trace.
 
     Attributes:
       name: the trace.
-      rows: its number of rows.
-      duration_s: from the first to the last one.
-      rate_hz: by the median tick.
-      jitter_s: standard deviation of ticks that are no gaps.
-      gaps: ticks longer than two and a half median ones.
-      longest_gap_s: the longest of them, 0 without any.
-      repeated_share: of rows that repeat the one before while the robot moves.
-      channels: all that it has.
-      joints: all of the plant's.
+      rows: number of rows.
+      duration_s: time from the first to the last row.
+      rate_hz: one over the median tick.
+      jitter_s: standard deviation of the ticks that are no gaps.
+      gaps: number of ticks longer than two and a half median ticks.
+      longest_gap_s: length of the longest gap, 0 without any.
+      repeated_share: share of the rows in motion that repeat the row before.
+      channels: all channels of the trace.
+      joints: all joints of the robot model.
     """
 
     name: str
@@ -107,26 +109,31 @@ class TraceAudit:
 
 @dataclass(frozen=True)
 class Audit:
-    """All traces and what was found."""
+    """Measurements of all traces, and the findings about them.
+
+    Attributes:
+      traces: measurements of each trace.
+      findings: in the order of the traces, those about all together last.
+    """
 
     traces: tuple[TraceAudit, ...]
     findings: tuple[Finding, ...]
 
     @property
     def refused(self) -> tuple[str, ...]:
-        """Why nothing can be said from these recordings; empty if something can."""
+        """Sentences on why these recordings cannot be used; empty if they can."""
         return self._texts("refuse")
 
     @property
     def moving(self) -> frozenset[str]:
-        """Joints that move in some trace."""
+        """Names of the joints that move in at least one trace."""
         return frozenset(
             joint.name for trace in self.traces for joint in trace.joints if joint.moves
         )
 
     @property
     def limits(self) -> tuple[str, ...]:
-        """What these recordings cannot tell, in plain sentences."""
+        """Sentences on what cannot be concluded from these recordings."""
         return self._texts("limit")
 
     def to_json(self) -> str:

@@ -1,4 +1,4 @@
-"""Recordings that cannot be what they say: units, signs and joints mixed up."""
+"""Recordings that contradict the robot model: units, signs or joints mixed up."""
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -11,17 +11,31 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
 
 _FAR_BEYOND, _FAR_BEYOND_RAD = 1.0, 1.0
-"""Positions outside of the range by its width and this much are in another unit."""
+"""Positions that leave a range by this multiple of its width and this many radians are
+taken to be in another unit."""
 _BEYOND = 0.05
+"""Positions that leave a range by this share of its width are worth a finding."""
+_NARROW = 3.0
+"""Motion this many times wider than the model's range shows a wrong range."""
 _FAR_BETTER = 0.4
+"""Another joint's command must fit with this share of the own command's rms error."""
 _ALIKE = 0.8
+"""Least size of a correlation for two signals to count as the same motion."""
 _UNIT_SLACK = 1.4
+"""Factor by which a slope may differ from that of a wrong unit."""
 _UNITS = {np.degrees(1): "degrees instead of radians", 1e3: "thousandths of the unit"}
+"""Factors between units that are often confused, and what to say then."""
 _RATE_SLACK = 2.0
+"""Factor by which a measured velocity may differ from the rate of the positions."""
 
 
 def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Positions and commands against the model's joint ranges."""
+    """Compare positions and commands with the joint ranges of the robot model.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the robot model.
+    """
     found = []
     for column, joint in enumerate(plant.joints):
         number = plant.model.joint(joint).id
@@ -33,7 +47,13 @@ def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
             name = f"{quantity}.{joint}"
             said = f"{name} of {trace.name} goes {most:.3g} beyond"
             ends = f"its range of {low:.3g} to {high:.3g} in the model"
-            if most > max(_FAR_BEYOND * (high - low), _FAR_BEYOND_RAD):
+            if _is_in_degrees(values[:, column], low, high):
+                text = (
+                    f"{said} {ends}; is the model's range in degrees where radians are "
+                    "expected, or the other way round (MJCF: compiler angle)?"
+                )
+                found.append(Finding("refuse", text, trace.name, name))
+            elif most > max(_FAR_BEYOND * (high - low), _FAR_BEYOND_RAD):
                 text = f"{said} {ends}; are angles in degrees instead of radians?"
                 found.append(Finding("refuse", text, trace.name, name))
             elif most > _BEYOND * (high - low):
@@ -43,7 +63,12 @@ def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
 
 
 def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Joints that follow no command, another's command or their own upside down."""
+    """Find joints that follow another joint's command, or their own with a wrong sign.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the robot model.
+    """
     if trace.command_rad is None:
         return []
     follow = following(trace)
@@ -70,7 +95,14 @@ def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
 def velocity_findings(
     trace: Trace, plant: Plant, smoothed: list[Smoothed], moves: list[bool]
 ) -> list[Finding]:
-    """Measured velocities against the rate of the positions."""
+    """Compare measured velocities with the rate of the positions.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the robot model.
+      smoothed: the trace's positions, joint by joint.
+      moves: whether each joint moves.
+    """
     found: list[Finding] = []
     if trace.velocity_rad_s is None:
         return found
@@ -96,7 +128,12 @@ def velocity_findings(
 
 
 def drive_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """What a replay needs and the trace lacks."""
+    """Name what a replay needs and the trace lacks: a base's pose, a drive or gains.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the robot model.
+    """
     found = []
     if plant.base == "floating" and (
         trace.base_position_m is None or trace.base_orientation is None
@@ -121,7 +158,7 @@ def drive_findings(trace: Trace, plant: Plant) -> list[Finding]:
 
 
 def _swapped(trace: Trace, plant: Plant, follow: Following) -> list[Finding]:
-    """Joints of which each is far better explained by the next one's command."""
+    """Find cycles of joints that each follow the command of the next one."""
     if len(follow.columns) < 2:
         return []
     _, of_command = linear_sum_assignment(follow.misfit**2)
@@ -167,10 +204,24 @@ def _targets(trace: Trace) -> list[tuple[str, FloatArray]]:
 
 
 def _excess(values: FloatArray, low: float, high: float) -> float:
-    """How far all but single values go beyond a range."""
+    """How far values leave a range; 1 % at each end may be outliers."""
     there = values[np.isfinite(values)]
     least, most = np.quantile(there, (0.01, 0.99)) if len(there) else (low, high)
     return float(max(most - high, low - least, 0.0))
+
+
+def _is_in_degrees(values: FloatArray, low: float, high: float) -> bool:
+    """Whether a range was converted to radians although it was in radians already.
+
+    A joint that moves several times as far as its range, within 57.3 times the range,
+    cannot have stood at an end stop all the time.
+    """
+    there = values[np.isfinite(values)]
+    if len(there) == 0 or high <= low:
+        return False
+    least, most = np.quantile(there, (0.01, 0.99))
+    inside = np.degrees(low) <= least and most <= np.degrees(high)
+    return bool(inside and most - least > _NARROW * (high - low))
 
 
 def _is_driven(trace: Trace, column: int) -> bool:

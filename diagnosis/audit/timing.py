@@ -1,4 +1,4 @@
-"""The clock of a trace: is there enough, is it even, does it run forward."""
+"""Audits the clock of a trace: duration, rate, jitter and gaps."""
 
 import numpy as np
 
@@ -6,17 +6,20 @@ from diagnosis.audit.result import Finding, TraceAudit
 from diagnosis.traces.trace import Trace
 
 _LEAST_S, _LEAST_ROWS = 1.0, 50
+"""Shortest recording that can be used, in seconds and in rows."""
 _GAP = 2.5
-"""Ticks longer than this many median ones are gaps ..."""
+"""Ticks longer than this many median ticks are gaps."""
 _LONG_GAP_S = 0.1
-"""... and from this length on a simulation cannot be carried across them."""
+"""Gaps from this length on [s] limit conclusions: no simulation bridges them."""
 _SLOWEST_HZ, _SLOW_HZ = 5.0, 45.0
+"""Rates below which a recording is unusable, and below which fast effects are not
+visible."""
 _UNEVEN = 0.1
-"""Jitter above this share of a tick is worth a note."""
+"""Jitter above this share of a tick is worth a finding."""
 
 
 def audit_timing(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
-    """Rate, jitter and gaps of a trace, and what follows from them."""
+    """Measure rate, jitter and gaps of a trace, and word the findings about them."""
     name, time_s = trace.name, trace.time_s
     ticks = np.diff(time_s)
     if len(time_s) < 2 or (ticks <= 0).any() or not np.isfinite(time_s).all():
@@ -63,14 +66,14 @@ def _rate(audit: TraceAudit) -> list[Finding]:
     name, rate = audit.name, audit.rate_hz
     if rate < _SLOWEST_HZ:
         text = (
-            f"{name} has {rate:.3g} rows a second, too few for any motion; is its time "
+            f"{name} has {rate:.3g} rows a second, too few to show motion; is its time "
             "in milliseconds instead of seconds?"
         )
         return [Finding("refuse", text, name, "time")]
     if rate < _SLOW_HZ:
         text = (
-            f"{name} has {rate:.3g} rows a second; below about 50 nothing is said of "
-            "delays, armature and elasticity"
+            f"{name} has {rate:.3g} rows a second; below about 50, delays, armature "
+            "and elasticity cannot be estimated"
         )
         return [Finding("limit", text, name, "time")]
     return []
@@ -80,7 +83,7 @@ def _evenness(audit: TraceAudit) -> list[Finding]:
     name, found = audit.name, []
     if audit.gaps:
         is_long = audit.longest_gap_s >= _LONG_GAP_S
-        after = "; nothing is said of what happened in them" if is_long else ""
+        after = "; what happened in them stays unknown" if is_long else ""
         text = (
             f"{name} has {audit.gaps} gaps, the longest of "
             f"{1e3 * audit.longest_gap_s:.3g} ms{after}"
@@ -89,7 +92,7 @@ def _evenness(audit: TraceAudit) -> list[Finding]:
     if audit.jitter_s * audit.rate_hz > _UNEVEN:
         text = (
             f"{name}: ticks of {1e3 / audit.rate_hz:.3g} ms vary by "
-            f"{1e3 * audit.jitter_s:.2g} ms; shorter delays are not told from jitter"
+            f"{1e3 * audit.jitter_s:.2g} ms; shorter delays are hidden in the jitter"
         )
         found.append(Finding("limit", text, name, "time"))
     return found

@@ -41,7 +41,8 @@ def read_traces(
     """Read recordings of one robot and make its nominal model.
 
     Args:
-      paths: the recordings; all have the same joints and the same kind of base.
+      paths: recordings, or folders of them; all have the same joints and the same
+        kind of base.
       source: the robot, as for `load_plant`.
       servo: gains for recordings that state none.
 
@@ -54,6 +55,7 @@ def read_traces(
     Example:
       See docs/python.md.
     """
+    paths = _files(paths)
     if not paths:
         raise BadRecordingError("no recordings are given")
     recordings = [read_recording(path) for path in paths]
@@ -114,6 +116,19 @@ def read_reference(
             f"{differing[0]!r}"
         )
     return traces
+
+
+def _files(paths: Sequence[Path]) -> list[Path]:
+    """The recordings that paths name: a folder stands for all of those in it."""
+    found = []
+    for path in paths:
+        inside = sorted(
+            one for one in path.glob("*") if one.suffix.lower() in (".csv", ".parquet")
+        )
+        if path.is_dir() and not inside:
+            raise BadRecordingError(f"{path}: no recording (.parquet, .csv) is in it")
+        found += inside if path.is_dir() else [path]
+    return found
 
 
 def _gains(recording: Recording, servo: Gains | None) -> Gains:

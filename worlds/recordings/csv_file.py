@@ -14,6 +14,9 @@ from worlds.recordings.arrow import from_table, to_table
 from worlds.recordings.columns import check_names
 from worlds.recordings.values import bad_value
 
+_OTHER_SEPARATORS = (";", "\t", "|")
+"""Characters that other programs write between columns."""
+
 
 def read_csv(path: Path) -> dict[str, FloatArray]:
     """Read the columns; an empty cell, like `nan`, is a missing value.
@@ -27,6 +30,12 @@ def read_csv(path: Path) -> dict[str, FloatArray]:
       OSError: the file system does not give it.
     """
     names = _header(path)
+    separator = next((one for one in _OTHER_SEPARATORS if one in "".join(names)), "")
+    if len(names) == 1 and separator:
+        raise BadRecordingError(
+            f"its columns are separated by {separator!r}; a recording has commas "
+            "between columns and points in numbers"
+        )
     check_names(names)
     schema = pa.schema([(name, pa.float64()) for name in names])
     with path.open("rb") as file:

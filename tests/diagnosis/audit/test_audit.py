@@ -186,6 +186,17 @@ def test_beyond_the_model_s_range(trace, plant):
     assert not any("beyond" in text for text in texts([spiked], plant, "refuse"))
 
 
+def test_a_range_in_degrees_that_should_be_radians(trace, plant):
+    """Joints move 0.8 rad within +-1.745, which would be read as +-0.03 rad."""
+    spec = plant.spec.copy()
+    spec.joint("a").range = plant.model.joint("a").range  # MJCF expects degrees
+    narrow = replace(plant, spec=spec)
+    text = one(texts([trace], narrow, "refuse"), "position.a", "in degrees where")
+    assert "-0.0305 to 0.0305" in text
+    spec.joint("a").range = np.degrees([-0.2, 0.2])  # an end stop may give way
+    assert texts([trace], replace(plant, spec=spec), "refuse") == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("pattern", "source", "servo"),

@@ -47,6 +47,16 @@ def test_columns_come_in_the_plant_s_order(write, tmp_path):
     assert np.isfinite(np.delete(trace.torque_nm[:, 0], 7)).all()
 
 
+def test_a_folder_stands_for_its_recordings(write, tmp_path):
+    paths = [write("runs/b"), write("runs/a"), write("c")]
+    (tmp_path / "runs" / "note.txt").write_text("no recording")
+    _, traces = read_traces([tmp_path / "runs", paths[2]], tmp_path / "arm.xml")
+    assert [trace.name for trace in traces] == ["a", "b", "c"]
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(BadRecordingError, match=r"empty: no recording \(.parquet"):
+        read_traces([tmp_path / "empty"], tmp_path / "arm.xml")
+
+
 def test_each_recording_has_its_own_servo(write, tmp_path):
     paths = [
         write("a", servo={"one": ServoGains(7.0, 0.5, 2.0)}),
