@@ -41,7 +41,7 @@ def terrain_table() -> Table:
     common = dataclasses.fields(Ground)
     known = {field.name for field in common}
     rows = []
-    for name, family in FAMILIES.items():
+    for name, family in sorted(FAMILIES.items()):
         rows.append([name, *[""] * 5, _summary(family)])
         own = [field for field in dataclasses.fields(family) if field.name not in known]
         rows += [["", *_bounds(field), ""] for field in own]

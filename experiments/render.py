@@ -35,7 +35,7 @@ class Render:
     Attributes:
       paths: run folders, or recordings (.parquet or .csv).
       out: the file to write; its ending decides between strip and film.
-      only: show only recordings whose name contains one of these words.
+      only: show only recordings whose name, or file name, contains one of these words.
       start: time of the first picture [s]; by default such that the fall is shown, or
         without a fall the middle of the walk.
       duration: length of the part that is shown [s].
@@ -76,7 +76,7 @@ def main(config: Render) -> None:
     recordings = {
         name: recording
         for name, recording in gather(config.paths).items()
-        if not config.only or any(word in name for word in config.only)
+        if not config.only or any(_has(name, word) for word in config.only)
     }
     if not recordings:
         raise RunFolderError(
@@ -96,6 +96,11 @@ def main(config: Render) -> None:
         content = film_bytes(film, config.rate, config.out.suffix)
     write_bytes(config.out, content)
     print(config.out)
+
+
+def _has(name: str, word: str) -> bool:
+    """Whether a recording's name holds a word; "sim_tuned" stands for "sim/tuned"."""
+    return word.replace("_", "/") in name.replace("_", "/")
 
 
 if __name__ == "__main__":

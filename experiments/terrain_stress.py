@@ -85,7 +85,7 @@ class TerrainStress(RunOptions):
             leg_m = leg_length_m(robots.get(robot))
             found.append(Place(robot, world, FLAT, 0.0))
             for name in self.families:
-                ladder = FAMILIES[name].ladder(self.rungs, leg_m).tolist()
+                ladder = FAMILIES[name].severities(self.rungs, leg_m).tolist()
                 found += [Place(robot, world, name, severity) for severity in ladder]
         return found
 

@@ -9,12 +9,17 @@ from typing import Annotated
 import tyro
 
 from experiments.command_line import run_verb
-from experiments.runs.folder import RECORDINGS, RunFolder, check_new
-from experiments.seeing.run_pictures import WALK_RERUN, picture_search
-from experiments.seeing.scenes import make_scenes, read_recordings, scene_names
+from experiments.runs.folder import RunFolder, check_new
+from experiments.seeing.run_pictures import OVERLAY, WALK_RERUN, picture_search
+from experiments.seeing.scenes import (
+    make_scenes,
+    read_run,
+    read_with_model,
+    scene_names,
+)
 from experiments.seeing.visualize_search import visualize_search
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
-from worlds import Recording, read_recording
+from worlds import Recording
 from worlds.rerun_files.log import write_rrd
 from worlds.rerun_files.viewer import open_viewer
 
@@ -28,7 +33,8 @@ class Visualize:
 
     All recordings go into one .rrd file, side by side. For a run folder, these are all
     its recordings; its search is written to a separate file, search.rrd, and drawn as a
-    picture. See docs/seeing.md.
+    picture. A diagnosis has written its overlay.rrd already, which is named and opened.
+    See docs/seeing.md.
 
     Attributes:
       paths: run folders, or recordings (.parquet or .csv).
@@ -55,11 +61,12 @@ def main(config: Visualize) -> None:
     runs = [RunFolder.at(path) for path in config.paths if path.is_dir()]
     pictures = [*filter(None, map(picture_search, runs))]
     recordings = gather(config.paths)
-    if not recordings and (config.out or not pictures):
+    overlays = [run.path / OVERLAY for run in runs if run.has(OVERLAY)]
+    if not recordings and (config.out or not (pictures or overlays)):
         raise RunFolderError(
             f"{config.paths[0]} holds no recordings: the run did not get there"
         )
-    files = [*filter(None, map(visualize_search, runs))]
+    files = [*overlays, *filter(None, map(visualize_search, runs))]
     rerun = None
     if recordings:
         rerun = config.out or default_out(config.paths)
@@ -68,7 +75,8 @@ def main(config: Visualize) -> None:
     if config.json:
         written = {
             "rrd": rerun and str(rerun),
-            "searches": [str(file) for file in files if file != rerun],
+            "overlays": list(map(str, overlays)),
+            "searches": [str(one) for one in files if one not in (rerun, *overlays)],
             "pictures": list(map(str, pictures)),
         }
         print(json.dumps(written, indent=1))
@@ -105,10 +113,10 @@ def gather(paths: Sequence[Path]) -> dict[str, Recording]:
     stems = scene_names(path.resolve().with_suffix("").name for path in paths)
     for stem, path in zip(stems, paths, strict=True):
         if not path.is_dir():
-            recordings[stem] = read_recording(path)
+            recordings[stem] = read_with_model(path)
             continue
         prefix = f"{stem}/" if len(paths) > 1 else ""
-        of_run = read_recordings(path / RECORDINGS)
+        of_run = read_run(path)
         recordings.update({prefix + name: one for name, one in of_run.items()})
     return recordings
 

@@ -126,6 +126,9 @@ class Joint:
       range_rad: lower and upper end.
       motor: what drives it; of a coupled pair, each joint's half.
       link: what it moves.
+      slides: whether it slides along its axis instead of turning about it. Only robot
+        models that are shown have such joints (`worlds.scenes.mechanism`); positions
+        are then in m.
     """
 
     name: str
@@ -135,6 +138,7 @@ class Joint:
     range_rad: tuple[float, float]
     motor: Motor
     link: Link
+    slides: bool = False
 
     @property
     def moved_inertial(self) -> Inertial:
@@ -176,7 +180,7 @@ class Description:
       root: the floating link; its frame is the torso frame.
       links: one per joint, in the order of the columns of all arrays.
       coupled: pairs of joints that one motor holds at the same angle.
-      feet: left and right.
+      feet: left and right; none if the robot is only to be shown, such as an arm.
       imu: the inertial sensors.
       scale: how much larger than the NAO it is.
       legs: columns of the left and the right leg's yaw, roll, pitch, knee, ankle
@@ -189,7 +193,7 @@ class Description:
     root: Link
     links: tuple[Joint, ...]
     coupled: tuple[tuple[int, int], ...]
-    feet: tuple[Foot, Foot]
+    feet: tuple[Foot, ...]
     imu: Imu
     scale: Scale = NAO_SIZE
     legs: tuple[tuple[int, ...], tuple[int, ...]] | None = None

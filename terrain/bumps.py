@@ -1,13 +1,17 @@
 """Round bumps strewn over flat ground."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
 from terrain.ground import Ground
+from terrain.ladder import Ladder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +28,22 @@ class Bumps(Ground):
       radius_m: radius of every bump [m]; at least 2 spacings.
       density_per_m2: mean number of bumps on a square metre.
     """
+
+    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
+        {
+            "bumps": Ladder(
+                "height",
+                "m",
+                0.016,
+                0.16,
+                lambda height_m, leg_m: {
+                    "height_m": height_m,
+                    "radius_m": 0.32 * leg_m,
+                    "density_per_m2": 2.5 / leg_m**2,
+                },
+            )
+        }
+    )
 
     height_m: float = bounded(0.015, 0.0, 0.5)
     radius_m: float = bounded(0.08, 0.01, 10.0)

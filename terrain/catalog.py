@@ -17,19 +17,21 @@ from terrain.waves import Waves
 
 FAMILIES: Mapping[str, type[Ground]] = MappingProxyType(
     {
-        "bumps": Bumps,
         "flat": Flat,
         "lumps": Lumps,
+        "bumps": Bumps,
         "slope": Slope,
         "stairs": Stairs,
         "waves": Waves,
     }
 )
+"""Every family by name, in the order in which stress tests list them. A new family is
+a file with its class, and its import and its line here."""
 
 
 def names() -> tuple[str, ...]:
     """Names of all families, in alphabetical order."""
-    return tuple(FAMILIES)
+    return tuple(sorted(FAMILIES))
 
 
 def configuration(name: str, /, **parameters: object) -> Ground:

@@ -3,7 +3,10 @@
 import dataclasses
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,10 +14,11 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from terrain.bounds import bounded, checked
 from terrain.heightfield import Heightfield
+from terrain.ladder import Ladder
 from terrain.seeds import Seed, generator_of
 
-# PyBullet 3.2.7 loads nothing, without a word, from 2^21 samples on.
 MOST_SAMPLES = 1_000_000
+"""Most samples of one ground: PyBullet 3.2.7 silently loads nothing from 2^21 on."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,15 +30,19 @@ class Ground(ABC):
 
     Attributes:
       x_range_m: lowest and highest x [m]; the grid reaches at least as far.
-      y_range_m: lowest and highest y [m]; likewise.
+      y_range_m: lowest and highest y [m]; the grid reaches at least as far.
       spacing_m: distance between samples [m].
       start_radius_m: radius of the flat start area [m].
       blend_m: width of the transition from flat ground to the terrain [m].
+      ladders: of the class: how stress tests make this ground harder, by the name of
+        each way; none for ground that is not stress-tested.
 
     Raises:
       BadValueError: a parameter is no number or out of its bounds, the origin is
         not on the ground, or there would be more than a million samples.
     """
+
+    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType({})
 
     x_range_m: tuple[float, float] = bounded((-1.0, 5.0), -1000.0, 1000.0)
     y_range_m: tuple[float, float] = bounded((-2.0, 2.0), -1000.0, 1000.0)

@@ -1,13 +1,17 @@
 """Smooth random lumps, as of foam under artificial turf."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
 from terrain.ground import Ground
+from terrain.ladder import Ladder
 
 WAVES = 256  # enough that heights are Gaussian: excess kurtosis -1.5 / 256
 DEVIATIONS_WITHIN_99_PERCENT = 2.5758293035489004  # of a normal distribution
@@ -35,6 +39,21 @@ class Lumps(Ground):
         wavelength_m / sqrt(2) to wavelength_m * sqrt(2), evenly in their
         logarithm. At least 4 spacings.
     """
+
+    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
+        {
+            "lumps": Ladder(
+                "amplitude",
+                "m",
+                0.008,
+                0.08,
+                lambda height_m, leg_m: {
+                    "amplitude_m": height_m,
+                    "wavelength_m": 0.8 * leg_m,
+                },
+            )
+        }
+    )
 
     amplitude_m: float = bounded(0.008, 0.0, 0.5)
     wavelength_m: float = bounded(0.2, 0.01, 100.0)

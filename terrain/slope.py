@@ -1,13 +1,28 @@
 """A tilted plane, uphill, downhill or across."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
 from terrain.ground import Ground
+from terrain.ladder import Ladder
+
+
+def _ladder(heading_rad: float) -> Ladder:
+    """Slopes of 1.7 to 14 degrees that climb in one direction."""
+    return Ladder(
+        "angle",
+        "rad",
+        0.03,
+        0.25,
+        lambda angle_rad, leg_m: {"angle_rad": angle_rad, "heading_rad": heading_rad},
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +38,14 @@ class Slope(Ground):
       heading_rad: direction in which the ground climbs, seen from above, from +x
         to the left [rad]: 0 is uphill, pi downhill, pi / 2 climbs to the left.
     """
+
+    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
+        {
+            "slope_up": _ladder(0.0),
+            "slope_down": _ladder(math.pi),
+            "slope_side": _ladder(math.pi / 2),
+        }
+    )
 
     angle_rad: float = bounded(math.radians(5.0), 0.0, 0.7)
     heading_rad: float = bounded(0.0, -2.0 * math.pi, 2.0 * math.pi)

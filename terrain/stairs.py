@@ -1,12 +1,16 @@
 """Stairs across the way."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
 from terrain.ground import Ground
+from terrain.ladder import Ladder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +25,18 @@ class Stairs(Ground):
       tread_m: distance from one riser to the next [m]; at least 2 spacings.
       steps: number of steps.
     """
+
+    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
+        {
+            "stairs": Ladder(
+                "step height",
+                "m",
+                0.008,
+                0.1,
+                lambda height_m, leg_m: {"step_m": height_m, "tread_m": 1.2 * leg_m},
+            )
+        }
+    )
 
     step_m: float = bounded(0.01, -0.5, 0.5)
     tread_m: float = bounded(0.3, 0.01, 100.0)

@@ -1,13 +1,17 @@
 """Regular waves."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
 from terrain.ground import Ground
+from terrain.ladder import Ladder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,6 +24,21 @@ class Waves(Ground):
       heading_rad: direction in which the waves follow each other, seen from
         above, from +x to the left [rad]; 0: crests lie across the way.
     """
+
+    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
+        {
+            "waves": Ladder(
+                "amplitude",
+                "m",
+                0.008,
+                0.12,
+                lambda height_m, leg_m: {
+                    "amplitude_m": height_m,
+                    "wavelength_m": 1.6 * leg_m,
+                },
+            )
+        }
+    )
 
     amplitude_m: float = bounded(0.01, 0.0, 0.5)
     wavelength_m: float = bounded(0.4, 0.01, 100.0)

@@ -10,6 +10,7 @@ from groundwalk.errors import RunFolderError
 from worlds.rerun_files.log import write_rrd
 
 SEARCH_PICTURE, WALK_PICTURE, WALK_RERUN = "search.png", "walk.png", "walk.rrd"
+OVERLAY = "overlay.rrd"
 
 
 def picture_run(folder: RunFolder) -> None:

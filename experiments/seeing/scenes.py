@@ -1,15 +1,28 @@
 """Recordings as scenes: with the robot and the ground that they name."""
 
+import dataclasses
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import robots
-from groundwalk.errors import BadRecordingError, BadValueError, UnknownNameError
+from diagnosis import load_plant
+from experiments.runs.folder import RECORDINGS
+from groundwalk.errors import (
+    BadModelError,
+    BadRecordingError,
+    BadValueError,
+    UnknownNameError,
+)
 from terrain import Heightfield, TerrainSpec
 from worlds import Recording, RecordingMetadata, read_recording
+from worlds.scenes.mechanism import mechanism
 from worlds.scenes.scene import Scene
+
+if TYPE_CHECKING:
+    from diagnosis.plant.plant import Base
 
 
 def read_recordings(folder: Path) -> dict[str, Recording]:
@@ -23,7 +36,37 @@ def read_recordings(folder: Path) -> dict[str, Recording]:
     """
     paths = sorted(folder.glob("*.parquet"), key=_order)
     names = scene_names(path.stem.replace("_", "/", 1) for path in paths)
-    return dict(zip(names, map(read_recording, paths), strict=True))
+    return dict(zip(names, map(read_with_model, paths), strict=True))
+
+
+def read_run(folder: Path) -> dict[str, Recording]:
+    """Read every recording of a run, and of runs that are folders in it.
+
+    Args:
+      folder: a run; one of `humanoids` holds a run for each robot.
+
+    Returns:
+      Recordings by scene name; of a run inside, the name begins with its folder's.
+    """
+    recordings = read_recordings(folder / RECORDINGS)
+    inside = sorted(path.parent for path in folder.glob(f"*/{RECORDINGS}"))
+    stems = scene_names(path.name for path in inside)
+    for stem, path in zip(stems, inside, strict=True):
+        for name, recording in read_recordings(path / RECORDINGS).items():
+            recordings[f"{stem}/{name}"] = recording
+    return recordings
+
+
+def read_with_model(path: Path) -> Recording:
+    """Read a recording; a model file that it names is also looked for beside it."""
+    recording = read_recording(path)
+    model = path.parent / recording.metadata.robot
+    if not model.suffix or Path(recording.metadata.robot).exists():
+        return recording
+    if not model.is_file():
+        return recording
+    metadata = dataclasses.replace(recording.metadata, robot=str(model))
+    return dataclasses.replace(recording, metadata=metadata)
 
 
 def scene_names(texts: Iterable[str]) -> list[str]:
@@ -52,11 +95,25 @@ def make_scenes(recordings: Mapping[str, Recording]) -> list[Scene]:
 
 def _scene(name: str, recording: Recording) -> Scene:
     try:
-        description = robots.get(recording.metadata.robot)
+        description = _robot(recording)
         ground = _ground(recording.metadata)
-    except (UnknownNameError, BadValueError) as error:
+    except (UnknownNameError, BadModelError, BadValueError) as error:
         raise BadRecordingError(f"recording {name}: {error}") from error
     return Scene(name, recording, description, ground)
+
+
+def _robot(recording: Recording) -> robots.Description:
+    """The robot of a recording: one that walks, or any model of hinges and slides."""
+    robot = recording.metadata.robot
+    base: Base = "floating" if recording.metadata.base == "floating" else "fixed"
+    try:
+        return robots.get(robot)
+    except (UnknownNameError, BadModelError) as walks:
+        try:
+            plant = load_plant(robot, base, recording.joints)
+        except UnknownNameError:
+            raise walks from None
+        return mechanism(plant.model, plant.name)
 
 
 def _ground(metadata: RecordingMetadata) -> Heightfield | None:

@@ -1,18 +1,19 @@
-"""Families of ground, and the ladders of severity that a gait climbs in each."""
+"""Families of ground that a gait is tested on, each harder from rung to rung.
+
+The ladders of shapes stand in the classes of `terrain`, those of materials here.
+"""
 
 import dataclasses
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
-from groundwalk.arrays import FloatArray
 from groundwalk.errors import UnknownNameError
 from robots import Description, biped
 from terrain import TerrainSpec
+from terrain.catalog import FAMILIES as GROUNDS
+from terrain.ladder import Ladder
 from worlds import WorldOptions
 
 FLAT = "flat"
@@ -20,84 +21,41 @@ FLAT = "flat"
 
 
 @dataclass(frozen=True)
-class Family:
-    """One way in which ground can be hard to walk on.
+class Family(Ladder):
+    """One way in which ground can be hard to walk on: by its shape or its material.
 
     Attributes:
-      quantity: what its severity is.
-      unit: of the severity: "m", "rad" or "1".
-      mildest, hardest: ends of the ladder; lengths as shares of the leg's length. The
-        hardest may be the smaller number, as of friction.
-      terrain: name and parameters of the ground at a severity, the leg's length given.
-      options: what changes in the world at a severity.
+      terrain: name of the ground.
+      options: function of a severity that returns the world options that it changes.
     """
 
-    quantity: str
-    unit: str
-    mildest: float
-    hardest: float
-    terrain: Callable[[float, float], tuple[str, dict[str, float]]] = (
-        lambda severity, leg_m: (FLAT, {})
-    )
+    terrain: str = FLAT
     options: Callable[[float], dict[str, float]] = lambda severity: {}
 
-    def ladder(self, rungs: int, leg_m: float) -> FloatArray:
-        """(rungs,) severities in SI units from the mildest on, in equal ratios."""
-        scale = leg_m if self.unit == "m" else 1.0
-        return np.geomspace(self.mildest * scale, self.hardest * scale, rungs)
 
-
-def _slope(heading_rad: float) -> Family:
-    return Family(
-        "angle", "rad", 0.03, 0.25,
-        lambda angle, leg: (
-            "slope", {"angle_rad": angle, "heading_rad": heading_rad}
-        ),
-    )  # fmt: skip
+def _shapes() -> Iterator[tuple[str, Family]]:
+    """A family for each ladder of each kind of ground."""
+    for terrain, ground in GROUNDS.items():
+        for name, ladder in ground.ladders.items():
+            yield name, Family(**vars(ladder), terrain=terrain)
 
 
 FAMILIES: Mapping[str, Family] = MappingProxyType(
     {
-        "lumps": Family(
-            "amplitude", "m", 0.008, 0.08,
-            lambda height, leg: (
-                "lumps", {"amplitude_m": height, "wavelength_m": 0.8 * leg}
-            ),
-        ),
-        "bumps": Family(
-            "height", "m", 0.016, 0.16,
-            lambda height, leg: (
-                "bumps",
-                {
-                    "height_m": height,
-                    "radius_m": 0.32 * leg,
-                    "density_per_m2": 2.5 / leg**2,
-                },
-            ),
-        ),
-        "slope_up": _slope(0.0),
-        "slope_down": _slope(math.pi),
-        "slope_side": _slope(math.pi / 2),
-        "stairs": Family(
-            "step height", "m", 0.008, 0.1,
-            lambda height, leg: ("stairs", {"step_m": height, "tread_m": 1.2 * leg}),
-        ),
-        "waves": Family(
-            "amplitude", "m", 0.008, 0.12,
-            lambda height, leg: (
-                "waves", {"amplitude_m": height, "wavelength_m": 1.6 * leg}
-            ),
-        ),
+        **dict(_shapes()),
         "friction": Family(
             "coefficient", "1", 0.6, 0.02, options=lambda mu: {"friction": mu}
         ),
         "softness": Family(
-            "sinkage on one foot", "m", 0.004, 0.06,
-            options=lambda depth: {"sinkage_m": depth},
+            "sinkage on one foot",
+            "m",
+            0.004,
+            0.06,
+            options=lambda depth_m: {"sinkage_m": depth_m},
         ),
     }
-)  # fmt: skip
-"""By name, in the order of the tables."""
+)
+"""Families by name, in the order of the tables."""
 
 
 @dataclass(frozen=True)
@@ -137,7 +95,9 @@ class Place:
         name: str = FLAT
         parameters: dict[str, float] = {}
         if self.family != FLAT:
-            name, parameters = FAMILIES[self.family].terrain(self.severity, leg_m)
+            family = FAMILIES[self.family]
+            name = family.terrain
+            parameters = dict(family.parameters(self.severity, leg_m))
         around: dict[str, Any] = {
             "x_range_m": (-4 * leg_m, 11 * leg_m),
             "y_range_m": (-8 * leg_m, 8 * leg_m),

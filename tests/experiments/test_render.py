@@ -58,6 +58,8 @@ def test_only_some_of_a_run(run, tmp_path):
     main(Render((run,), out=out, only=("real",), frames=2, **SMALL))
     with Image.open(out) as picture:
         assert picture.size == (2 * 64, 64 + 26)
+    as_file = Render((run,), out=tmp_path / "file.png", only=("real_start",), **SMALL)
+    main(as_file)
     nothing = Render((run,), out=tmp_path / "no.png", only=("grounded",), **SMALL)
     with pytest.raises(GroundwalkError, match="no recordings with grounded"):
         main(nothing)

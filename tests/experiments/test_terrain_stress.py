@@ -110,12 +110,12 @@ def test_trials_in_the_real_world_are_alone_as_together():
 @pytest.mark.parametrize("name", FAMILIES)
 def test_ladders_grow_with_the_leg_where_they_are_lengths(name):
     family = FAMILIES[name]
-    ladder = family.ladder(4, leg_m=0.25)
+    ladder = family.severities(4, leg_m=0.25)
     assert len(ladder) == 4
     ratios = ladder[1:] / ladder[:-1]
     np.testing.assert_allclose(ratios, ratios[0])
     factor = 2.0 if family.unit == "m" else 1.0
-    np.testing.assert_allclose(family.ladder(4, leg_m=0.5), factor * ladder)
+    np.testing.assert_allclose(family.severities(4, leg_m=0.5), factor * ladder)
 
 
 @pytest.mark.parametrize("name", FAMILIES)
@@ -124,7 +124,7 @@ def test_each_rung_is_ground_or_physics_that_differs(name):
     usual = worlds.WorldOptions()
     mild, hard = (
         Place("nao", "sim", name, float(value))
-        for value in FAMILIES[name].ladder(2, leg_m)
+        for value in FAMILIES[name].severities(2, leg_m)
     )
     grounds = [place.ground(leg_m, 1.0, seed=4).make() for place in (mild, hard)]
     if grounds[0].is_flat:

@@ -2,6 +2,7 @@ import json
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from made_up_runs import history, steady
 from rerun.chunk import RrdReader
@@ -10,7 +11,7 @@ from experiments import visualize
 from experiments.runs.folder import RunFolder
 from experiments.visualize import Visualize, default_out, gather, main
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
-from worlds import write_recording
+from worlds import Recording, RecordingMetadata, write_recording
 
 
 @pytest.fixture
@@ -56,6 +57,7 @@ def test_a_run_shows_all_its_recordings_and_its_search(run, capsys):
     told = json.loads(capsys.readouterr().out)
     assert told == {
         "rrd": str(run / "walk.rrd"),
+        "overlays": [],
         "searches": [str(run / "search.rrd")],
         "pictures": [str(run / "search.png")],
     }
@@ -96,6 +98,7 @@ def test_an_unfinished_run_shows_its_search(unfinished, capsys):
     told = json.loads(capsys.readouterr().out)
     assert told == {
         "rrd": None,
+        "overlays": [],
         "searches": [str(unfinished / "search.rrd")],
         "pictures": [str(unfinished / "search.png")],
     }
@@ -123,6 +126,71 @@ def test_any_run_folder_with_recordings_can_be_shown(tmp_path):
     main(Visualize((folder.path,)))
     shown = {"/real/stairs_worst_1", "/bumps"}
     assert scenes_in(folder.path / "walk.rrd") == shown
+
+
+def test_a_study_of_several_robots_shows_the_run_of_each(tmp_path, capsys):
+    folder = RunFolder(tmp_path / "study")
+    folder.write_json("config.json", {"verb": "humanoids"})
+    for robot in ("nao", "g1"):
+        path = folder.path / robot / "recordings" / "sim_tuned.parquet"
+        write_recording(steady(), path)
+    main(Visualize((folder.path,)))
+    assert scenes_in(folder.path / "walk.rrd") == {"/g1/sim/tuned", "/nao/sim/tuned"}
+
+
+def test_a_diagnosis_shows_the_overlay_that_it_has_written(
+    tmp_path, monkeypatch, capsys
+):
+    folder = RunFolder(tmp_path / "diagnosis")
+    folder.write_json("config.json", {"verb": "diagnose"})
+    overlay = folder.path / "overlay.rrd"
+    overlay.write_bytes(b"RRF")
+    opened = []
+    monkeypatch.setattr("experiments.visualize.open_viewer", opened.append)
+    main(Visualize((folder.path,), open=True))
+    assert opened == [[overlay]]
+    assert capsys.readouterr().out.split() == [str(overlay)]
+
+
+ARM = """<mujoco><worldbody><body pos="0 0 0.1"><joint name="shoulder" axis="0 1 0"/>
+<geom type="capsule" fromto="0 0 0 0 0 0.4" size="0.04"/><body pos="0 0 0.4">
+<joint name="push" type="slide" axis="0 0 1"/><geom type="box" size=".03 .03 .1"/>
+</body></body></worldbody></mujoco>"""
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """A recording of an arm whose model lies beside it: a quarter turn, 5 cm out."""
+    (tmp_path / "arm.xml").write_text(ARM)
+    columns = {"time": [0.0, 0.01]}
+    for joint, places in {"shoulder": [0, np.pi / 2], "push": [0, 0.05]}.items():
+        columns[f"position.{joint}"] = columns[f"command.{joint}"] = places
+    metadata = RecordingMetadata("arm.xml", "fixed", "a test")
+    path = tmp_path / "swing.parquet"
+    write_recording(Recording(columns, metadata), path)
+    return path
+
+
+def test_a_recording_of_any_model_is_shown_with_its_robot(arm):
+    main(Visualize((arm,)))
+    written = arm.with_suffix(".rrd")
+    assert scenes_in(written) == {"/swing"}
+    (place,) = (
+        batch.column("Transform3D:translation")
+        for chunk in RrdReader(written).stream().to_chunks()
+        if chunk.entity_path == "/swing/robot/push"
+        for batch in [chunk.to_record_batch()]
+        if "Transform3D:translation" in batch.schema.names
+    )
+    last_m = place.flatten().flatten().to_numpy().reshape(-1, 3)[-1]
+    np.testing.assert_allclose(last_m, [0.45, 0, 0.1], atol=1e-6)
+
+
+def test_a_robot_that_is_no_model_is_named(tmp_path):
+    path = tmp_path / "odd.parquet"
+    write_recording(steady(robot="noa"), path)
+    with pytest.raises(BadRecordingError, match="did you mean 'nao'"):
+        main(Visualize((path,)))
 
 
 def test_a_run_that_has_nothing_at_all(unfinished):

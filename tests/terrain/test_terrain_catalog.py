@@ -4,10 +4,22 @@ import pytest
 
 import terrain
 from groundwalk.errors import BadValueError, UnknownNameError
+from terrain.catalog import FAMILIES
 
 
 def test_names():
-    assert terrain.names() == ("bumps", "flat", "lumps", "slope", "stairs", "waves")
+    assert list(terrain.names()) == sorted(terrain.names())
+    known = {"bumps", "flat", "lumps", "slope", "stairs", "waves"}
+    assert known <= set(terrain.names())
+
+
+def test_ladders_give_ground_of_their_own_family():
+    for name, family in FAMILIES.items():
+        for ladder in family.ladders.values():
+            mildest, *_, hardest = ladder.severities(5, 0.25)
+            for severity in (mildest, hardest):
+                parameters = ladder.parameters(severity, 0.25)
+                assert type(terrain.configuration(name, **parameters)) is family
 
 
 def test_a_name_and_parameters_give_the_family():

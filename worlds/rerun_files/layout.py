@@ -100,8 +100,8 @@ def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
     at = f"/{scene.name}"
     size = scene.description.scale.length
     follow = rrb.EyeControls3D(
-        position=(0.7 * size, -0.75 * size, 0.5 * size),
-        look_target=(0.0, 0.0, 0.1 * size),
+        position=(0.5 * size, -0.54 * size, 0.36 * size),
+        look_target=(0.0, 0.0, 0.05 * size),
         tracking_entity=f"{at}/robot/{scene.description.root.name}",
     )
     return rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
@@ -137,9 +137,9 @@ def _scene_views(scene: Scene) -> "rrb.Vertical":
     import rerun.blueprint as rrb
 
     rows, shares = _traces(scene)
-    above = rrb.Horizontal(
-        _robot_view(scene), _balance_view(scene), column_shares=[3, 2]
-    )
+    above = _robot_view(scene)
+    if scene.description.feet:
+        above = rrb.Horizontal(above, _balance_view(scene), column_shares=[3, 2])
     return rrb.Vertical(above, *rows, row_shares=[12, *shares])
 
 
@@ -148,7 +148,7 @@ def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
     import rerun.blueprint as rrb
 
     rows, shares = _traces(scene)
-    views = [_balance_view(scene)]
+    views = [_balance_view(scene)] if scene.description.feet else []
     if rows:
         views.append(rrb.Vertical(*rows, row_shares=shares))
     return rrb.Horizontal(*views, column_shares=[1, 3][: len(views)], name=scene.name)
@@ -185,7 +185,6 @@ def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
         name=plot.name,
         contents=[f"{at}/{path}" for path in plot.paths],
         axis_x=_window(),
-        plot_legend=rrb.PlotLegend(visible=plot.has_key),
     )
 
 

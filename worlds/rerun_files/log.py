@@ -107,7 +107,8 @@ class _SceneLog(ColumnLog):
         self._write_states()
         for trace in traces(self._scene):
             self.trace(trace)
-        write_balance(self, self._scene)
+        if self._scene.description.feet:
+            write_balance(self, self._scene)
 
     def _write_robot(self) -> None:
         import rerun as rr
@@ -138,7 +139,7 @@ class _SceneLog(ColumnLog):
         import rerun as rr
 
         robot = self._scene.description
-        for side, foot in zip(SIDES, robot.feet, strict=True):
+        for side, foot in zip(SIDES, robot.feet, strict=False):
             link = f"robot/{robot.links[foot.joint].link.name}"
             sole = sole_mesh(foot, self._accent)
             self.log(f"{link}/sole", rr.Mesh3D(**sole._asdict()))

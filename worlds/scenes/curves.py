@@ -14,6 +14,8 @@ _IMU = ("gyroscope", "accelerometer")
 MEASURED_SUPPORT = "contact/support"
 SIDEWAYS = "balance/sideways"
 """Below this path lie the y of the centre of mass and of the points on the ground."""
+_ABREAST = 4
+"""Most plots of joints in one row."""
 _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
 
 
@@ -49,7 +51,6 @@ class Plot(NamedTuple):
 
     name: str
     paths: Sequence[str]
-    has_key: bool
 
 
 def traces(scene: Scene) -> Iterator[Trace]:
@@ -94,23 +95,46 @@ def plots(scene: Scene) -> list[list[Plot]]:
                 for joint in (left, right)
                 for quantity in ("position", "command")
             ],
-            has_key=False,
         )
         for left, right in zip(*map(scene.pitch_joints, SIDES), strict=False)
     ]
     sensors = [
-        Plot("foot forces [N]", [f"contact/{side}" for side in SIDES], has_key=True),
-        Plot("gyroscope [rad/s]", ["imu/gyroscope"], has_key=True),
-        Plot("balance: y [m]", [f"{SIDEWAYS}/**"], has_key=True),
+        Plot("foot forces [N]", [f"contact/{side}" for side in SIDES]),
+        Plot("gyroscope [rad/s]", ["imu/gyroscope"]),
+        Plot("balance: y [m]", [f"{SIDEWAYS}/**"]),
     ]
+    if not scene.description.feet:
+        joints = _all_joints(scene)
     recorded = {trace.path for trace in traces(scene)}
-    if scene.recording.has("base.position"):
+    if scene.recording.has("base.position") and scene.description.feet:
         recorded.add(f"{SIDEWAYS}/**")
     rows = [
         [plot for plot in row if not recorded.isdisjoint(plot.paths)]
-        for row in (joints, sensors)
+        for row in (
+            *_rows(joints if scene.description.feet else _all_joints(scene)),
+            sensors,
+        )
     ]
     return [row for row in rows if row]
+
+
+def _all_joints(scene: Scene) -> list[Plot]:
+    """A plot of each recorded joint, for robots without legs."""
+    units = {
+        joint.name: "m" if joint.slides else "rad" for joint in scene.description.links
+    }
+    return [
+        Plot(
+            f"{joint} [{units[joint]}]",
+            [f"joints/{joint}/position", f"joints/{joint}/command"],
+        )
+        for joint in scene.recording.joints
+    ]
+
+
+def _rows(plots: Sequence[Plot]) -> list[Sequence[Plot]]:
+    """Plots in rows of `_ABREAST`."""
+    return [plots[k : k + _ABREAST] for k in range(0, len(plots), _ABREAST)]
 
 
 def support_changes(scene: Scene) -> tuple[IntArray, list[str]]:

@@ -44,7 +44,7 @@ def link_poses(
 
     Args:
       description: the robot.
-      position_rad: (ticks, joints) in the description's order.
+      position_rad: (ticks, joints) in the description's order; of sliding joints [m].
       base: where the root link is; its quaternions need not be exactly of unit length.
 
     Returns:
@@ -56,6 +56,11 @@ def link_poses(
     for joint, angle_rad in zip(description.links, position_rad.T, strict=True):
         parent = root if joint.parent < 0 else poses[joint.parent]
         offset_m = _rotate(parent.orientation, joint.origin_m)
+        if joint.slides:
+            way_m = joint.origin_m + angle_rad[:, np.newaxis] * joint.axis
+            moved_m = parent.position_m + _rotate(parent.orientation, way_m)
+            poses.append(LinkPoses(moved_m, parent.orientation))
+            continue
         half_rad = angle_rad[:, np.newaxis] / 2
         turn = np.hstack([np.cos(half_rad), np.sin(half_rad) * joint.axis])
         poses.append(
@@ -73,7 +78,7 @@ def _product(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def _rotate(orientation: FloatArray, vector: FloatArray) -> FloatArray:
-    """(n, 3) one vector turned by each of (n, 4) unit quaternions."""
+    """(n, 3) one vector, or (n, 3) vectors, turned by (n, 4) unit quaternions."""
     w, v = orientation[:, :1], orientation[:, 1:]
     twice = 2.0 * np.cross(v, vector)
     return np.asarray(vector + w * twice + np.cross(v, twice))

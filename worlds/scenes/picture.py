@@ -73,10 +73,17 @@ class SceneCamera:
         self._scene, self._size_px = scene, size_px
         self._poses = scene.link_poses()
         self.parts = _parts(scene, accent)
-        found = balance(scene)
-        self._balance = found if with_balance else None
         self._size = scene.description.scale.length
-        middle_m = found.below_m + np.array([0.0, 0.0, _MIDDLE_M * self._size])
+        self._balance: Balance | None = None
+        if scene.description.feet:
+            found = balance(scene)
+            self._balance = found if with_balance else None
+            middle_m = found.below_m + np.array([0.0, 0.0, _MIDDLE_M * self._size])
+        else:
+            places_m = np.stack([pose.position_m for pose in self._poses.values()])
+            middle_m = places_m.mean(axis=0)
+            if not scene.recording.has("base.position"):
+                middle_m[:] = np.nanmean(middle_m, axis=0)
         self._target_m = _steadied(middle_m, scene.recording.time_s)
 
     def picture(self, tick: int) -> Image:

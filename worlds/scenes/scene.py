@@ -122,6 +122,8 @@ class Scene:
           side: one of SIDES.
         """
         links = self.description.links
+        if not self.description.feet:
+            return ()
         index = self.description.feet[SIDES.index(side)].joint
         names: list[str] = []
         while index >= 0:
