@@ -54,6 +54,9 @@ def load_plant(
       UnknownNameError: no such robot; the message has the nearest name.
       BadModelError: the file is no model.
       BadRecordingError: the model lacks one of the joints.
+
+    Example:
+      >>> plant = load_plant("so101", base="fixed")
     """
     quiet_mujoco()  # of trial values that blow up, or joints that mimic others
     name, spec, description = _read(source, base)

@@ -58,6 +58,9 @@ class Plant:
       feet: names of the bodies that touch the ground, left before right.
       options: of the file that the model was read from; None if the file has none, as
         a URDF.
+
+    Example:
+      >>> load_plant("nao", base="floating").joints
     """
 
     name: str

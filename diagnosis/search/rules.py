@@ -43,6 +43,9 @@ class Rules:
         required.
       least_share: share of the nominal sim's energy above the noise that an effect must
         remove.
+
+    Example:
+      >>> diagnose(plant, traces, seed, Rules(largest=1))  # a single effect only
     """
 
     single_effects: int = 12

@@ -47,6 +47,10 @@ class Trace:
       base_orientation: (T, 4) quaternion w, x, y, z, base to world.
       base_linear_velocity_m_s: (T, 3) world frame.
       base_angular_velocity_rad_s: (T, 3) body frame.
+
+    Example:
+      >>> plant, traces = read_traces(["a.parquet"], "nao")
+      >>> traces[0].position_rad.shape
     """
 
     name: str

@@ -64,6 +64,10 @@ class Verdict:
       next_experiment: what to record next, if anything is open.
       recordings: which were used for what.
       seconds: how long the diagnosis took.
+
+    Example:
+      >>> verdict = Verdict.from_json(Path("diagnosis.json").read_text())
+      >>> print(verdict.kind, [one.name for one in verdict.effects])
     """
 
     kind: VerdictKind
