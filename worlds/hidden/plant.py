@@ -61,6 +61,10 @@ class HiddenPlant:
       speed_rad_s: (j,) that commands may reach.
       floating: whether the base is free.
       description: of a robot that `groundwalk list robots` knows; else None.
+
+    Example:
+      >>> float(hidden_plant("pendulum").max_torque_nm[0])
+      4.0
     """
 
     name: str
@@ -112,8 +116,16 @@ class HiddenPlant:
 def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
     """A robot by name: "pendulum", "so101", or one that `groundwalk list` knows.
 
+    Args:
+      name: of the robot.
+      floating: whether its base is free.
+
     Raises:
       GroundwalkError: there is no such robot, or its base cannot float.
+
+    Example:
+      >>> hidden_plant("pendulum").joints
+      ('swing',)
     """
     if name in ("pendulum", "so101"):
         if floating:

@@ -59,6 +59,9 @@ class Scales:
       axis: (j, 3) each joint's axis in the frame of its link.
       moving_kg: mass of all bodies that can move.
       bodies: how they move.
+
+    Example:
+      `worlds.hidden.scales.scales(plant, runs)` measures them.
     """
 
     torque_nm: FloatArray
@@ -95,7 +98,11 @@ class Scales:
 
 
 class Spot(NamedTuple):
-    """Where an effect may be: a joint's column, and that joint's link or the trunk."""
+    """Where an effect may be: a joint's column, and that joint's link or the trunk.
+
+    Example:
+      `KINDS["backlash"].spots(plant, scales, joints)` lists the spots of a kind.
+    """
 
     joint: int
     body: str
@@ -113,6 +120,9 @@ class Setting:
         give effects that are smaller still.
       duration_s: of each recording.
       rng: draws signs, directions and times.
+
+    Example:
+      `Hidden.sized("backlash", setting)` is an effect at the setting's spot.
     """
 
     plant: HiddenPlant

@@ -1,1 +1,9 @@
-"""The uneven world: PyBullet, robots spread over processes (`RealWorld`)."""
+"""The uneven world: PyBullet, robots spread over processes.
+
+Example:
+  `worlds.make("real", ...)` makes a `RealWorld`; see the beginning of `worlds`.
+"""
+
+from worlds.real.world import RealWorld
+
+__all__ = ["RealWorld"]

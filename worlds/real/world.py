@@ -30,6 +30,9 @@ class RealWorld(RolloutWorld):
 
     Attributes:
       processes: that compute the robots; none once the world is closed.
+
+    Example:
+      `worlds.make("real", ...)` makes one; see the beginning of `worlds`.
     """
 
     def __init__(

@@ -1,1 +1,9 @@
-"""The deterministic world: MuJoCo, many robots in one batch (`SimWorld`)."""
+"""The deterministic world: MuJoCo, many robots in one batch.
+
+Example:
+  `worlds.make("sim", ...)` makes a `SimWorld`; see the beginning of `worlds`.
+"""
+
+from worlds.sim.world import SimWorld
+
+__all__ = ["SimWorld"]

@@ -31,6 +31,9 @@ class SimWorld(RolloutWorld):
 
     Attributes:
       qvel: (n, v) velocities of all degrees of freedom, a live view of the batch.
+
+    Example:
+      `worlds.make("sim", ...)` makes one; see the beginning of `worlds`.
     """
 
     def __init__(

@@ -1,42 +1,40 @@
 """Hidden physics of bodies: their inertia, mass and centre of mass."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
 
-if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
 
-
-def _weight_shows(plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-    """Whether the motion shows a change of a body's weight.
-
-    On a floating base the ground carries bodies that do not move. On a fixed base some
-    moving joint has to carry the weight on a lever: otherwise the change acts as an
-    encoder's offset, or not at all.
-
-    Args:
-      plant: the robot.
-      scales: what the robot does with nothing hidden.
-      spot: the body, and a joint.
-    """
-    if plant.floating:
-        return scales.moves(spot.body)
-    return scales.feels_weight(spot.body)
-
-
-class _Weight(HiddenKind):
+class _OneJointOneWeight(HiddenKind):
     """A kind that changes what a joint has to carry or to accelerate."""
 
-    def cancels(self, plant: "HiddenPlant") -> bool:
+    def cancels(self, plant: HiddenPlant) -> bool:
         """Whether the robot has a single joint, which only shows one weight."""
         return len(plant.joints) == 1
 
 
-class Armature(_Weight):
+class _Weight(_OneJointOneWeight):
+    """A kind that changes a body's weight."""
+
+    place = "body"
+
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
+        """Whether the motion shows a change of the body's weight.
+
+        On a floating base the ground carries bodies that do not move. On a fixed base
+        some moving joint has to carry the weight on a lever: otherwise the change acts
+        as an encoder's offset, or not at all.
+        """
+        if plant.floating:
+            return scales.moves(spot.body)
+        return scales.feels_weight(spot.body)
+
+
+class Armature(_OneJointOneWeight):
     """A rotor behind the gear adds to the joint's inertia."""
 
     name = "armature"
@@ -60,7 +58,6 @@ class PayloadMass(_Weight):
 
     name = "payload_mass"
     rank = 16
-    place = "body"
     quantities = (Quantity("mass", "kg", 0.0, 1000.0),)
     apart = ("com_offset", "armature")
 
@@ -72,17 +69,12 @@ class PayloadMass(_Weight):
         """Mass from 1 % (hard to see) to 30 % (easy) of what hangs on the joint."""
         return {"mass": s.part(0.3, 0.01) * float(s.scales.carried_kg[s.joint])}
 
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """Whether the motion shows a change of the body's weight."""
-        return _weight_shows(plant, scales, spot)
-
 
 class ComOffset(_Weight):
     """A body's centre of mass is not where the model has it."""
 
     name = "com_offset"
     rank = 17
-    place = "body"
     quantities = tuple(Quantity(axis, "m", -1.0, 1.0) for axis in "xyz")
     apart = ("payload_mass", "armature")
 
@@ -104,7 +96,3 @@ class ComOffset(_Weight):
         else:
             shift = size_m * s.across
         return dict(zip("xyz", shift.tolist(), strict=True))
-
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
-        """Whether the motion shows a change of the body's weight."""
-        return _weight_shows(plant, scales, spot)

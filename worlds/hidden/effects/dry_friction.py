@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from worlds.hidden.effects.kind import (
     HiddenKind,
@@ -12,9 +11,6 @@ from worlds.hidden.effects.kind import (
     Values,
 )
 from worlds.hidden.setting import Setting
-
-if TYPE_CHECKING:
-    pass
 
 RIGID_NM_RAD = 3000.0
 """Stiffness of surfaces that stick and of gear teeth that touch: under a servo's torque

@@ -1,18 +1,14 @@
 """Hidden physics that is a force on one body."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from worlds.hidden.effects.kind import HiddenKind, Push, Quantity, Values
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Scales, Setting, Spot
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from worlds.hidden.plant import HiddenPlant
 
 _LASTING_SHARE = 0.3
 """Share of drawn forces that act during the whole recording."""
@@ -36,7 +32,7 @@ class ExternalForce(HiddenKind):
         start_s, duration_s = values["start"], values["duration"]
 
         def force(
-            time_s: float, velocity: "Callable[[], FloatArray]"
+            time_s: float, velocity: Callable[[], FloatArray]
         ) -> FloatArray | None:
             return force_n if 0 <= time_s - start_s < duration_s else None
 
@@ -58,7 +54,7 @@ class ExternalForce(HiddenKind):
             span = {"start": float(start), "duration": float(s.rng.uniform(0.05, 0.5))}
         return dict(zip("xyz", force.tolist(), strict=True)) | span
 
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether the body moves: else the base or the ground bears the force."""
         return scales.moves(spot.body)
 
@@ -81,7 +77,7 @@ class Drag(HiddenKind):
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         return {"coefficient": s.part(0.4, 0.02) * weight_n}
 
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether several joints move the body: with one, drag is viscous friction."""
         many = plant.floating or scales.carriers(spot.body) > 1
         return scales.moves(spot.body) and many

@@ -1,23 +1,20 @@
 """Hidden physics of the ground: its friction, softness, slope and bumps."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Setting
 from worlds.hidden.surroundings import Surroundings
 from worlds.soft_ground import DAMPING_RATIO, FootSpring
-
-if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
 
 
 class _UnderFeet(HiddenKind):
     """A kind that only a robot on its feet can have."""
 
-    def possible(self, plant: "HiddenPlant") -> bool:
+    def possible(self, plant: HiddenPlant) -> bool:
         """Whether the base is free, so that the robot stands on its feet."""
         return plant.floating
 
@@ -81,7 +78,7 @@ class GroundSlope(HiddenKind):
         way = s.rng.uniform(0, 2 * math.pi)
         return {"pitch": tilt * math.cos(way), "roll": tilt * math.sin(way)}
 
-    def possible(self, plant: "HiddenPlant") -> bool:
+    def possible(self, plant: HiddenPlant) -> bool:
         """Whether it has several joints: with one, a tilt is an encoder's offset."""
         return len(plant.joints) > 1
 

@@ -1,7 +1,6 @@
 """Hidden physics that is a torque at one joint, of its angle, its speed or the time."""
 
 import math
-from typing import TYPE_CHECKING
 
 from worlds.hidden.effects.kind import (
     HiddenKind,
@@ -10,10 +9,8 @@ from worlds.hidden.effects.kind import (
     StiffContact,
     Values,
 )
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Setting
-
-if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
 
 _STOP_NM_RAD = 500.0
 """Stiffness of an end stop: hard rubber on a lever of some centimetres. A servo's
@@ -38,7 +35,7 @@ class ViscousFriction(HiddenKind):
         """At top speed from 2 % (hard to see) to 20 % (easy) of the servo's torque."""
         return {"coefficient": s.part(0.2, 0.02) * s.torque_nm / s.speed_rad_s}
 
-    def cancels(self, plant: "HiddenPlant") -> bool:
+    def cancels(self, plant: HiddenPlant) -> bool:
         """Whether all damping is back-EMF: less of it and more friction then cancel."""
         return not plant.kd_nm_s_rad.any()
 

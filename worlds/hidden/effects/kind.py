@@ -3,17 +3,15 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from groundwalk.arrays import FloatArray
+from worlds.hidden.plant import HiddenPlant
+from worlds.hidden.servos import Servos
 from worlds.hidden.setting import Scales, Setting, Spot
-
-if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
-    from worlds.hidden.servos import Servos
-    from worlds.hidden.surroundings import Surroundings
-    from worlds.hidden.transmission import Transmission
-    from worlds.soft_ground import FootSpring
+from worlds.hidden.surroundings import Surroundings
+from worlds.hidden.transmission import Transmission
+from worlds.soft_ground import FootSpring
 
 Values = Mapping[str, float]
 """Value of each parameter by its name, in SI units."""
@@ -100,6 +98,11 @@ class HiddenKind:
       apart: kinds that are never drawn into the same case, if `cancels` says so.
       sizes: the only parameter of an effect that is easy and of one that is hard to
         see in concealed cases; kinds whose size depends on more override `size`.
+
+    Example:
+      >>> from worlds.hidden import KINDS
+      >>> KINDS["backlash"].sizes
+      (0.06, 0.003)
     """
 
     name: ClassVar[str]
@@ -119,7 +122,7 @@ class HiddenKind:
 
     # Physics
 
-    def change_servos(self, servos: "Servos", joint: int, values: Values) -> None:
+    def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
         """Change numbers of the servo of a joint, given by its column."""
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque | None:
@@ -128,7 +131,7 @@ class HiddenKind:
 
     def transmission(
         self, values: Values, contact: StiffContact
-    ) -> "Transmission | None":
+    ) -> Transmission | None:
         """What replaces the rigid gear between motor and joint; None if nothing."""
         return None
 
@@ -139,11 +142,11 @@ class HiddenKind:
         """Friction coefficient between soles and ground; None leaves it unchanged."""
         return None
 
-    def foot_spring(self, values: Values, mass_kg: float) -> "FootSpring | None":
+    def foot_spring(self, values: Values, mass_kg: float) -> FootSpring | None:
         """Soft ground under each foot of a robot of this mass; None for hard ground."""
         return None
 
-    def change_surroundings(self, surroundings: "Surroundings", values: Values) -> None:
+    def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
         """Change the signals' delays and biases, or the ground."""
 
     def push(self, values: Values) -> Push | None:
@@ -156,20 +159,20 @@ class HiddenKind:
         """Parameters of an effect that is as easy to see as the setting says."""
         return {self.quantities[0].name: s.part(*self.sizes)}
 
-    def possible(self, plant: "HiddenPlant") -> bool:
+    def possible(self, plant: HiddenPlant) -> bool:
         """Whether the robot can have this effect and distinguish it from all others."""
         return True
 
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether the motion shows this effect at a spot, unlike all other effects."""
         return True
 
-    def cancels(self, plant: "HiddenPlant") -> bool:
+    def cancels(self, plant: HiddenPlant) -> bool:
         """Whether a robot cannot distinguish this kind from those in `apart`."""
         return True
 
     def spots(
-        self, plant: "HiddenPlant", scales: Scales, joints: Sequence[int]
+        self, plant: HiddenPlant, scales: Scales, joints: Sequence[int]
     ) -> list[Spot]:
         """Where a concealed case may have this effect; empty if nowhere.
 

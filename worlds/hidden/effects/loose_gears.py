@@ -1,15 +1,11 @@
 """Hidden physics between a motor and its joint: play and elasticity."""
 
 import math
-from typing import TYPE_CHECKING
 
 from worlds.hidden.effects.dry_friction import RIGID_NM_RAD
 from worlds.hidden.effects.kind import HiddenKind, Quantity, StiffContact, Values
 from worlds.hidden.setting import Setting
 from worlds.hidden.transmission import Transmission
-
-if TYPE_CHECKING:
-    pass
 
 
 class Backlash(HiddenKind):

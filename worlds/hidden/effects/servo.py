@@ -1,14 +1,10 @@
 """Hidden physics of a servo: its gains, limits, encoder and wiring."""
 
-from typing import TYPE_CHECKING
-
 from groundwalk.errors import BadValueError
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Servos
 from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
-
-if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
 
 _LEAST_EFFORT = 0.06
 """A joint whose servo needs a smaller share of its largest torque does not show a
@@ -30,7 +26,7 @@ class EncoderOffset(HiddenKind):
         """Offset from 0.005 (hard to see) to 0.1 rad (easy), to either side."""
         return {"offset": s.sign * s.part(0.1, 0.005)}
 
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether gravity shows it: a joint on a fixed base has to carry weight."""
         lever_m = scales.bodies.branch_lever_m[spot.joint]
         return plant.floating or bool(lever_m >= LEAST_LEVER_M)
@@ -52,7 +48,7 @@ class TorqueLimit(HiddenKind):
         """Limit from 0.9 (hard to see) to 0.4 times (easy) the largest torque used."""
         return {"torque": s.part(0.4, 0.9) * float(s.scales.peak_nm[s.joint])}
 
-    def shows(self, plant: "HiddenPlant", scales: Scales, spot: Spot) -> bool:
+    def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether the motion needs a noticeable share of the servo's largest torque."""
         effort = scales.peak_nm[spot.joint] / plant.max_torque_nm[spot.joint]
         return bool(effort >= _LEAST_EFFORT)
@@ -115,7 +111,7 @@ class ServoDamping(HiddenKind):
         sign = s.sign if s.plant.kd_nm_s_rad[s.joint] > 0 else -1.0
         return {"factor": 1.0 + sign * part}
 
-    def cancels(self, plant: "HiddenPlant") -> bool:
+    def cancels(self, plant: HiddenPlant) -> bool:
         """Whether all damping is back-EMF: less of it and more friction then cancel."""
         return not plant.kd_nm_s_rad.any()
 
@@ -166,6 +162,6 @@ class JointCrosstalk(HiddenKind):
             "share": s.sign * s.part(0.2, 0.01),
         }
 
-    def possible(self, plant: "HiddenPlant") -> bool:
+    def possible(self, plant: HiddenPlant) -> bool:
         """Whether the robot has another joint."""
         return len(plant.joints) > 1

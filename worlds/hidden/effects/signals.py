@@ -1,13 +1,9 @@
 """Hidden physics of signals: delays, and a gyroscope's bias."""
 
-from typing import TYPE_CHECKING
-
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Setting
 from worlds.hidden.surroundings import Surroundings
-
-if TYPE_CHECKING:
-    from worlds.hidden.plant import HiddenPlant
 
 
 class CommandLatency(HiddenKind):
@@ -37,7 +33,7 @@ class SensorDelay(HiddenKind):
         """Add to the delay of the encoders' readings."""
         surroundings.encoder_delay_s += values["delay"]
 
-    def possible(self, plant: "HiddenPlant") -> bool:
+    def possible(self, plant: HiddenPlant) -> bool:
         """Whether the base is free: else late readings act as late commands do."""
         return plant.floating
 
@@ -59,6 +55,6 @@ class GyroBias(HiddenKind):
         bias = s.part(0.05, 0.003) * s.direction
         return dict(zip("xyz", bias.tolist(), strict=True))
 
-    def possible(self, plant: "HiddenPlant") -> bool:
+    def possible(self, plant: HiddenPlant) -> bool:
         """Whether the robot has a gyroscope: those with a description do."""
         return plant.description is not None
