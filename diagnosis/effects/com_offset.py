@@ -1,4 +1,4 @@
-"""A centre of mass that is not where the model has it."""
+"""An effect: a body's centre of mass is not where the model has it."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -13,11 +13,13 @@ if TYPE_CHECKING:
     from diagnosis.traces.trace import Trace
 
 _ABOUT_ITS_CENTRE = 1
-"""`body_simple` of simple bodies that turn; those that only slide have 2."""
+"""MuJoCo's `body_simple` of a simple body that turns; 2 is one that only slides."""
 
 
 class ComOffset(BodyEffect):
-    """Centre of mass + (x, y, z) in the body's frame; mass and central inertia stay.
+    """The centre of mass is shifted by (x, y, z) in the body's frame.
+
+    Mass and inertia about the centre stay as they are.
 
     Source: first moments among the inertial parameters, Atkeson, An and Hollerbach
     1986, "Estimation of inertial parameters of manipulator loads and links". In MuJoCo
@@ -37,10 +39,11 @@ class ComOffset(BodyEffect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Bodies, less those that the compiler made simple; `simple="false"` helps.
+        """Bodies that MuJoCo's compiler has not made simple.
 
-        Such a body turns about its centre of mass, and MuJoCo leaves no room in the
-        mass matrix for what an offset would couple.
+        A simple body turns about its centre of mass, so that MuJoCo's mass matrix has
+        no entries for the coupling that an offset causes. `simple="false"` in the
+        model lifts this.
         """
         places = super().places(plant, traces)
         simple = [
@@ -53,11 +56,11 @@ class ComOffset(BodyEffect):
         )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """One number an axis."""
+        """The offset along each axis of the body's frame."""
         return tuple(Parameter(axis, "m", -0.1, 0.1, 0.0, 0.01) for axis in "xyz")
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Offsets add."""
+        """Add the offset to the body's own."""
         variants.field("body_ipos")[row, variants.body(place)] += values

@@ -1,4 +1,4 @@
-"""Commands that take effect late."""
+"""An effect: commands take effect late."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -36,7 +36,7 @@ class CommandLatency(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """All joints at once, if a trace has commands of any kind."""
+        """The commands of all joints, if a trace has commands of any kind."""
         has_commands = any(
             trace.command_rad is not None or trace.command_torque_nm is not None
             for trace in traces
@@ -44,17 +44,17 @@ class CommandLatency(Effect):
         return ("commands",) if has_commands else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The delay; 0.5 s were seen on a slow bus, 2 to 60 ms are usual."""
+        """The delay: usually 2 to 60 ms; 0.5 s were seen on a slow bus."""
         return (Parameter("delay", "s", 0.0, 0.6, 0.0, 0.015),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Delays add."""
+        """Add the delay to the one that is there."""
         variants.signals.command_delay_s[row] += values[0]
 
     def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
-        """On a fixed base late encoders: no recording has another clock."""
+        """Late encoders if the base is fixed: positions cannot distinguish the two."""
         late = PlacedEffect("sensor_delay", "encoders")
         return (late,) if plant.base == "fixed" else ()
 

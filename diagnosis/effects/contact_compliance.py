@@ -1,4 +1,4 @@
-"""Soles or ground that give."""
+"""An effect: soles or ground are soft."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -17,11 +17,16 @@ if TYPE_CHECKING:
     from diagnosis.traces.trace import Trace
 
 DAMPING_RATIO = 0.1
-"""Of critical, for the whole robot on one foot."""
+"""Damping as a share of critical damping, for the whole robot on one foot."""
 
 _ADDED_MASS = 0.25
+"""Mass that the soft contact seems to have, as a share of the foot's effective mass."""
+
 _IMPEDANCE_RATIO = 100.0
+"""Tangential over normal impedance, so that a sticking foot hardly creeps."""
+
 _WEIGHT_OVER_GROUND = 1e9
+"""Weight of the foot's solver parameters against those of the ground."""
 
 
 class ContactCompliance(Effect):
@@ -61,7 +66,7 @@ class ContactCompliance(Effect):
         return ("feet",) if has_ground_contact(plant) else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """K of one foot: the robot sinks 0.1 to 30 mm in on it, typically 4 mm."""
+        """Stiffness K of one foot, on which the robot sinks in by 0.1 to 30 mm."""
         weight = weight_n(plant)
         return (
             Parameter(
@@ -78,7 +83,7 @@ class ContactCompliance(Effect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Compliances add to what an effect made soft; the plant's own are replaced."""
+        """Make all feet soft, in series with feet that an effect made soft before."""
         import mujoco
 
         stiffness = values[0]
@@ -92,7 +97,7 @@ class ContactCompliance(Effect):
 
 
 def _soften(variants: "Variants", row: int, foot: str, stiffness: float) -> None:
-    """Give one foot a stiffness [N/m] in series with one it was given before."""
+    """Give one foot a stiffness [N/m], in series with one that it was given before."""
     plant = variants.plant
     geoms = foot_geoms(plant, foot)
     points = _contact_points(plant, geoms)
@@ -112,7 +117,7 @@ def _soften(variants: "Variants", row: int, foot: str, stiffness: float) -> None
 
 
 def _contact_points(plant: "Plant", geoms: IntArray) -> int:
-    """Points in which geoms that lie flat meet a plane, as MuJoCo 4.0 finds them."""
+    """Number of contacts that MuJoCo 4.0 finds between flat geoms and a plane."""
     import mujoco
 
     kind = mujoco.mjtGeom

@@ -1,4 +1,4 @@
-"""Soles that slip sooner or later than the model's."""
+"""An effect: friction between feet and ground differs from the model's."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -40,12 +40,12 @@ class ContactFriction(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The feet, if they can touch a ground and have friction there."""
+        """The feet, if they can touch a ground and have friction on it."""
         walks = has_ground_contact(plant) and sole_friction(plant) > 0
         return ("feet",) if walks else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The coefficient mu; a typical one is two thirds of the plant's."""
+        """The coefficient mu; two thirds of the plant's is tried first."""
         nominal = sole_friction(plant)
         high = max(2.0, 2 * nominal)
         return (
@@ -55,10 +55,10 @@ class ContactFriction(Effect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Scale the feet's and the ground's coefficients, so that factors multiply.
+        """Scale the coefficients of feet and ground by the same factor.
 
-        Of two geoms MuJoCo takes the larger one, or the one with priority: either way
-        it is the plant's, scaled.
+        MuJoCo uses the larger coefficient of two geoms, or that of the geom with
+        priority; either way the result is the plant's coefficient, scaled.
         """
         plant = variants.plant
         geoms = np.concatenate([ground_geoms(plant), sole_geoms(plant)])

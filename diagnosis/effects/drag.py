@@ -1,4 +1,4 @@
-"""Water, air or a hand that slows a body down."""
+"""An effect: water, air or a trailing cable slows a body down."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -31,27 +31,27 @@ class Drag(BodyEffect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Bodies that move, but for those on one slide.
+        """Bodies that move, except those that can only slide along one line.
 
-        There it is the viscous friction of the slide.
+        There, drag is the same as viscous friction of the sliding joint.
         """
         every = super().places(plant, traces)
         return tuple(name for name in every if not _slides(plant, name))
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """c; a typical one holds back a tenth of the robot's weight at 1 m/s."""
+        """The coefficient c; a typical drag is 10 % of the robot's weight at 1 m/s."""
         scale = weight_n(plant)
         return (Parameter("coefficient", "N s/m", 0.0, 2 * scale, 0.0, 0.1 * scale),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Coefficients add."""
+        """Add the coefficient to the one that is there."""
         variants.outside.drag_n_s_m[row, variants.body(place)] += values[0]
 
 
 def _slides(plant: "Plant", name: str) -> bool:
-    """Whether all that a body can do is to move along one line."""
+    """Whether a body can only move along one line."""
     import mujoco
 
     model = plant.model

@@ -1,4 +1,4 @@
-"""A hard stop inside of a joint's nominal range."""
+"""An effect: a hard stop inside a joint's nominal range."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -23,7 +23,10 @@ if TYPE_CHECKING:
     from diagnosis.traces.usage import Usage
 
 _FAR_RAD = 1e6
+"""Range of a joint that has none."""
+
 _STIFF = (0.005, 1.0)
+"""MuJoCo's `solref` of the stop: time constant [s] and damping ratio."""
 
 
 class EndStop(JointEffect):
@@ -48,7 +51,7 @@ class EndStop(JointEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Angle and side; only the sign of the side counts."""
+        """Angle of the stop and its side, of which only the sign counts."""
         low, high = range_rad(plant, place)
         is_limited = plant.model.jnt_limited[plant.model.joint(place).id]
         neutral = high if is_limited else np.inf
@@ -61,7 +64,7 @@ class EndStop(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """The nearer stop counts; one outside of the range changes nothing."""
+        """Narrow the joint's range; a stop outside the range changes nothing."""
         angle, side = (float(value) for value in values)
         joint = variants.plant.model.joint(place).id
         limited, ranges = variants.field("jnt_limited"), variants.field("jnt_range")

@@ -1,4 +1,4 @@
-"""Somebody or something that pushes a body."""
+"""An effect: a body is pushed from outside for some time."""
 
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from diagnosis.plant.plant import Plant
 
 _EARLIEST_S, _LONGEST_S = -2.0, 600.0
-"""What began before the recording pushes from its first row on."""
+"""Earliest start in the recording's time, and longest duration. A push may have begun
+before the recording."""
 
 
 class ExternalForce(BodyEffect):
@@ -38,7 +39,7 @@ class ExternalForce(BodyEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Force, up to the robot's weight an axis, and when: 0.2 s are a shove."""
+        """Force, up to the robot's weight along each axis, start and duration."""
         weight = weight_n(plant)
         force = (Parameter(a, "N", -weight, weight, 0.0, 0.05 * weight) for a in "xyz")
         return (
@@ -50,7 +51,7 @@ class ExternalForce(BodyEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """One more push; where they overlap, forces add."""
+        """Add a push; forces of pushes that overlap are added."""
         x, y, z, start_s, duration_s = (float(value) for value in values)
         if duration_s > 0 and any((x, y, z)):
             push = Push(place, (x, y, z), start_s, duration_s)

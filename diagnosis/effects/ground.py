@@ -1,4 +1,4 @@
-"""Which geoms of a plant are the ground and which may touch it."""
+"""Finds the geoms of the ground in a robot model, and those of feet that touch it."""
 
 from typing import TYPE_CHECKING
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def ground_geoms(plant: "Plant") -> IntArray:
-    """Geoms on the world body that can collide."""
+    """(k,) numbers of the geoms on the world body that can collide."""
     model = plant.model
     can_touch = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
     return np.flatnonzero((model.geom_bodyid == 0) & can_touch)
 
 
 def foot_geoms(plant: "Plant", foot: str) -> IntArray:
-    """Geoms of a foot that can collide with some geom of the ground."""
+    """(k,) numbers of a foot's geoms that can collide with the ground."""
     model = plant.model
     of_foot: IntArray = np.flatnonzero(model.geom_bodyid == model.body(foot).id)
     ground = ground_geoms(plant)
@@ -31,21 +31,21 @@ def foot_geoms(plant: "Plant", foot: str) -> IntArray:
 
 
 def sole_geoms(plant: "Plant") -> IntArray:
-    """Geoms of all feet that can collide with some geom of the ground."""
+    """(k,) numbers of the geoms of all feet that can collide with the ground."""
     none = np.zeros(0, np.intp)
     return np.concatenate([none, *(foot_geoms(plant, foot) for foot in plant.feet)])
 
 
 def has_ground_contact(plant: "Plant") -> bool:
-    """Whether the plant walks: a floating base, and feet that can meet a ground."""
+    """Whether the base floats and the robot has feet that can touch a ground."""
     return plant.base == "floating" and len(sole_geoms(plant)) > 0
 
 
 def sole_friction(plant: "Plant") -> float:
-    """Sliding friction of the feet on the ground, 0 where they cannot meet.
+    """Sliding friction coefficient of the feet on the ground; 0 if they cannot touch.
 
-    MuJoCo takes the coefficient of the geom with the higher priority, and the
-    larger one if there is none (its documentation, "Contact parameters").
+    MuJoCo uses the coefficient of the geom with the higher priority, and the larger one
+    if priorities are equal (its documentation, "Contact parameters").
     """
     model, ground, soles = plant.model, ground_geoms(plant), sole_geoms(plant)
     if not len(soles):

@@ -1,4 +1,4 @@
-"""A ground that is not level, or a base that was mounted tilted."""
+"""An effect: the ground is not level, or a fixed base is mounted tilted."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -41,12 +41,12 @@ class GroundSlope(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The world, if there is a ground to turn or a base to tilt."""
+        """The world, if the base is fixed or there is a ground."""
         has_any = plant.base == "fixed" or len(ground_geoms(plant)) > 0
         return ("world",) if has_any else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Both angles."""
+        """Pitch and roll."""
         return tuple(
             Parameter(name, "rad", -0.3, 0.3, 0.0, 0.03) for name in ("pitch", "roll")
         )
@@ -54,7 +54,7 @@ class GroundSlope(Effect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Turn what is there once more."""
+        """Turn the ground, or gravity if the base is fixed."""
         if not np.any(values):
             return
         if variants.plant.base == "fixed":
@@ -91,19 +91,22 @@ def _tilt(pitch_rad: float, roll_rad: float) -> FloatArray:
 
 
 def _turned(turn: FloatArray, vector: FloatArray) -> FloatArray:
+    """The vector (3,) turned by a quaternion."""
     return _call("mju_rotVecQuat", 3, vector, turn)
 
 
 def _product(first: FloatArray, second: FloatArray) -> FloatArray:
+    """The product of two quaternions: the second turn, then the first."""
     return _call("mju_mulQuat", 4, first, second)
 
 
 def _inverse(turn: FloatArray) -> FloatArray:
+    """The inverse of a quaternion."""
     return _call("mju_negQuat", 4, turn)
 
 
 def _call(function: str, size: int, *arguments: Any) -> FloatArray:
-    """What one of MuJoCo's functions writes into its first argument."""
+    """Call one of MuJoCo's functions and return the array (size,) that it writes."""
     import mujoco
 
     result = np.zeros(size)

@@ -1,4 +1,4 @@
-"""A gyroscope that turns while the robot stands still."""
+"""An effect: the gyroscope has a constant error."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -36,11 +36,11 @@ class GyroBias(Effect):
         return ("gyroscope",) if has_one else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """One number an axis."""
+        """The bias of each axis of the sensor."""
         return tuple(Parameter(axis, "rad/s", -0.5, 0.5, 0.0, 0.02) for axis in "xyz")
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Biases add."""
+        """Add the bias to the one that is there."""
         variants.signals.gyro_bias_rad_s[row] += values

@@ -1,4 +1,4 @@
-"""A spring between motor and link."""
+"""An effect: a spring between motor and link."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -43,8 +43,8 @@ class JointElasticity(JointEffect):
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
         """Stiffness k and damping d.
 
-        A typical spring gives 0.05 rad at the joint's torque range, and is damped at
-        3 % of critical; at the bounds it gives 1 rad and 0.5 mrad.
+        A typical spring winds up by 0.05 rad under a large torque of the joint, and has
+        3 % of critical damping; at the bounds it winds up by 1 rad and by 0.5 mrad.
         """
         scale = torque_nm(plant, place)
         typical = scale / 0.05
@@ -59,10 +59,10 @@ class JointElasticity(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Springs in a row: compliances add.
+        """Put the spring in series with one that is there: compliances add.
 
-        Of (k + d s) in a row, 1 / sum 1/(k_i + d_i s), the part linear in s is
-        d = k^2 sum d_i / k_i^2.
+        Several k_i + d_i s in series are 1 / sum 1/(k_i + d_i s), whose part linear in
+        s is d = k^2 sum d_i / k_i^2.
         """
         stiffness, damping = values
         if np.isinf(stiffness):

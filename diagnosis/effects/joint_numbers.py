@@ -55,7 +55,7 @@ class ViscousFriction(JointNumber):
         return (PlacedEffect("servo_damping", place),) if has_emf else ()
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The velocity."""
+        """The velocity: the torque of a coefficient of 1."""
         return motion.velocity_rad_s
 
     def from_column(
@@ -92,7 +92,7 @@ class CoulombFriction(JointNumber):
         return (Parameter("torque", "N m", 0.0, 0.5 * scale, 0.0, 0.05 * scale),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The sign of the velocity."""
+        """The smooth sign of the velocity: the torque of dry friction of 1 N m."""
         return motion.direction
 
 
@@ -118,7 +118,7 @@ class LoadFriction(JointNumber):
         return (Parameter("share", "1", 0.0, 0.8, 0.0, 0.1),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The torque's size, in the direction of the velocity."""
+        """The size of the nominal torque, in the direction of the velocity."""
         return np.abs(motion.torque_nm) * motion.direction
 
 
@@ -144,7 +144,7 @@ class Armature(JointNumber):
         return (Parameter("inertia", "kg m^2", 0.0, 10 * scale, 0.0, 0.5 * scale),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The acceleration."""
+        """The acceleration: the torque of an inertia of 1 kg m^2."""
         return motion.acceleration_rad_s2
 
 
@@ -210,5 +210,5 @@ class EncoderOffset(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The offset."""
+        """The offset of the measured angle."""
         return (Parameter("offset", "rad", -0.3, 0.3, 0.0, 0.03),)

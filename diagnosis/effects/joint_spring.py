@@ -1,4 +1,4 @@
-"""A cable or spring that pulls a joint towards some angle."""
+"""An effect: a cable or spring pulls a joint towards some angle."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class JointSpring(JointEffect):
-    """Torque -k (q - rest).
+    """Torque -k (q - rest) at joint angle q.
 
     Source: Hooke 1678. In MuJoCo `jnt_stiffness` and `qpos_spring`.
     """
@@ -38,7 +38,7 @@ class JointSpring(JointEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Stiffness k and rest; tried first at rest in the reference pose."""
+        """Stiffness k and angle of rest, first that of the model's reference pose."""
         scale = torque_nm(plant, place)
         low, high = range_rad(plant, place)
         reference = plant.model.qpos0[plant.qpos[plant.joints.index(place)]]
@@ -51,7 +51,10 @@ class JointSpring(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Two springs are one: stiffnesses add, rests average by stiffness."""
+        """Merge the spring with one that is there: two springs act as one.
+
+        Stiffnesses are added; the angle of rest is their mean, weighted by stiffness.
+        """
         stiffness, rest = values
         if stiffness == 0:
             return

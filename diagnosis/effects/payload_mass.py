@@ -1,4 +1,4 @@
-"""Something heavy that the model does not know of."""
+"""An effect: a body carries mass that the model does not have."""
 
 from typing import TYPE_CHECKING
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 class PayloadMass(BodyEffect):
-    """A point of mass m at a body's centre of mass.
+    """A point mass m at a body's centre of mass.
 
-    The centre stays where it is, and so does the inertia about it: of m |r|^2 nothing
-    is left at r = 0 (Featherstone 2008, "Rigid body dynamics algorithms", section
-    2.13). In MuJoCo `body_mass`; constants that follow from it are `mj_setConst`'s.
+    The centre and the inertia about it stay as they are, since a point mass at distance
+    r adds m r^2 (Featherstone 2008, "Rigid body dynamics algorithms", section 2.13). In
+    MuJoCo `body_mass`; `mj_setConst` computes the constants that follow from it.
     """
 
     name = "payload_mass"
@@ -30,7 +30,7 @@ class PayloadMass(BodyEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The mass, up to the body's own or a third of the robot's."""
+        """The mass, at most the body's own or 30 % of the robot's if that is more."""
         own = float(plant.model.body(place).mass[0])
         high = max(own, 0.3 * mass_kg(plant))
         return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
@@ -38,5 +38,5 @@ class PayloadMass(BodyEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Masses add."""
+        """Add the mass to the body's."""
         variants.field("body_mass")[row, variants.body(place)] += values[0]

@@ -1,4 +1,4 @@
-"""How large things are at a place of a plant: what effects' bounds are made of."""
+"""Torques, speeds, inertias and masses of a robot, from which bounds are made."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -10,18 +10,21 @@ if TYPE_CHECKING:
     from diagnosis.plant.plant import Plant
 
 REFERENCE_SPEED_RAD_S, REFERENCE_SPEED_M_S = 5.0, 0.5
-"""A brisk joint, where nothing better is known: a hinge and a slide."""
+"""Speed in brisk use, if the motor is not known: of a hinge, of a sliding joint."""
 
 _SERVO_ERROR_RAD = 0.1
+"""Servo error [rad] whose torque counts as large, if the servo has no limit."""
+
 _ACCELERATION_RAD_S2 = 5.0
+"""Acceleration [rad/s^2] whose torque counts as large, if there is no servo."""
 
 
 def torque_nm(plant: "Plant", joint: str) -> float:
-    """What counts as a large torque at a joint; always above 0.
+    """A large torque [N m] for a joint; always above 0.
 
-    The servo's limit; without one its torque at an error of 0.1 rad; without a
-    servo the larger of what gravity can do and what an acceleration of 5 rad/s^2
-    takes.
+    This is the servo's limit; without a limit its torque at an error of 0.1 rad;
+    without a servo the larger of the torque of gravity and the torque for an
+    acceleration of 5 rad/s^2.
     """
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
@@ -35,7 +38,7 @@ def torque_nm(plant: "Plant", joint: str) -> float:
 
 
 def inertia_kg_m2(plant: "Plant", joint: str) -> float:
-    """Inertia that a joint feels in the reference pose: its place in M's diagonal."""
+    """Inertia of a joint with its links in the reference pose: the diagonal of M."""
     import mujoco
 
     model, data = plant.model, _reference(plant)
@@ -46,7 +49,7 @@ def inertia_kg_m2(plant: "Plant", joint: str) -> float:
 
 
 def speed_rad_s(plant: "Plant", joint: str) -> float:
-    """No-load speed of a joint's motor; a brisk joint's where it is not known."""
+    """No-load speed of a joint's motor [rad/s]; a brisk speed if it is not known."""
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
     back_emf = float(plant.servo.back_emf_nm_s_rad[column])
@@ -56,7 +59,7 @@ def speed_rad_s(plant: "Plant", joint: str) -> float:
 
 
 def brisk_rad_s(plant: "Plant", joint: str) -> float:
-    """A speed that a joint is used at; of a slide in m/s."""
+    """Speed of a joint in brisk use [rad/s]; of a sliding joint [m/s]."""
     import mujoco
 
     number = plant.model.joint(joint).id
@@ -65,7 +68,7 @@ def brisk_rad_s(plant: "Plant", joint: str) -> float:
 
 
 def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:
-    """A joint's range; half a turn both ways where it has none."""
+    """Lower and upper end of a joint's range; -pi and pi if it has none."""
     view = plant.model.joint(joint)
     if not plant.model.jnt_limited[view.id]:
         return -np.pi, np.pi
@@ -74,17 +77,20 @@ def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:
 
 
 def mass_kg(plant: "Plant") -> float:
-    """Mass of all bodies."""
+    """Mass of all bodies together."""
     return float(plant.model.body_mass.sum())
 
 
 def weight_n(plant: "Plant") -> float:
-    """What the plant weighs on Earth, also where its model has no gravity."""
+    """Weight of the robot on Earth [N], even if its model has no gravity."""
     return GRAVITY_M_S2 * mass_kg(plant)
 
 
 def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
-    """Weight beyond a hinge times its lever in the reference pose; a slide's weight."""
+    """Torque of gravity [N m] about a hinge in the reference pose, at most.
+
+    For a sliding joint the weight [N] of what it carries.
+    """
     import mujoco
 
     model, data = plant.model, _reference(plant)
@@ -99,7 +105,7 @@ def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
 
 
 def _reference(plant: "Plant") -> Any:
-    """The plant at rest in its reference pose."""
+    """MuJoCo's data of the plant at rest in its reference pose."""
     import mujoco
 
     data = mujoco.MjData(plant.model)

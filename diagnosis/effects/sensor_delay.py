@@ -1,4 +1,4 @@
-"""Encoders that report the past."""
+"""An effect: encoders report past positions and velocities."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -31,20 +31,20 @@ class SensorDelay(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """All joints at once, where something else than positions is measured.
+        """The encoders of all joints, if more than their positions is measured.
 
-        Held by servos on a fixed base, old measurements of positions are those of a
-        late command: nothing tells the two apart.
+        With a fixed base and only positions measured, late encoders cannot be
+        distinguished from late commands.
         """
         other = any(trace.torque_nm is not None for trace in traces)
         return ("encoders",) if plant.base == "floating" or other else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The delay; 2 to 40 ms are usual."""
+        """The delay: usually 2 to 40 ms."""
         return (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.01),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Delays add."""
+        """Add the delay to the one that is there."""
         variants.signals.sensor_delay_s[row] += values[0]

@@ -49,7 +49,7 @@ class ServoGain(ServoNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The factor."""
+        """The factor on the nominal value."""
         return (Parameter("factor", "1", 0.1, 5.0, 1.0, 0.8, logarithmic=True),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
@@ -89,7 +89,7 @@ class ServoDamping(JointNumber):
         return joints_where(plant, [values > 0 for values in damping])
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The factor."""
+        """The factor on the nominal value."""
         return (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
 
 
@@ -199,7 +199,7 @@ class SpeedLimit(ServoNumber):
         return super().places(plant, traces)
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The limit."""
+        """The limit, as a share of the motor's speed."""
         scale = speed_rad_s(plant, place)
         return (
             Parameter(

@@ -1,4 +1,4 @@
-"""Dry friction that is larger near standstill."""
+"""An effect: dry friction that is larger near standstill."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -62,7 +62,7 @@ class StribeckFriction(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Torques add; speeds of two such effects are averaged by extra torque."""
+        """Add the torques; the speed becomes the mean, weighted by extra torque."""
         coulomb_nm, extra_nm, speed_rad_s = values
         joints, at = variants.joints, (row, variants.column(place))
         joints.coulomb_nm[at] += coulomb_nm
@@ -74,7 +74,7 @@ class StribeckFriction(JointEffect):
             joints.stribeck_nm[at] = total_nm
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """With Coulomb friction it shares all but what happens near standstill."""
+        """Dry friction with an extra half of its torque near standstill."""
         if other.name != "coulomb_friction":
             return ()
         (torque_nm,) = other.values

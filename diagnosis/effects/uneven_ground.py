@@ -1,4 +1,4 @@
-"""A ground with bumps that the model's plane does not have."""
+"""An effect: the ground has bumps where the model has a plane."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class UnevenGround(Effect):
-    """Heights spread about the plane; 99 % of them within +-height.
+    """Heights spread about the plane; 99 % of them lie within +-height.
 
-    Where each bump is cannot be known. A replay puts the ground where the recorded
-    soles stood as a window began, no farther from the plane than the height
+    Where the bumps are cannot be known. A replay takes the ground to be where the
+    recorded soles stood as a window began, no farther from the plane than the height
     (`diagnosis.replay.conforming_ground`). So the height found is about the largest
-    that was trodden on, bumps of less than 0.6 mm are not seen, and where a foot is put
-    down later the ground is taken to be flat.
+    bump that was stepped on, bumps below 0.6 mm are not seen, and the ground is flat
+    where a foot steps later.
 
     Source: ground profiles as random processes, ISO 8608:2016.
     """
@@ -43,13 +43,13 @@ class UnevenGround(Effect):
         return ("world",) if has_ground_contact(plant) else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The height; tried first so low that most bumps would be higher."""
+        """The height; 1 mm is tried first, less than most real bumps."""
         return (Parameter("height", "m", 0.0, 0.03, 0.0, 0.001),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Heights add."""
+        """Add the height to the one that is there."""
         variants.outside.bump_height_m[row] += values[0]
 
     def apply_to_sim(
