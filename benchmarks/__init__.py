@@ -1,1 +1,1 @@
-"""Speed, measured as ratios within one run: machines differ, ratios less so."""
+"""Benchmarks of speed, as ratios of times, which hardly depend on the machine."""

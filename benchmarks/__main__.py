@@ -1,4 +1,4 @@
-"""`make bench`: every benchmark; the exit status says whether all pass."""
+"""`make bench`: runs every benchmark; the exit status is 0 if all pass, else 1."""
 
 import sys
 
@@ -6,7 +6,7 @@ from benchmarks import candidate_fit, control_loop, grounded_loop
 
 
 def main() -> int:
-    """Print each report."""
+    """Run all benchmarks, print their reports, and return the exit status."""
     failed = 0
     for benchmark in (control_loop, grounded_loop, candidate_fit):
         text, passes = benchmark.report(benchmark.measure())

@@ -1,9 +1,9 @@
-"""What the control loop costs on top of the physics.
+"""Benchmark: time of the control loop compared with the bare physics.
 
 The same 150 walks are computed in three ways, in turn, several times:
 - loop: `walk_trials`, that is walk engine and sim, as the search uses them;
-- bare: only `Batch.step` of the same model, replaying the loop's commands;
-- single: one `mj_step` at a time of one MjData after the other, for a few of them.
+- bare: only `Batch.step` of the same model, which replays the loop's commands;
+- single: `mj_step` of one robot after the other, for a few of the robots.
 """
 
 import statistics
@@ -20,9 +20,8 @@ from mujoco.batch import Batch
 import robots
 import terrain
 import worlds
-from benchmarks.judged import judged
-from benchmarks.stopwatch import seconds
-from experiments.walking.trials import TrialRules, walk_trials
+from benchmarks.ratios import judged, seconds
+from experiments.walking import TrialRules, walk_trials
 from groundwalk.arrays import FloatArray
 from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.gait import PARAMETERS, from_unit, to_unit
@@ -34,18 +33,19 @@ TICKS = 200
 ROUNDS = 9
 SINGLES = 6
 PASS = 0.85
+"""Smallest throughput of the loop, as a share of the bare physics', that passes."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """Seconds of one round.
+    """Times of one round [s].
 
     Attributes:
-      loop: engine, physics and everything between.
-      engine: in `WalkEngine.step`, as a part of the loop.
-      physics: in `Batch.step`, as a part of the loop.
+      loop: the control loop: engine, physics and everything between.
+      engine: time within the loop spent in `WalkEngine.step`.
+      physics: time within the loop spent in `Batch.step`.
       bare: the replay of the same commands by `Batch.step` alone.
-      single: the same number of steps one at a time.
+      single: the same number of steps, one robot at a time.
     """
 
     loop: float
@@ -56,7 +56,7 @@ class Timing:
 
 
 class _Stopwatch:
-    """Adds up the time spent in a method."""
+    """Adds up the time spent in a method, while the block runs."""
 
     def __init__(self, owner: Any, name: str) -> None:
         self.seconds = 0.0
@@ -80,7 +80,7 @@ class _Stopwatch:
 
 
 def measure() -> list[Timing]:
-    """Time all ways in turn, `ROUNDS` times after one for warming up."""
+    """Time all three ways in turn, `ROUNDS` times after one round of warming up."""
     description = robots.get("nao")
     ground = terrain.make("flat", 0)
     seeds = [np.random.SeedSequence(0)] * ROBOTS
@@ -108,7 +108,7 @@ def measure() -> list[Timing]:
 
 
 def report(rounds: list[Timing]) -> tuple[str, bool]:
-    """The medians as text, and whether the loop is fast enough."""
+    """The report's text, and whether the loop is fast enough."""
     ratios = [t.bare / t.loop for t in rounds]
     line, passes = judged(
         "throughput against bare Batch.step", ratios, "at least", PASS
@@ -130,7 +130,7 @@ def report(rounds: list[Timing]) -> tuple[str, bool]:
 
 
 def _walks() -> FloatArray:
-    """Gaits around the start gait that do not fall in a few seconds."""
+    """Vectors (150, 16) of gaits near the start gait, which walk without falling."""
     unit = to_unit(gaits.get("start").to_vector())
     noise = np.random.default_rng(0).normal(0, 0.01, (ROBOTS, len(PARAMETERS)))
     return from_unit(np.clip(unit + noise, 0, 1))
@@ -141,7 +141,7 @@ def _rules() -> TrialRules:
 
 
 def _commands(world: SimWorld, walks: FloatArray) -> list[FloatArray]:
-    """The loop's commands, tick by tick; nobody may fall."""
+    """The loop's commands (n, joints) [rad] of every tick; no robot may fall."""
     engine = WalkEngine(robots.biped(world.description), walks)
     seen = world.reset(engine.start_pose())
     commands = []
@@ -156,7 +156,7 @@ def _commands(world: SimWorld, walks: FloatArray) -> list[FloatArray]:
 
 
 def _started(world: SimWorld, walks: FloatArray, model: mujoco.MjModel) -> Batch:
-    """A batch of its own in the state in which the trials begin."""
+    """A new batch in the state in which the trials begin."""
     pose_rad = WalkEngine(robots.biped(world.description), walks).start_pose()
     world.reset(pose_rad)
     batch = Batch(model, ROBOTS, world.options.threads)

@@ -1,9 +1,9 @@
-"""What grounding costs: the control loop with and without an action transformer.
+"""Benchmark: time of the control loop with and without an action transformer.
 
-The same 150 walks in the sim as it is, and in the sim behind SGAT with blocks of
-residuals, in turn. The transformer computes everything, but a smoothing of 0 gives back
-the gait's own commands, so that both loops do the same physics. Its models have the
-size that is used; they are fitted to few walks, which does not change what they cost.
+The same 150 walks are computed in the plain sim, and in the sim behind SGAT with blocks
+of residuals, in turn. The transformer computes everything, but with a smoothing of 0 it
+returns the gait's own commands, so that both loops do the same physics. Its models have
+their usual size; that they are fitted to few walks does not change their cost.
 """
 
 import dataclasses
@@ -14,11 +14,10 @@ import numpy as np
 import robots
 import terrain
 import worlds
-from benchmarks.judged import judged
-from benchmarks.stopwatch import seconds
+from benchmarks.ratios import judged, seconds
 from experiments.grounded_walks.courses import SimPlace
 from experiments.grounded_walks.data import walk
-from experiments.walking.trials import TrialRules, walk_trials
+from experiments.walking import TrialRules, walk_trials
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
@@ -35,10 +34,11 @@ TICKS = 200
 ROUNDS = 7
 BLOCK_TICKS, MEMBERS = 50, 4
 MOST = 1.15
+"""Largest ratio of times that passes."""
 
 
 def measure() -> list[float]:
-    """Seconds with grounding over seconds without, round by round."""
+    """Time with grounding divided by time without, for each round."""
     description = robots.get("nao")
     seeds = np.random.SeedSequence(1).spawn(ROBOTS)
     grounds = [terrain.make("flat", 0)] * ROBOTS
@@ -57,7 +57,7 @@ def measure() -> list[float]:
 
 
 def report(ratios: list[float]) -> tuple[str, bool]:
-    """The median as text, and whether grounding is cheap enough."""
+    """The report's text, and whether the median ratio passes."""
     line, passes = judged("time against the ungrounded one", ratios, "at most", MOST)
     return (
         f"grounded control loop of {ROBOTS} robots, {TICKS} ticks, {ROUNDS} rounds\n"
@@ -66,7 +66,7 @@ def report(ratios: list[float]) -> tuple[str, bool]:
 
 
 def _transformer() -> ActionTransformer:
-    """SGAT by an ensemble with a noise of blocks, as for the walking robot."""
+    """An SGAT transformer with an ensemble and blocks of noise, as the NAO study's."""
     description = robots.get("nao")
     senses = leg_senses(description)
     vectors = GaitCloud().draw(gaits.get("start"), 8, np.random.SeedSequence(2))

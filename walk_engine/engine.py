@@ -39,7 +39,7 @@ class WalkEngine:
     Example:
       >>> engine = WalkEngine(robots.biped(robots.get("nao")), [gaits.get("start")])
       >>> engine.start_pose().shape
-      (1, 22)
+      (1, 20)
     """
 
     def __init__(

@@ -1,1 +1,1 @@
-"""The study of `groundwalk humanoids`: facts, page, figure."""
+"""The study of `groundwalk humanoids`: what limits each robot, and its page."""

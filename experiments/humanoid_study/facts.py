@@ -1,4 +1,4 @@
-"""What limits a robot in a gait: its joints' ranges, and its motors."""
+"""Measures what limits a robot in a gait: joint ranges, motors, size of the soles."""
 
 from typing import NamedTuple
 
@@ -13,16 +13,17 @@ from worlds import Recording
 from worlds.scenes.forward_kinematics import LinkPoses, link_poses
 
 FEET_PARTS = (-1.0, 0.0, 1.0)
-"""Of the quarter of a cycle's way by which feet are ahead of the hips, or behind."""
+"""Positions of the feet at which `reach` is measured: behind the hips, below them and
+ahead of them, in units of a quarter of a cycle's distance."""
 
 
 class Reach(NamedTuple):
-    """How far a gait's poses of the legs are beyond the joints' ranges.
+    """The deviation from a gait's leg poses that the joints' ranges cause.
 
     Attributes:
-      place_m: from where the ankle shall be to where it is, the largest.
-      tilt_rad: of the sole that shall be level, the largest.
-      joint: the leg's joint that is farthest beyond its range, "" if none is.
+      place_m: largest distance of an ankle from its target [m].
+      tilt_rad: largest tilt of a sole, which should be level [rad].
+      joint: the leg joint whose target is farthest beyond its range; "" if none is.
     """
 
     place_m: float
@@ -31,21 +32,26 @@ class Reach(NamedTuple):
 
 
 class Saturation(NamedTuple):
-    """The motor that gives all it can for the largest part of a walk."""
+    """The motor that is at its limit for the largest share of a walk.
+
+    Attributes:
+      share: share of the time, from 0 to 1.
+      joint: name of its joint; "" if no motor is ever at its limit.
+    """
 
     share: float
     joint: str
 
 
 class Sole(NamedTuple):
-    """A sole's length and width as parts of the NAO's, enlarged to the robot's size."""
+    """Length and width of a sole in units of the NAO's, scaled to the robot's size."""
 
     length: float
     width: float
 
 
 def sole(description: Description) -> Sole:
-    """How much there is to stand on, for a robot's size."""
+    """Measure a robot's sole relative to the NAO's at the same robot size."""
     of_nao, own = (
         np.ptp(robot.feet[0].outline_m, axis=0) / robot.scale.length
         for robot in (robots.get("nao"), description)
@@ -55,10 +61,15 @@ def sole(description: Description) -> Sole:
 
 
 def reach(description: Description, gait: Gait) -> Reach:
-    """With both feet as far ahead and behind as the gait puts them, down and lifted.
+    """Measure how far the joint ranges keep a gait's feet from their targets.
 
-    Angles are found as the walk engine finds them, cut to the joints' ranges, and
-    followed from joint to joint to the feet.
+    The targets are the farthest positions ahead and behind, on the ground and lifted.
+    The walk engine's inverse kinematics gives the joint angles, which are clipped to
+    the ranges; forward kinematics then gives the feet.
+
+    Args:
+      description: the robot model.
+      gait: the gait, for the NAO's size.
     """
     body = biped(description)
     ankle_m = _targets_m(body, gait)
@@ -81,11 +92,14 @@ def reach(description: Description, gait: Gait) -> Reach:
 
 
 def saturation(description: Description, recording: Recording) -> Saturation:
-    """How often a motor's drive was at its end, from commands and what came of them.
+    """Find the motor that is at its limit most of the time.
+
+    The drive of each motor is computed from the recorded commands, positions and
+    velocities.
 
     Args:
-      description: the robot.
-      recording: of a walk.
+      description: the robot model.
+      recording: recording of a walk, with commands, positions and velocities.
     """
     shares = {}
     for joint in description.links:
@@ -100,7 +114,7 @@ def saturation(description: Description, recording: Recording) -> Saturation:
 
 
 def _targets_m(body: Biped, gait: Gait) -> FloatArray:
-    """(3, 2, n) ankles in the torso's frame, the right one mirrored."""
+    """(3, 2, n) targets of the ankles in the torso's frame [m], the right mirrored."""
     scale, leg = body.scale, body.leg
     quarter_m = gait["max_forward"] * gait["step_period"] / 2 * scale.length
     ahead = quarter_m * np.array(FEET_PARTS)
@@ -113,7 +127,7 @@ def _targets_m(body: Biped, gait: Gait) -> FloatArray:
 
 
 def _angles(body: Biped, ankle_m: FloatArray) -> FloatArray:
-    """(n, joints) angles with level soles, not yet cut to the ranges."""
+    """(n, joints) angles [rad] with level soles, not yet clipped to the ranges."""
     n = ankle_m.shape[2]
     none = np.zeros((2, n))
     left, right = legs_of(body).angles(ankle_m, none, none, np.zeros((2, 2, n)))

@@ -1,1 +1,1 @@
-"""Motions that make a robot show what it is like."""
+"""Motions that excite a robot's physics: in the air, and standing on its feet."""

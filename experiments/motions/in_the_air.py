@@ -1,4 +1,4 @@
-"""Joint commands that make a robot in the air show its physics."""
+"""Joint commands that excite the physics of a robot whose base is fixed in the air."""
 
 from dataclasses import dataclass
 
@@ -8,21 +8,28 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 
 MOTIONS = ("multisine", "chirp", "steps", "ramps")
+"""Names of all motions in the air."""
+
 _RANGE_USED, _MOST_RAD = 0.8, 0.6
+"""Share of the free range that a joint uses, and its largest amplitude [rad]."""
+
 _SPEED_USED = 0.8
+"""Share of a joint's speed limit that commands use."""
+
 _START_S = 1.0
+"""Time in which a motion fades in [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Excitation:
-    """Which joints move, about where, and within what.
+    """The joints that move, and the limits of their motion.
 
     Attributes:
-      centre_rad: (j,) where each joint starts and rests.
-      range_rad: (j, 2) of each joint.
-      speed_rad_s: (j,) that commands may reach.
-      moves: (j,) joints that move; the others are held at their centre.
-      together: pairs of joints that always get one command.
+      centre_rad: (j,) angle at which each joint starts and rests.
+      range_rad: (j, 2) lower and upper end of each joint's range.
+      speed_rad_s: (j,) largest speed of each joint's commands.
+      moves: (j,) whether a joint moves; the others are held at their centre.
+      together: pairs of joints that always get the same command.
     """
 
     centre_rad: FloatArray
@@ -32,14 +39,14 @@ class Excitation:
     together: tuple[tuple[int, int], ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse centres out of range."""
+        """Refuse centres outside of the range."""
         low, high = self.range_rad.T
         if not ((low <= self.centre_rad) & (self.centre_rad <= high)).all():
             raise BadValueError(f"centre {self.centre_rad} lies outside of the range")
 
     @property
     def amplitude_rad(self) -> FloatArray:
-        """(j,) that leaves every joint within most of its range; 0 if it is held."""
+        """(j,) amplitude that keeps each joint in its range; 0 if it does not move."""
         low, high = self.range_rad.T
         room = np.minimum(self.centre_rad - low, high - self.centre_rad)
         return np.where(self.moves, np.minimum(_RANGE_USED * room, _MOST_RAD), 0.0)
@@ -47,15 +54,18 @@ class Excitation:
     def commands(
         self, motion: str, time_s: FloatArray, rng: np.random.Generator
     ) -> FloatArray:
-        """(T, j) position targets.
+        """Draw the commands of a motion.
 
         Args:
           motion: one of `MOTIONS`.
-          time_s: (T,) of the targets, from 0 on.
-          rng: draws frequencies, phases, levels.
+          time_s: (T,) times of the commands, from 0 on [s].
+          rng: draws frequencies, phases and levels.
+
+        Returns:
+          (T, j) position targets [rad].
 
         Raises:
-          UnknownNameError: there is no such motion.
+          UnknownNameError: the motion is unknown.
         """
         if motion not in _MAKERS:
             raise UnknownNameError("motion in the air", motion, _MAKERS)
@@ -69,7 +79,7 @@ class Excitation:
 def multisine(
     plan: Excitation, time_s: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """(T, j) sums of six sines from 0.1 to 2.5 Hz, random in phase."""
+    """(T, j) sums of six sines from 0.1 to 2.5 Hz with random phases [rad]."""
     j = len(plan.centre_rad)
     frequency = np.geomspace(0.1, 2.5, 6)[:, None] * rng.uniform(0.85, 1.15, (6, j))
     phase = rng.uniform(0, 2 * np.pi, (6, j))
@@ -79,7 +89,7 @@ def multisine(
 
 
 def chirp(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """(T, j) sines that get faster from 0.1 to 4 Hz and smaller as they do so."""
+    """(T, j) sines whose frequency rises from 0.1 to 4 Hz while they shrink [rad]."""
     j = len(plan.centre_rad)
     low, high = 0.1 * rng.uniform(0.8, 1.2, j), rng.uniform(3.0, 4.0, j)
     end = max(float(time_s[-1]), 1e-9)
@@ -93,7 +103,7 @@ def chirp(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> Flo
 
 
 def steps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """(T, j) levels that last 0.4 to 1.2 s, each joint on its own."""
+    """(T, j) random levels [rad] of 0.4 to 1.2 s, independently in each joint."""
     shape = np.zeros((len(time_s), len(plan.centre_rad)))
     for joint, amplitude in enumerate(plan.amplitude_rad):
         at = rng.uniform(0.1, 0.6)
@@ -104,7 +114,7 @@ def steps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> Flo
 
 
 def ramps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """(T, j) slow ramps at several speeds, with reversals and holds."""
+    """(T, j) slow ramps at several speeds, with reversals and pauses [rad]."""
     shape = np.zeros((len(time_s), len(plan.centre_rad)))
     for joint, amplitude in enumerate(plan.amplitude_rad):
         at, level = rng.uniform(0.0, 0.5), 0.0
@@ -123,7 +133,7 @@ def ramps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> Flo
 
 
 def _within(plan: Excitation, shape: FloatArray, time_s: FloatArray) -> FloatArray:
-    """Scale to amplitude and speed, and start smoothly from the centre."""
+    """Scale a motion (T, j) to amplitude and speed limit, and fade it in."""
     start = 0.5 - 0.5 * np.cos(np.pi * np.minimum(time_s / _START_S, 1.0))
     shape = shape * start[:, None]
     scale = plan.amplitude_rad / np.maximum(np.abs(shape).max(axis=0), 1e-9)

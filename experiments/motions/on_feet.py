@@ -1,4 +1,4 @@
-"""Commands that make a robot on its feet show its physics: squat, sway, walk."""
+"""Joint commands that excite the physics of a standing robot: squat, sway, walk."""
 
 from collections.abc import Callable
 
@@ -13,26 +13,38 @@ from worlds.hidden.engine import BodySense
 from worlds.world import TICK_S
 
 STANDING_MOTIONS = ("squat", "fast_squat", "sway")
+"""Names of all motions in which both feet stay on the ground."""
+
 _HIGH, _DEEP = 0.97, 0.80
-"""Part of the stretched leg's length between hip and ankle, high and low."""
+"""Distance from hip to ankle as a share of the straight leg: upright, and squatting."""
+
 _SWAY_M, _SLOW_HZ, _FAST_HZ = 0.02, 0.35, 0.9
+"""Amplitude of swaying [m], and frequencies of slow and fast motions [Hz]."""
+
 _ARM_RAD, _ARM_ROLL_RAD, _START_S = 0.3, 0.2, 1.0
+"""Amplitude of the arms' swing, their angle away from the body [rad], and the time in
+which the motion fades in [s]."""
+
 WALK_SPEEDS = (0.06, 0.16)
+"""Range of the walking speed [m/s]."""
 
 
 def standing_commands(
     description: Description, motion: str, time_s: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """(T, joints) position targets of a robot that stays on its place.
+    """Draw the commands of a motion with both feet on the ground.
 
     Args:
-      description: a robot that walks on two legs.
+      description: the robot model, of a biped.
       motion: one of `STANDING_MOTIONS`.
-      time_s: (T,) from 0 on.
-      rng: draws speeds, depths and the arms' motion.
+      time_s: (T,) times of the commands, from 0 on [s].
+      rng: draws speeds, depths and the motion of the arms.
+
+    Returns:
+      (T, joints) position targets [rad].
 
     Raises:
-      UnknownNameError: there is no such motion.
+      UnknownNameError: the motion is unknown.
     """
     if motion not in STANDING_MOTIONS:
         raise UnknownNameError("motion on the feet", motion, STANDING_MOTIONS)
@@ -54,7 +66,7 @@ def standing_commands(
 
 
 def _pose(body: Biped, down: FloatArray, aside_m: FloatArray) -> FloatArray:
-    """(T, joints): hips lowered by a share, and moved aside over level feet."""
+    """(T, joints) targets [rad] for hips lowered by a share and moved sideways [m]."""
     leg = body.leg
     length = (leg.thigh_m + leg.tibia_m) * (_HIGH - (_HIGH - _DEEP) * down)
     hip_x, hip_y, hip_z = leg.hip_m
@@ -94,12 +106,16 @@ def _swing_arms(
 def walking_feed(
     description: Description, rng: np.random.Generator, rest_rows: int
 ) -> tuple[FloatArray, Callable[[int, BodySense], FloatArray]]:
-    """The pose to start from, and commands that answer to what is felt.
+    """Make the start pose of a walk, and a function that computes its commands.
 
     Args:
-      description: a robot that walks on two legs.
-      rng: draws the speed.
-      rest_rows: ticks of standing before it walks.
+      description: the robot model, of a biped.
+      rng: draws the walking speed.
+      rest_rows: number of ticks for which the robot stands before it walks.
+
+    Returns:
+      The start pose (joints,) [rad], and a function of the tick's number and of the
+      robot's measurements that returns the commands (joints,) [rad].
     """
     body = biped(description)
     engine = WalkEngine(body, [gaits.get("walk2014")], TICK_S)

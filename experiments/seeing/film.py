@@ -145,7 +145,7 @@ def film_bytes(film: Film, rate_hz: float, suffix: str) -> bytes:
     start_s, stop_s = film.shown_s(film.scenes)
     times_s = np.arange(start_s, stop_s + 1e-9, 1 / rate_hz)
     frames = list(_frames(film, times_s))
-    return _mp4(frames, rate_hz) if suffix == ".mp4" else _gif(frames, rate_hz)
+    return _mp4(frames, rate_hz) if suffix == ".mp4" else gif_bytes(frames, rate_hz)
 
 
 def _frames(film: Film, times_s: FloatArray) -> Iterator[Image]:
@@ -180,8 +180,11 @@ def _png(picture: Image) -> bytes:
     return file.getvalue()
 
 
-def _gif(frames: Sequence[Image], rate_hz: float) -> bytes:
-    """All frames in one palette, so that what stands still costs nothing."""
+def gif_bytes(frames: Sequence[Image], rate_hz: float) -> bytes:
+    """A GIF of all frames [bytes], with fewer colours if it would be too large.
+
+    All frames share one palette, so that still parts of the picture cost nothing.
+    """
     for colours in _GIF_COLOURS:
         content = _gif_of(frames, rate_hz, colours)
         if len(content) < GIF_BYTES:

@@ -1,1 +1,1 @@
-"""What the stress test on terrain does: families, walks, causes of falls, its page."""
+"""The terrain stress test: families of ground, walks, causes of falls, its page."""

@@ -1,4 +1,4 @@
-"""From trials to curves: what happened at a severity, and where half of them fall."""
+"""Curves of the stress test: results by severity, and where half of the trials fall."""
 
 import dataclasses
 from collections import Counter
@@ -12,17 +12,17 @@ from experiments.stress.families import FAMILIES, FLAT
 from experiments.stress.walks import Trial
 
 Cell = Mapping[str, Any]
-"""A place's fields, and `trials`: those of all gaits, as plain values."""
+"""The fields of a `Place`, and `trials`: the trials of all gaits there, as dicts."""
 
 Curve = Mapping[str, Any]
-"""One gait on one family of ground in one world, as plain values."""
+"""Results of one gait on one family of ground in one world, as `_curve` makes them."""
 
 
 def curves_of(cells: Sequence[Cell]) -> list[dict[str, Any]]:
-    """A curve for every robot, world, family and gait, in the cells' order.
+    """Make a curve for every robot, world, family and gait, in the cells' order.
 
     Args:
-      cells: severities of a family follow each other, from mild to hard.
+      cells: all cells; severities of a family follow each other from mild to hard.
     """
     keys = dict.fromkeys(
         (cell["robot"], cell["world"], cell["family"], trial["gait"])
@@ -58,15 +58,16 @@ def _curve(
 
 
 _COUNTS = ("severity", "falls", "trials")
+"""Keys of a rung that `half_fall` needs, in the order of its arguments."""
 
 
 def trials_of(cell: Cell, gait: str) -> list[Trial]:
-    """One gait's trials in a cell."""
+    """The trials of one gait in a cell."""
     return [Trial(**trial) for trial in cell["trials"] if trial["gait"] == gait]
 
 
 def _rung(severity: float, trials: Sequence[Trial]) -> dict[str, Any]:
-    """What the trials of one gait at one severity came to."""
+    """Summarize the trials of one gait at one severity."""
     speeds = [100 * trial.distance_m / trial.time_s for trial in trials]
     fallen = [trial for trial in trials if trial.fell]
     distances = [trial.distance_m for trial in fallen]
@@ -85,7 +86,7 @@ def _rung(severity: float, trials: Sequence[Trial]) -> dict[str, Any]:
 
 
 def causes_by_family(curves: Sequence[Curve]) -> Iterator[tuple[Curve, Counter[str]]]:
-    """For each curve how many of its falls have which cause."""
+    """Yield each curve with the number of its falls by cause."""
     for curve in curves:
         counted: Counter[str] = Counter()
         for rung in curve["rungs"]:

@@ -1,4 +1,4 @@
-"""What came before a fall, found from its recording alone."""
+"""Finds the cause of a fall from its recording alone."""
 
 import enum
 import math
@@ -12,15 +12,16 @@ from worlds import End
 from worlds.scenes.scene import Scene
 
 LOSS_TILT_RAD = math.radians(15)
-"""Beyond this the torso does not come back: upright walks stay below."""
+"""Tilt of the torso [rad] from which no robot recovers; walks without a fall stay
+below it."""
 
 WINDOW_PENDULUMS = 6.0
-"""How long before the loss of balance a cause may be, in sqrt(leg length / gravity);
-0.95 s on the NAO, four steps."""
+"""Longest time between a cause and the loss of balance, in units of
+sqrt(leg length / gravity): 0.95 s on the NAO, four steps."""
 
 
 class Cause(enum.StrEnum):
-    """What came first in the time before a fall."""
+    """The first event in the time before a fall."""
 
     SLIP = "slip"
     TRIP = "trip"
@@ -42,12 +43,12 @@ _EVENTS = {
 
 @dataclass(frozen=True)
 class FallCause:
-    """A cause and when it was.
+    """The cause of a fall and its time.
 
     Attributes:
-      cause: what.
-      time_s: when it was first seen, in the recording's time; of a tip, when balance
-        was lost; None if unknown.
+      cause: the cause.
+      time_s: time in the recording [s] at which it was first detected; for a tip, the
+        time at which balance was lost; None if the cause is unknown.
     """
 
     cause: Cause
@@ -55,11 +56,11 @@ class FallCause:
 
 
 def fall_cause(scene: Scene) -> FallCause:
-    """The first event in the last second before the torso leaned too far to come back.
+    """Find the cause of a fall: the first event in the second before balance is lost.
 
-    Where there is none, the robot tipped over a foot: to the side, forward or backward,
-    whichever it leans to most at the end. A robot that sank without leaning, or whose
-    physics blew up, fell for unknown reasons.
+    Without any event the robot tipped over a foot: sideways, forward or backward, by
+    its lean at the end. The cause is unknown if the robot sank without leaning, or if
+    the simulation diverged.
 
     Args:
       scene: a walk that ended with a fall. The recording has base, commands, foot
@@ -88,7 +89,7 @@ def fall_cause(scene: Scene) -> FallCause:
 
 
 def _loss(signals: Signals) -> int:
-    """The tick from which on the torso leans too far; the number of ticks if never."""
+    """The tick from which the torso leans too far; the number of ticks if never."""
     upright = np.flatnonzero(signals.tilt_rad < LOSS_TILT_RAD)
     return int(upright[-1]) + 1 if upright.size else 0
 

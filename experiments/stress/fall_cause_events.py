@@ -1,10 +1,10 @@
-"""What can make a walking robot fall, each found in the signals by itself.
+"""Detectors of events that can make a walking robot fall.
 
 Every function takes signals and a range of ticks, and returns the tick at which the
-event happened first, or None. Lengths are in leg lengths and times in sqrt(leg length /
-gravity), so that they fit robots of any size; in brackets, on the NAO. The thresholds
-lie between what walks that went well show and what built falls show
-(docs/terrain_stress.md).
+event happened first, or None. Lengths are in leg lengths and times in
+sqrt(leg length / gravity), so that they fit robots of any size; values in brackets are
+the NAO's. Each threshold lies between its values in walks without falls and in falls
+that were made on purpose (docs/terrain_stress.md).
 """
 
 import numpy as np
@@ -14,41 +14,44 @@ from groundwalk.arrays import BoolArray, FloatArray
 from robots import biped
 
 LOADED = 0.3
-"""Share of the weight above which a foot stands."""
+"""Share of the robot's weight on a foot above which the foot counts as standing."""
 
 _SHORT_S = 0.04
-"""A few ticks: motion over less drowns in the encoders' resolution."""
+"""Time over which motion is measured [s]: shorter motion is below the resolution of the
+encoders."""
 
 SLIDE_LEGS, SLIDE_PENDULUMS = 0.06, 1.5
-"""A foot that stands and slides so far (15 mm) within so long (0.24 s) slips."""
+"""A standing foot slips if it slides this distance (15 mm) in this time (0.24 s)."""
 
 _CREEP_LEGS = 0.002
-"""Sliding by less in a tick (0.5 mm) is none: feet that roll over their rims."""
+"""Sliding by less than this in a tick (0.5 mm) is ignored: feet roll on their rims."""
 
 TO_GO_LEGS, RISE_LEGS, AHEAD_LEGS = 0.02, 0.02, 0.05
-"""Trips: how much way the command still has (5 mm), how far the ground stands above the
-sole (5 mm) and how close ahead of it (12 mm)."""
+"""Thresholds of a trip: the distance that the foot should still travel (5 mm), the
+height of the ground above the sole (5 mm), its distance ahead of the sole (12 mm)."""
 
 TOUCH, IN_THE_AIR = 0.2, 0.15
-"""Shares of the weight at which a swing foot has met something, and has not."""
+"""Shares of the weight above which a swing foot touches something, and below which it
+is in the air."""
 
 WRONG_SHARE, WRONG_PENDULUMS = 0.3, 0.6
-"""The swing foot carries so much more of the weight than the support foot, for so long
-(0.1 s); on switching in time it does for 0.03 s."""
+"""A support switch is missed if the swing foot carries more of the weight than the
+support foot, by this share, for this time (0.1 s). In a normal switch it does so for
+0.03 s."""
 
 SATURATED, SATURATED_PENDULUMS = 0.97, 0.8
-"""Share of the stall torque that the servo asks for, and for how long (0.13 s);
-a fast gait asks for it for 0.1 s in a step that goes well."""
+"""A motor is at its limit if its servo asks for this share of the stall torque for this
+time (0.13 s). In a normal step of a fast gait it does so for 0.1 s."""
 
 LATENCY_S = 0.04
-"""A command takes effect within this: the real world's latency and a bit."""
+"""Longest time until a command takes effect [s]: a little over the real latency."""
 
 
 def slip(signals: Signals, ticks: range) -> int | None:
-    """A foot that stands slides over the ground.
+    """Detect that a standing foot slides over the ground.
 
-    It slides by what its slowest point at or below the ground moves: a foot that tips
-    or pivots has a point that rests.
+    Its sliding is the motion of its slowest point at or below the ground, because a
+    foot that only tips or pivots has a point that rests.
     """
     step, window = (
         signals.ticks_in(_SHORT_S),
@@ -70,7 +73,7 @@ def slip(signals: Signals, ticks: range) -> int | None:
 
 
 def trip(signals: Signals, ticks: range) -> int | None:
-    """The swing foot meets a rise of the ground and stops, with way still to go."""
+    """Detect that the swing foot hits a rise of the ground and stops too early."""
     step = signals.ticks_in(_SHORT_S)
     was_in_air = _all_of_last(signals.load < IN_THE_AIR, 3)
     for tick in ticks:
@@ -86,7 +89,7 @@ def trip(signals: Signals, ticks: range) -> int | None:
 
 
 def _stops(signals: Signals, tick: int, side: int, step: int) -> bool:
-    """Whether a foot loses half of its speed at a tick, short of where it should go."""
+    """Whether a foot loses half of its speed at a tick, before it is at its target."""
     heading = signals.heading[tick]
     sole_m = signals.soles_m[:, side, :, :2].mean(axis=1) @ heading
     goal_m = signals.commanded_m[tick - 1, side, :, :2].mean(axis=0) @ heading
@@ -105,7 +108,7 @@ def _faces_a_rise(signals: Signals, tick: int, side: int) -> bool:
 
 
 def missed_switch(signals: Signals, ticks: range) -> int | None:
-    """The weight rests on the foot that the engine means to swing, and it stays so."""
+    """Detect that the weight stays on the foot that the walk engine wants to swing."""
     extra = np.where(signals.swings, signals.load - signals.load[:, ::-1], 0.0)
     wrong = np.asarray((extra > WRONG_SHARE).any(axis=1))
     long = signals.ticks_in(WRONG_PENDULUMS * signals.pendulum_s)
@@ -113,11 +116,11 @@ def missed_switch(signals: Signals, ticks: range) -> int | None:
 
 
 def motor_limit(signals: Signals, ticks: range) -> int | None:
-    """A motor of a leg that stands is at its torque-speed line while its error grows.
+    """Detect that a motor of a standing leg is at its limit while its error grows.
 
-    Above stall / kp the position error alone asks for all that the line allows
-    (`Motor`); the command may be any of the last ones, as it takes effect with some
-    latency.
+    If the position error exceeds stall torque / kp, the servo asks for all the torque
+    that the motor can give at its speed (see `Motor`). Because of the latency the
+    command in effect may be any of the last few.
     """
     long = signals.ticks_in(SATURATED_PENDULUMS * signals.pendulum_s)
     asked = asked_share(signals)
@@ -133,7 +136,7 @@ def motor_limit(signals: Signals, ticks: range) -> int | None:
 
 
 def asked_share(signals: Signals) -> FloatArray:
-    """(ticks, joints) least torque that recent commands ask for, as share of stall."""
+    """(ticks, joints) smallest torque that any recent command asks for, over stall."""
     recording, robot = signals.scene.recording, signals.scene.description
     commands = recording.commands(robot.joints)
     servo = [recording.metadata.servo[joint] for joint in robot.joints]
@@ -146,7 +149,7 @@ def asked_share(signals: Signals) -> FloatArray:
 
 
 def _all_of_last(mask: BoolArray, count: int) -> BoolArray:
-    """Whether a mask (ticks, ...) was set at all of the last so many ticks."""
+    """Whether a mask (ticks, ...) was set at each of the last `count` ticks."""
     every = mask.copy()
     for back in range(1, count):
         every[back:] &= mask[:-back]

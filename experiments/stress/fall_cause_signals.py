@@ -1,4 +1,4 @@
-"""What a recording says of feet, weight and balance, tick by tick."""
+"""Signals of a walk, from its recording: feet, weight and balance, tick by tick."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,11 +17,11 @@ from worlds.scenes.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """Arrays over the ticks of one recording; sides are left, right.
+    """Signals of one recording as arrays over its ticks; feet in the order left, right.
 
     Attributes:
-      scene: what was recorded.
-      leg_m: length of a straight leg from hip to sole.
+      scene: the recording with its robot and its ground.
+      leg_m: length of a straight leg from hip to sole [m].
     """
 
     scene: Scene
@@ -29,7 +29,10 @@ class Signals:
 
     @classmethod
     def of(cls, scene: Scene) -> "Signals":
-        """Of a walk whose recording has base, commands, foot forces and support.
+        """Prepare the signals of a walk.
+
+        Args:
+          scene: a recording with base, commands, foot forces and support.
 
         Raises:
           UnknownNameError: a column is missing.
@@ -39,21 +42,21 @@ class Signals:
 
     @cached_property
     def pendulum_s(self) -> float:
-        """sqrt(leg length / gravity): the time in which a leg tips."""
+        """Time scale of tipping over a leg [s]: sqrt(leg length / gravity)."""
         return float(np.sqrt(self.leg_m / GRAVITY_M_S2))
 
     @cached_property
     def time_s(self) -> FloatArray:
-        """(ticks,)."""
+        """(ticks,) time of every tick [s]."""
         return self.scene.recording.time_s
 
     @cached_property
     def tick_s(self) -> float:
-        """Usual time from one tick to the next."""
+        """Median time from one tick to the next [s]."""
         return float(np.median(np.diff(self.time_s)))
 
     def ticks_in(self, duration_s: float) -> int:
-        """How many ticks a duration is; at least one."""
+        """Number of ticks in a duration, at least one."""
         return max(1, round(duration_s / self.tick_s))
 
     @cached_property
@@ -64,18 +67,18 @@ class Signals:
 
     @cached_property
     def swings(self) -> BoolArray:
-        """(ticks, 2) whether the engine means a foot to swing."""
+        """(ticks, 2) whether the walk engine wants a foot to swing."""
         support = self.scene.recording.columns[SUPPORT]
         return np.stack([support < 0, support > 0], axis=1)
 
     @cached_property
     def soles_m(self) -> FloatArray:
-        """(ticks, 2, points, 3) where the points of both soles are in the world."""
+        """(ticks, 2, points, 3) positions of points of both soles in the world [m]."""
         return self._soles(self.scene.link_poses())
 
     @cached_property
     def commanded_m(self) -> FloatArray:
-        """(ticks, 2, points, 3) where they would be if joints were as commanded."""
+        """(ticks, 2, points, 3) positions of the soles at the commanded angles [m]."""
         recording, robot = self.scene.recording, self.scene.description
         base = LinkPoses(
             recording.vector("base.position"), recording.vector("base.orientation")
@@ -85,18 +88,18 @@ class Signals:
 
     @cached_property
     def clearance_m(self) -> FloatArray:
-        """(ticks, 2, points) heights of the soles' points above the ground."""
+        """(ticks, 2, points) heights of the soles' points above the ground [m]."""
         return self.soles_m[..., 2] - self.ground_m(self.soles_m[..., :2])
 
     @cached_property
     def heading(self) -> FloatArray:
-        """(ticks, 2) where the torso faces: horizontal unit vectors."""
+        """(ticks, 2) horizontal unit vectors in the direction that the torso faces."""
         ahead = self._torso.apply([1.0, 0.0, 0.0])[:, :2]
         return np.asarray(ahead / np.linalg.norm(ahead, axis=1, keepdims=True))
 
     @cached_property
     def lean(self) -> FloatArray:
-        """(ticks, 2) the torso's up axis, its parts ahead and to the left."""
+        """(ticks, 2) components of the torso's up axis: forward, and to the left."""
         up, heading = self._torso.apply([0.0, 0.0, 1.0]), self.heading
         left = np.stack([-heading[:, 1], heading[:, 0]], axis=1)
         return np.stack(
@@ -106,12 +109,12 @@ class Signals:
 
     @cached_property
     def tilt_rad(self) -> FloatArray:
-        """(ticks,) angle between the torso's up axis and the vertical."""
+        """(ticks,) angle between the torso's up axis and the vertical [rad]."""
         up_z = self._torso.apply([0.0, 0.0, 1.0])[:, 2]
         return np.asarray(np.arccos(np.clip(up_z, -1.0, 1.0)))
 
     def ground_m(self, places_m: FloatArray) -> FloatArray:
-        """(...) height of the ground at (..., 2) places; 0 where it is not known."""
+        """(...) heights of the ground [m] at places (..., 2); 0 if it is unknown."""
         ground = self.scene.ground
         if ground is None:
             return np.zeros(places_m.shape[:-1])

@@ -17,12 +17,12 @@ from terrain.ladder import Ladder
 from worlds import WorldOptions
 
 FLAT = "flat"
-"""The family without severity: hard, level ground, for comparison."""
+"""Name of the family without severity, for comparison: hard, level ground."""
 
 
 @dataclass(frozen=True)
 class Family(Ladder):
-    """One way in which ground can be hard to walk on: by its shape or its material.
+    """A family of ground that is difficult to walk on, by its shape or its material.
 
     Attributes:
       terrain: name of the ground.
@@ -60,7 +60,7 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Place:
-    """Where trials are walked: a family of ground at one severity, in a world.
+    """A family of ground at one severity, for a robot in a world.
 
     Attributes:
       robot: its name.
@@ -75,22 +75,22 @@ class Place:
     severity: float
 
     def __post_init__(self) -> None:
-        """Refuse a family that there is none of."""
+        """Refuse an unknown family."""
         if self.family not in (FLAT, *FAMILIES):
             raise UnknownNameError("family of ground", self.family, FAMILIES)
 
     @property
     def label(self) -> str:
-        """The place in a few letters, such as "lumps-0.006"."""
+        """A short name of the place, such as "lumps-0.006"."""
         return f"{self.family}-{self.severity:.3g}" if self.severity else self.family
 
     def ground(self, leg_m: float, begin: float, seed: int) -> TerrainSpec:
         """The ground of one trial.
 
         Args:
-          leg_m: the robot's leg length.
-          begin: where it stops being flat, in leg lengths from the start.
-          seed: of its randomness.
+          leg_m: length of the robot's leg [m].
+          begin: radius of the flat area around the start, in leg lengths.
+          seed: seed of the ground.
         """
         name: str = FLAT
         parameters: dict[str, float] = {}
@@ -108,7 +108,7 @@ class Place:
         return TerrainSpec(name, around | parameters, seed)
 
     def options(self, usual: WorldOptions) -> WorldOptions:
-        """The world's options here."""
+        """The options of the world at this place, given its usual options."""
         if self.family == FLAT:
             return usual
         changes: dict[str, Any] = FAMILIES[self.family].options(self.severity)
@@ -116,6 +116,6 @@ class Place:
 
 
 def leg_length_m(description: Description) -> float:
-    """From hip to sole of a straight leg."""
+    """Length of a robot's straight leg from hip to sole [m]."""
     leg = biped(description).leg
     return leg.thigh_m + leg.tibia_m + leg.ankle_height_m

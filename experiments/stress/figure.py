@@ -1,4 +1,4 @@
-"""Pictures of a stress test: falls over ladders, and gaits against each other."""
+"""Pictures of a stress test: falls by severity, and gaits compared with each other."""
 
 import math
 from collections.abc import Sequence
@@ -20,31 +20,31 @@ _WIDTH_IN = 7.6
 """Width of the pictures [inch]: that of a report's column of text, so that the letters
 are as large on the page as they are drawn."""
 _EDGE = 0.06
-"""How far beyond the ladder's ends a half-fall severity is drawn that is not on it."""
+"""Distance beyond the ladder's ends at which severities outside of it are drawn."""
 
 
 def heat_map_name(gait: str) -> str:
-    """The file of a gait's picture."""
+    """Name of the file with a gait's picture."""
     return f"terrain_stress_{gait}.png"
 
 
 def draw_comparison(curves: Sequence[Curve], folder: Path) -> None:
-    """Draw all gaits into a PNG file; see `comparison_figure`."""
+    """Write the comparison of all gaits as a PNG file; see `comparison_figure`."""
     write_figure(comparison_figure(curves), folder / COMPARISON)
 
 
 def draw_heat_maps(curves: Sequence[Curve], folder: Path) -> None:
-    """Draw each gait into a PNG file; see `heat_map_figure`."""
+    """Write a PNG file for each gait; see `heat_map_figure`."""
     for gait in _each(curves, "gait"):
         own = [curve for curve in curves if curve["gait"] == gait]
         write_figure(heat_map_figure(own), folder / heat_map_name(gait))
 
 
 def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
-    """One gait: a panel for each robot and world, a row for each family.
+    """Falls of one gait: a panel for each robot and world, a row for each family.
 
     Args:
-      curves: of one gait.
+      curves: the curves of one gait.
     """
     from matplotlib.figure import Figure
 
@@ -91,7 +91,7 @@ def _heat_map(panel: "Axes", curves: Sequence[Curve]) -> Any:
 
 
 def comparison_figure(curves: Sequence[Curve]) -> "Figure":
-    """Half-fall severities with intervals: a panel for each robot and world.
+    """Severities at which half of the trials fall: a panel for each robot and world.
 
     All ladders are as long as each other, in the logarithm of the severity. An arrow
     means that the severity is beyond what was tried, or that the interval is.
@@ -130,7 +130,7 @@ def comparison_figure(curves: Sequence[Curve]) -> "Figure":
 def _half(
     panel: "Axes", curve: Curve, y: float, colour: str, label: str | None
 ) -> None:
-    """A point with its interval."""
+    """Draw a curve's severity as a point with its interval."""
     half = curve["half"]
     ends = [_at(curve, half[name]) for name in ("low", "high")]
     low = -_EDGE if ends[0] is None else ends[0]
@@ -163,7 +163,7 @@ def _frame(panel: "Axes", curves: Sequence[Curve], families: Sequence[str]) -> N
 
 
 def _at(curve: Curve, severity: float | None) -> float | None:
-    """Where on its ladder a severity is, from 0 to 1."""
+    """Position of a severity on its ladder, from 0 (mildest) to 1 (hardest)."""
     if severity is None:
         return None
     first, last = (curve["rungs"][k]["severity"] for k in (0, -1))
@@ -192,5 +192,5 @@ def _settings(curves: Sequence[Curve]) -> list[tuple[str, str]]:
 
 
 def _name(curves: Sequence[Curve], setting: tuple[str, str]) -> str:
-    """The world, and the robot where there is more than one."""
+    """Name of a panel: the world, and the robot if there are several."""
     return " ".join(setting) if len(_each(curves, "robot")) > 1 else setting[1]

@@ -1,4 +1,4 @@
-"""Trials of the terrain stress test: gaits walk at a place, and how each trial went."""
+"""Trials of the terrain stress test: lets gaits walk at a place."""
 
 import contextlib
 import dataclasses
@@ -23,15 +23,17 @@ from worlds import FALLS, End, RecordingMetadata
 from worlds.scenes.scene import Scene
 
 COURSE_LEGS = 8.0
-"""Length of the course in leg lengths; on the NAO 2 m."""
+"""Length of the course in leg lengths; 2 m for the NAO."""
 
 LIMIT_PENDULUMS = 50.0
-"""Time limit in sqrt(leg length / gravity); on the NAO 8 s."""
+"""Time limit in units of sqrt(leg length / gravity); 8 s for the NAO."""
 
 BEGIN_LEGS = (0.8, 1.6)
-"""How far from the start the ground may begin to be what it is, in leg lengths."""
+"""Range, in leg lengths, of the radius of the flat area around the start."""
 
 START_SPREAD_RAD = 0.01
+"""Standard deviation of the joint angles in the start poses [rad]."""
+
 Row = tuple[str, int]
 """Name of a gait, and number of its trial."""
 
@@ -41,12 +43,13 @@ class Trial:
     """How one trial went.
 
     Attributes:
-      gait: its name.
-      number: trials of one number have the same ground, noise and start pose.
-      distance_m: forward, until the end.
-      time_s: until the end.
-      end: why the rollout ended; empty if time was up or the course done.
-      cause: what came before the fall, if there was one.
+      gait: name of the gait.
+      number: number of the trial; trials with the same number have the same ground,
+        noise and start pose.
+      distance_m: distance forward at the end [m].
+      time_s: duration [s].
+      end: why the rollout ended; "" if the time was up or the course finished.
+      cause: cause of the fall; "" without a fall.
     """
 
     gait: str
@@ -58,13 +61,13 @@ class Trial:
 
     @property
     def fell(self) -> bool:
-        """Whether the robot fell; physics that blew up counts as a fall."""
+        """Whether the robot fell; a diverged simulation counts as a fall."""
         return self.end in FALLS
 
 
 @dataclass(frozen=True, eq=False)
 class Walk:
-    """A trial with what was recorded of it."""
+    """A trial with its recording."""
 
     trial: Trial
     scene: Scene
@@ -72,7 +75,7 @@ class Walk:
 
 @dataclass(frozen=True, eq=False)
 class _Start:
-    """What is given at the start of a trial, whatever the gait."""
+    """Ground and seeds of a trial: the same for all gaits."""
 
     ground: TerrainSpec
     of_noise: np.random.SeedSequence
@@ -80,7 +83,7 @@ class _Start:
 
 
 def rules_of(description: Description) -> TrialRules:
-    """A course of 8 legs' length, in a time that grows as a pendulum's period does."""
+    """Rules of a trial: course and time limit are scaled to the robot's leg length."""
     leg_m = leg_length_m(description)
     return TrialRules(
         limit_s=round(LIMIT_PENDULUMS * math.sqrt(leg_m / GRAVITY_M_S2), 2),
@@ -97,13 +100,13 @@ def walk_at(
     threads: int = 0,
     on_end: Callable[[], object] = lambda: None,
 ) -> Iterator[Walk]:
-    """Let gaits walk at a place; each trial has the same bits whatever the others are.
+    """Let gaits walk at a place. The bits of a trial do not depend on other trials.
 
     Args:
-      place: where.
-      gaits: by name.
+      place: robot, world, family of ground and severity.
+      gaits: the gaits by name.
       rows: gait and number of every trial.
-      seed: of all randomness; a trial's depends on it and on the trial's number.
+      seed: the randomness of a trial follows from it and from the trial's number.
       threads: of the sim, or processes of the real world; 0 for one per core.
       on_end: called once for each trial that is over.
     """
@@ -164,7 +167,7 @@ def _walk_together(
 
 
 def _start(place: Place, description: Description, number: int, seed: int) -> _Start:
-    """A trial's ground, noise and pose: the same at all severities, for all gaits."""
+    """Seeds and ground of a trial; the seeds are the same at all severities."""
     children = np.random.SeedSequence(seed, spawn_key=(number,)).spawn(4)
     of_ground, of_begin, of_noise, of_pose = children
     begin = float(np.random.default_rng(of_begin).uniform(*BEGIN_LEGS))

@@ -1,4 +1,4 @@
-"""The worst rollouts of a stress test, walked once more and written down."""
+"""Walks the worst falls of a stress test once more, and writes their recordings."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
@@ -29,19 +29,19 @@ def write_worst(
     gaits: Mapping[str, Gait],
     cells: Sequence[Cell],
 ) -> list[dict[str, object]]:
-    """Write the worst falls of each robot, world and gait: a Rerun file, recordings.
+    """Write the worst falls of each robot, world and gait: recordings, Rerun files.
 
-    They are walked again: the same seeds give the same bits, and so nothing of a
-    thousand rollouts has to be kept meanwhile.
+    They are walked again. The same seeds give the same bits, so that the recordings of
+    all rollouts need not be kept.
 
     Args:
-      folder: the run; a file that it has already is left as it is.
-      config: how many, the seed and the threads.
-      gaits: by name.
-      cells: all that was walked.
+      folder: the run; files that it holds already are not changed.
+      config: number of falls, seed and threads.
+      gaits: the gaits by name.
+      cells: all cells of the test.
 
     Returns:
-      What they are, and in which file.
+      Place, trial and file of each fall, as plain values.
     """
     written: list[dict[str, object]] = []
     for robot, world in dict.fromkeys((c["robot"], c["world"]) for c in cells):
@@ -62,12 +62,12 @@ def write_worst(
 def worst_falls(
     cells: Sequence[Cell], gait: str, count: int
 ) -> list[tuple[Place, Trial]]:
-    """The falls on the mildest ground, after the least way; one from a family.
+    """A gait's falls on the mildest ground and after the shortest distance.
 
     Args:
-      cells: of one robot and world, severities from mild to hard within a family.
-      gait: whose.
-      count: at most so many.
+      cells: cells of one robot and world, from mild to hard within a family.
+      gait: name of the gait.
+      count: largest number of falls; at most one is taken from each family.
     """
     found: list[tuple[int, float, Place, Trial]] = []
     for family in dict.fromkeys(cell["family"] for cell in cells):

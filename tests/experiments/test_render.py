@@ -159,7 +159,7 @@ def test_a_gif_that_would_be_too_large_gets_fewer_colours(monkeypatch):
 
     def colours(most_bytes):
         monkeypatch.setattr(render_film, "GIF_BYTES", most_bytes)
-        with Image.open(io.BytesIO(render_film._gif(frames, 10))) as film:
+        with Image.open(io.BytesIO(render_film.gif_bytes(frames, 10))) as film:
             return len(film.convert("RGB").getcolors())
 
     assert 16 >= colours(1) < colours(10**6)
