@@ -30,7 +30,7 @@ _WEIGHT_OVER_GROUND = 1e9
 
 
 class ContactCompliance(Effect):
-    """Normal force of a flat foot K r + B r', with r how deep it sinks in.
+    """Soft contact of a flat foot: normal force K r + B r' at depth r.
 
     Source: Kelvin-Voigt contact as in Gilardi and Sharf 2002, "Literature survey of
     contact dynamics modelling", section 4. B is a tenth of critical damping.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class ContactFriction(Effect):
-    """Tangential force <= mu times normal force, between feet and ground.
+    """Friction of feet on the ground: tangential force <= mu times normal force.
 
     Source: Coulomb friction as in Stewart and Trinkle 1996, "An implicit time-stepping
     scheme for rigid body dynamics with inelastic collisions and Coulomb friction". In

@@ -1,4 +1,4 @@
-"""The abstract effect: one kind of physics that a sim may lack, and all known of it."""
+"""The base class of all effects: kinds of physics that a sim may lack."""
 
 import inspect
 from abc import ABC, abstractmethod
@@ -226,7 +226,7 @@ class Effect(ABC):
         return tuple(one.neutral for one in self.parameters(plant, placed.place))
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """Where a fit begins if a simpler effect at the same place was found to help.
+        """Starts of a fit, if a simpler effect at the same place was found to help.
 
         An effect that contains a simpler one returns itself with values that continue
         the simpler one's; a fit that begins elsewhere may never get there.
@@ -242,7 +242,7 @@ class Effect(ABC):
         return ()
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
-        """When the effect acted.
+        """The time in which the effect acted: always, during a burst, or as a drift.
 
         Args:
           placed: the effect with its values.
@@ -256,7 +256,7 @@ class Effect(ABC):
         return When()
 
     def torque_column(self, motion: JointMotion) -> FloatArray | None:
-        """(rows,) torque [N m] that the effect adds at a joint, for a parameter of one.
+        """(rows,) torque [N m] that the effect adds at a joint, for a parameter of 1.
 
         Only for effects that are linear, or nearly so, in the parameter of number
         `column_parameter`; None for all others. Sparse regression uses it.

@@ -30,7 +30,7 @@ _STIFF = (0.005, 1.0)
 
 
 class EndStop(JointEffect):
-    """A unilateral constraint: q <= angle (side +1) or q >= angle (side -1).
+    """A hard stop: joint angle q <= angle (side +1) or q >= angle (side -1).
 
     The stop pushes the joint back, critically damped, with a time constant of 5 ms;
     MuJoCo raises it to two steps where these are longer.

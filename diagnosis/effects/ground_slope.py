@@ -74,7 +74,7 @@ class GroundSlope(Effect):
         gravity[row] = _turned(_inverse(_tilt(*values)), gravity[row])
 
     def obstacle(self, recorded: "Base", base: "Base") -> str:
-        """A tilted mount says nothing about the ground that a robot walks on."""
+        """Why the tilt of a fixed base cannot be the slope that a robot walks on."""
         if recorded != "fixed" or base != "floating":
             return ""
         return (

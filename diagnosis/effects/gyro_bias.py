@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class GyroBias(Effect):
-    """Measured = true + bias, constant, in the sensor's frame.
+    """A constant error of the gyroscope: measured = true + bias, in its own frame.
 
     Source: the usual inertial sensor model without drift, for example Titterton and
     Weston 2004, "Strapdown inertial navigation technology".

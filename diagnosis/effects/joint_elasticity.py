@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class JointElasticity(JointEffect):
-    """Motor theta and link q joined by torque k (theta - q) + d (theta' - q').
+    """A spring from motor theta to link q: torque k (theta - q) + d (theta' - q').
 
     The joint's rotor inertia is on the motor's side, and so is the encoder.
 

@@ -48,7 +48,7 @@ class ViscousFriction(JointNumber):
         return (Parameter("coefficient", "N m s/rad", 0.0, scale, 0.0, 0.1 * scale),)
 
     def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
-        """More back-EMF of a motor that has some: the same torque."""
+        """Larger servo damping, if the motor has back-EMF: it is the same torque."""
         if place not in plant.joints:
             return ()
         has_emf = plant.servo.back_emf_nm_s_rad[plant.joints.index(place)] > 0
@@ -149,7 +149,7 @@ class Armature(JointNumber):
 
 
 class Backlash(ServoNumber):
-    """No torque reaches the joint while motor and joint are within the gap.
+    """A gap in the gear, within which no torque passes from motor to joint.
 
     The servo closes its loop on the motor's side; the encoder that is recorded sits at
     the joint. Within the gap the motor follows its command alone, braked by its
@@ -185,13 +185,13 @@ class Backlash(ServoNumber):
         return [(0.01,), (0.03,)]
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """Half of the servo's stiffness, in the direction of its error."""
+        """The torque that a gap of 1 rad takes away, in the direction of the error."""
         error = motion.command_rad - motion.position_rad
         return np.asarray(motion.kp_nm_rad * np.tanh(error / PLAY_RAD) / 2)
 
 
 class EncoderOffset(JointNumber):
-    """Measured = true + offset, and the servo acts on what is measured.
+    """An encoder with a wrong zero: measured = true + offset; the servo acts on it.
 
     Source: joint offset of kinematic calibration, Hollerbach, Khalil and Gautier
     2016, "Model identification", Springer Handbook of Robotics.

@@ -1,4 +1,4 @@
-"""What effects are described with: parameters, places, words, motion of a joint."""
+"""Parts of an effect's description: parameters, places, words, a joint's motion."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple

@@ -87,9 +87,9 @@ def weight_n(plant: "Plant") -> float:
 
 
 def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
-    """Torque of gravity [N m] about a hinge in the reference pose, at most.
+    """Largest torque [N m] about a hinge that gravity in any direction can cause.
 
-    For a sliding joint the weight [N] of what it carries.
+    Taken in the reference pose. For a sliding joint the weight [N] that it carries.
     """
     import mujoco
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class SensorDelay(Effect):
-    """Measured(t) = true(t - delay), for positions and velocities of all joints.
+    """Late encoders: measured(t) = true(t - delay), positions and velocities.
 
     Source: transfer function exp(-s delay), Astrom and Murray 2008, "Feedback
     systems", section 8.2.

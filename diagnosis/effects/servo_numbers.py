@@ -31,7 +31,7 @@ command may be all that reaches the limit."""
 
 
 class ServoGain(ServoNumber):
-    """Torque = factor kp (command - q) - ...
+    """A factor on the servo's stiffness: torque = factor kp (command - q) - ...
 
     Source: proportional part of a position loop, Spong, Hutchinson and Vidyasagar
     2006, "Robot modeling and control", chapter 6. In MuJoCo `actuator_gainprm` and
@@ -59,12 +59,12 @@ class ServoGain(ServoNumber):
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """The factor is 1 less the missing share."""
+        """The factor: 1 less the share of the stiffness that is missing."""
         return self.name, 1 - size, error
 
 
 class ServoDamping(JointNumber):
-    """Torque = ... - factor (kd + back-EMF) v.
+    """A factor on servo damping and back-EMF: torque = ... - factor (kd + emf) v.
 
     Source: derivative part of a position loop and the motor's induced voltage, Spong,
     Hutchinson and Vidyasagar 2006, "Robot modeling and control", chapter 6. In
@@ -94,7 +94,7 @@ class ServoDamping(JointNumber):
 
 
 class ServoFade(ServoNumber):
-    """Stiffness kp (1 - rate t), with t since the start of the trace.
+    """A servo that loses stiffness: kp (1 - rate t), t since the start of the trace.
 
     Source: to first order what a falling supply voltage or a warming winding and
     magnet do to a motor's constant, Hughes and Drury 2019, "Electric motors and
@@ -117,7 +117,7 @@ class ServoFade(ServoNumber):
         return (Parameter("rate", "1/s", 0.0, 0.05, 0.0, 0.005),)
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
-        """All the time, and more and more."""
+        """During all recordings, as a drift: the effect grows."""
         return When("drift", first_s, last_s)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
@@ -126,7 +126,7 @@ class ServoFade(ServoNumber):
 
 
 class TorqueLimit(JointNumber):
-    """Torque = clip(demand, -limit, limit), besides the servo's own limit.
+    """A limit besides the servo's own: torque = clip(demand, -limit, limit).
 
     Source: actuator saturation, Spong, Hutchinson and Vidyasagar 2006, "Robot modeling
     and control", chapter 6. In MuJoCo `actuator_forcerange`.
@@ -144,7 +144,7 @@ class TorqueLimit(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The limit; where the servo has one, larger limits do nothing."""
+        """The torque limit, at most the servo's own: a larger one has no effect."""
         scale = torque_nm(plant, place)
         own = float(plant.servo.max_torque_nm[plant.joints.index(place)])
         high = scale if np.isfinite(own) else 5 * scale
@@ -175,7 +175,7 @@ class TorqueLimit(JointNumber):
 
 
 class SpeedLimit(ServoNumber):
-    """The set-point follows the command with |speed| <= limit.
+    """A set-point that follows the command no faster than a limit.
 
     Source: rate limiter, Astrom and Hagglund 2006, "Advanced PID control";
     hobby and smart servos have it as their "moving speed".
@@ -199,7 +199,7 @@ class SpeedLimit(ServoNumber):
         return super().places(plant, traces)
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The limit, as a share of the motor's speed."""
+        """The speed limit, with bounds around the motor's no-load speed."""
         scale = speed_rad_s(plant, place)
         return (
             Parameter(

@@ -30,7 +30,7 @@ COLUMN_SPEED_RAD_S = 0.1
 
 
 class StribeckFriction(JointEffect):
-    """Torque -(tau_c + tau_s exp(-(v / v_s)^2)) sign(v).
+    """Dry friction with a peak: torque -(tau_c + tau_s exp(-(v / v_s)^2)) sign(v).
 
     Source: Armstrong-Helouvry, Dupont and Canudas de Wit 1994, "A survey of models,
     analysis tools and compensation methods for the control of machines with

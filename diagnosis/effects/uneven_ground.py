@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class UnevenGround(Effect):
-    """Heights spread about the plane; 99 % of them lie within +-height.
+    """Bumps: the ground's heights spread about the plane, 99 % within +-height.
 
     Where the bumps are cannot be known. A replay takes the ground to be where the
     recorded soles stood as a window began, no farther from the plane than the height

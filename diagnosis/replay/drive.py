@@ -91,6 +91,7 @@ class Drive:
         """
 
         def mean(held: Held, late_s: FloatArray) -> FloatArray:
+            """Means over the steps that begin at these times."""
             return held.mean(late_s, self._step_s)
 
         return (
