@@ -1,4 +1,4 @@
-"""Files that a URDF names, and the URDFs of example-robot-data."""
+"""Finds files that a URDF names, and the URDFs of example-robot-data."""
 
 import os
 from collections import Counter
@@ -34,11 +34,16 @@ def example_robots() -> dict[str, Path]:
 
 
 def mesh_path(urdf: Path, name: str) -> Path:
-    """Where a file is that a URDF names.
+    """Find a file that a URDF names.
 
-    A `package://NAME/...` is looked for where ROS would, in the folders of the
-    environment's ROS_PACKAGE_PATH, and then in the folders that the URDF lies in, one
-    of which is usually the package or holds it.
+    A `package://NAME/...` is looked for in the folders of the environment variable
+    ROS_PACKAGE_PATH, as ROS does; then in the folders above the URDF, one of which is
+    usually the package or holds it; last where example-robot-data is installed, so that
+    a copy of one of its URDFs works anywhere.
+
+    Args:
+      urdf: the file that names the other one.
+      name: a path, seen from the URDF's folder, or a file:// or package:// address.
 
     Raises:
       BadModelError: there is no such file.
@@ -48,7 +53,7 @@ def mesh_path(urdf: Path, name: str) -> Path:
         tried = [path if path.is_absolute() else urdf.parent / path]
     else:
         package, _, rest = name.removeprefix(_PACKAGE).partition("/")
-        roots = [Path(root) for root in _ros_folders()] + list(urdf.resolve().parents)
+        roots = [*_ros_folders(), *urdf.resolve().parents, *_example_folders()]
         inside = [root / package / rest for root in roots]
         tried = inside + [root / rest for root in roots if root.name == package]
     for path in tried:
@@ -60,6 +65,16 @@ def mesh_path(urdf: Path, name: str) -> Path:
     )
 
 
-def _ros_folders() -> list[str]:
+def _ros_folders() -> list[Path]:
     paths = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
-    return [path for path in paths if path]
+    return [Path(path) for path in paths if path]
+
+
+@cache
+def _example_folders() -> tuple[Path, ...]:
+    """The installed folders that hold packages of example-robot-data."""
+    some = next(iter(example_robots().values()), None)
+    if some is None:
+        return ()
+    package = next((one for one in some.parents if one.name == _COLLECTION), None)
+    return () if package is None else (package.parent, package / "robots")

@@ -1,5 +1,7 @@
 """Files that a URDF names."""
 
+import re
+
 import pytest
 
 from groundwalk.errors import BadModelError
@@ -40,3 +42,12 @@ def test_where_ros_looks(urdf, tmp_path, monkeypatch):
 
 def test_examples():
     assert {"g1_29dof_rev_1_0", "talos_reduced"} <= set(example_robots())
+
+
+def test_a_copied_example_finds_its_meshes(tmp_path, monkeypatch):
+    monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
+    copy = tmp_path / "mine.urdf"
+    copy.write_text(example_robots()["talos_reduced"].read_text())
+    names = re.findall(r'"(package://[^"]+)"', copy.read_text())
+    assert names
+    assert mesh_path(copy, names[0]).name == names[0].rpartition("/")[2]
