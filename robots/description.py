@@ -86,6 +86,21 @@ class Motor:
             if not (math.isfinite(value) and value >= 0):
                 raise BadValueError(f"motor {name} is {value}; it must not be negative")
 
+    @property
+    def back_emf_nm_s_rad(self) -> float:
+        """Slope of the torque-speed line [N m s/rad]."""
+        return self.stall_torque_nm / self.no_load_speed_rad_s
+
+    def drive_nm(self, error_rad: FloatArray, velocity_rad_s: FloatArray) -> FloatArray:
+        """Stall torque (n,) that the drive asks for [N m]; the motor has a limited one.
+
+        Args:
+          error_rad: (n,) command less position.
+          velocity_rad_s: (n,) of the joint.
+        """
+        damping = self.kd_nm_s_rad - self.back_emf_nm_s_rad
+        return np.asarray(self.kp_nm_rad * error_rad - damping * velocity_rad_s)
+
     def shared(self, joints: int) -> "Motor":
         """The part of this motor that each of its coupled joints gets."""
         return Motor(

@@ -105,9 +105,7 @@ def saturation(description: Description, recording: Recording) -> Saturation:
     for joint in description.links:
         motor, column = joint.motor, recording.columns
         error = column[f"command.{joint.name}"] - column[f"position.{joint.name}"]
-        back_emf = motor.stall_torque_nm / motor.no_load_speed_rad_s
-        braking = (motor.kd_nm_s_rad - back_emf) * column[f"velocity.{joint.name}"]
-        drive = motor.kp_nm_rad * error - braking
+        drive = motor.drive_nm(error, column[f"velocity.{joint.name}"])
         shares[joint.name] = float(np.mean(np.abs(drive) >= motor.stall_torque_nm))
     joint_name = max(shares, key=lambda name: shares[name])
     return Saturation(shares[joint_name], joint_name if shares[joint_name] else "")

@@ -46,8 +46,7 @@ class ServoTwin:
         self._stiffness = np.array([motor.kp_nm_rad for motor in motors])
         # -dtau/dv of the motor as long as its drive is not saturated, and beyond
         self._damping = np.array([motor.kd_nm_s_rad for motor in motors])
-        speed = np.array([motor.no_load_speed_rad_s for motor in motors])
-        self._back_emf = self._stall / speed
+        self._back_emf = np.array([motor.back_emf_nm_s_rad for motor in motors])
         self._twin_velocity: FloatArray | None = None
 
     def reset(self) -> None:
