@@ -34,6 +34,11 @@ def print_verdict(
       files: the files that were written, the most useful first.
       changed: whether the question was what has changed since the reference
         recordings, rather than what the sim lacks.
+
+    Example:
+      >>> print_verdict(Verdict("not_identifiable", limits=("Nothing moved.",)), [])
+      verdict     these data cannot tell
+      limits      Nothing moved
     """
     lines = console_lines(verdict, files, changed)
     if not sys.stdout.isatty():
@@ -59,6 +64,10 @@ def console_lines(
       verdict: of the diagnosis.
       files: the files that were written.
       changed: whether the question was what has changed since the reference.
+
+    Example:
+      >>> console_lines(Verdict("not_identifiable", limits=("Nothing moved.",)), [])[1]
+      ('limits', 'Nothing moved')
     """
     lines = [
         ("verdict", _verdict(verdict, changed)),

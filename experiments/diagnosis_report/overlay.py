@@ -58,6 +58,9 @@ def write_overlay(
 
     Raises:
       BadValueError: there are no series.
+
+    Example:
+      >>> write_overlay(Path("overlay.rrd"), found.held_out(), found.verdict.fit)
     """
     pages: dict[str, Sequence[Curve]] = {}
     for one, name in zip(series, scene_names(one.name for one in series), strict=True):

@@ -69,6 +69,9 @@ class ReportFacts:
         the report.
       changed: whether reference recordings of the healthy robot were given, so that the
         question is what has changed since them.
+
+    Example:
+      >>> ReportFacts("nao", "fixed", command="groundwalk diagnose a.parquet ...")
     """
 
     robot: str
@@ -94,6 +97,10 @@ def write_report(
 
     Raises:
       UnknownNameError: the verdict names an effect that has no words.
+
+    Example:
+      >>> facts = ReportFacts("nao", "fixed", command="groundwalk diagnose ...")
+      >>> write_report(Path("report.html"), found.verdict, found.held_out(), facts)
     """
     parts = _words(verdict, facts) | _shown(verdict, series) | _made(verdict, facts)
     write_text(path, render(TEMPLATE, **parts))

@@ -1,1 +1,6 @@
 """Study of `groundwalk real-robots`: diagnoses of real robots against known values."""
+
+from experiments.real_robot_study.cases import ROBOTS, RealRobot
+from experiments.real_robot_study.claims import claims_of
+
+__all__ = ["ROBOTS", "RealRobot", "claims_of"]

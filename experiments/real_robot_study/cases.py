@@ -57,6 +57,9 @@ class RealRobot:
       pulses: number of force pulses that were added at the actuator's input.
       twice: whether the page claims that held-out motions are predicted at least twice
         as well with the effects found.
+
+    Example:
+      >>> RealRobot("My arm", "arm", "arm.urdf", "recorded by us", "A paragraph.")
     """
 
     title: str

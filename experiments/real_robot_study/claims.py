@@ -18,6 +18,10 @@ def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
     Args:
       robot: with the values and bounds to compare with.
       verdict: of its diagnosis.
+
+    Example:
+      >>> claims_of(ROBOTS["emps"], verdict)[0].holds
+      True
     """
     claims = list(_published(robot, verdict))
     if robot.pulses:
