@@ -1,4 +1,4 @@
-"""Errors before and after, on recordings that were kept out of the fit."""
+"""Errors of the nominal and the corrected sim on held-out recordings."""
 
 import math
 from collections.abc import Mapping
@@ -9,16 +9,22 @@ from groundwalk.json_data import check_number
 
 @dataclass(frozen=True, kw_only=True)
 class Errors:
-    """Rms errors on recordings that were kept out of the fit; None: was not computed.
+    """Rms errors on held-out recordings; None for those that were not computed.
+
+    The last three are controls: they show what a wrong answer would have reached.
 
     Attributes:
-      nominal: of the sim as it was.
-      corrected: of the sim with the effects found.
-      floor: what the noise alone makes.
-      ceiling: what a flexible regression without physics reaches.
-      without: of the effects found, refitted without the one that closes most.
-      wrong_place: of that one at the other place that does best, and the rest.
-      wrong_effect: of another effect at its place, drawn by lot, and the rest.
+      nominal: error of the nominal sim.
+      corrected: error of the sim with the effects found.
+      floor: error that the sensors' noise alone makes.
+      ceiling: error of a flexible regression without physics.
+      without: error with the effect left out that closes most, the others refitted.
+      wrong_place: error with that effect moved to the best other place.
+      wrong_effect: error with that effect replaced by another one, drawn at random.
+
+    Example:
+      >>> Errors(nominal=5.0, corrected=1.2, floor=1.0).closed(1.2)
+      0.95
     """
 
     nominal: float
@@ -30,7 +36,7 @@ class Errors:
     wrong_effect: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse errors that are negative."""
+        """Refuse negative errors."""
         for name in Errors.__dataclass_fields__:
             value = getattr(self, name)
             if value is not None:
@@ -44,9 +50,14 @@ class Errors:
         return math.inf if self.nominal > 0 else 0.0
 
     def closed(self, error: float | None) -> float | None:
-        """Part of the nominal error above the floor that is gone where `error` is left.
+        """Share of the nominal error above the noise floor that an error has closed.
 
-        None where the nominal sim was no worse than the noise, or there is no error.
+        Args:
+          error: the remaining error, in the unit of the others.
+
+        Returns:
+          1 if the error is down to the floor, 0 if it is as large as before; None if
+          the nominal sim was no worse than the noise, or there is no error.
         """
         if error is None or self.nominal <= self.floor:
             return None
@@ -55,16 +66,29 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelFit(Errors):
-    """The errors of one channel, in its unit."""
+    """The errors of one channel, in the channel's unit.
+
+    Attributes:
+      unit: the channel's.
+
+    Example:
+      See docs/diagnosis_json.md.
+    """
 
     unit: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fit(Errors):
-    """The errors of all channels together, in multiples of each channel's floor.
+    """The errors of all channels together, in multiples of each channel's noise floor.
 
-    Together: the root of the mean over channels of (error / floor) squared.
+    They are the root of the mean over channels of (error / floor) squared.
+
+    Attributes:
+      channels: the errors of each channel by its name.
+
+    Example:
+      See docs/diagnosis_json.md.
     """
 
     channels: Mapping[str, ChannelFit]

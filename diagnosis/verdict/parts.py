@@ -1,4 +1,4 @@
-"""What a verdict is made of: effects found, the mismatch, and what is open."""
+"""The parts of a verdict: effects found, the mismatch, pulses and open questions."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,20 @@ PulseSource = Literal["actuator input", "torque sensor", "position sensor"]
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with the interval that holds it in 80 of 100 diagnoses."""
+    """An estimated number with its 80 % interval.
+
+    In 80 of 100 diagnoses the interval holds the true value.
+
+    Attributes:
+      value: the best estimate, in `unit`.
+      low: lower end of the interval.
+      high: upper end of the interval.
+      unit: such as "N m".
+
+    Example:
+      >>> Estimate(0.03, 0.027, 0.034, "rad").value
+      0.03
+    """
 
     value: float
     low: float
@@ -22,7 +35,7 @@ class Estimate:
     unit: str
 
     def __post_init__(self) -> None:
-        """Refuse intervals that do not hold their value."""
+        """Refuse intervals outside of which their value lies."""
         for name in ("value", "low", "high"):
             check_number(name, getattr(self, name), -math.inf)
         if not self.low <= self.value <= self.high:
@@ -34,13 +47,22 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Amount:
-    """A size with its unit, such as the least that could have been seen."""
+    """A size with its unit, such as the smallest effect that the data could show.
+
+    Attributes:
+      value: the size, 0 or more.
+      unit: such as "N m".
+
+    Example:
+      >>> Amount(0.5, "N s/m").unit
+      'N s/m'
+    """
 
     value: float
     unit: str
 
     def __post_init__(self) -> None:
-        """Refuse sizes below nothing."""
+        """Refuse negative sizes."""
         check_number("value", self.value, 0.0)
 
 
@@ -79,14 +101,24 @@ class PlacedEffect:
 
 @dataclass(frozen=True)
 class When:
-    """When an effect acted; a burst and a drift have times of the recording [s]."""
+    """When an effect acted.
+
+    Attributes:
+      kind: "always", "burst" (for a while) or "drift" (growing).
+      start_s: start of a burst or a drift in the recording's time; None for "always".
+      end_s: its end; None for "always".
+
+    Example:
+      >>> When("burst", 1.0, 2.5).end_s
+      2.5
+    """
 
     kind: Course = "always"
     start_s: float | None = None
     end_s: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse bursts without times, and times that run backwards."""
+        """Refuse bursts without times, and ends before their starts."""
         if self.kind == "always":
             if (self.start_s, self.end_s) != (None, None):
                 raise BadValueError("what acts always has no start_s and no end_s")
@@ -102,14 +134,18 @@ class Found:
     """An effect that the recordings show.
 
     Attributes:
-      name: of the effect.
-      place: where it is.
-      parameters: what was estimated, by the parameter's name.
-      probability: that this is the right effect at the right place, 0 to 1, calibrated
-        on concealed cases (`diagnosis.conclude.confidence`).
-      confusable_with: what else would explain the same, alone in its stead.
-      when: all the time, for a while, or growing.
-      native: whether MuJoCo has this physics, so that the corrected MJCF holds it.
+      name: the effect's, such as "backlash".
+      place: where it is: a joint, a body, "feet", "commands" or "world".
+      parameters: the estimates by the parameters' names.
+      probability: probability from 0 to 1 that this is the right effect at the right
+        place, calibrated on concealed cases (`diagnosis.conclude.confidence`).
+      confusable_with: effects each of which explains the recordings about as well
+        instead of this one.
+      when: whether it acts always, for a while, or growing.
+      native: whether MuJoCo can simulate it, so that the corrected MJCF contains it.
+
+    Example:
+      See docs/python.md.
     """
 
     name: str
@@ -121,24 +157,27 @@ class Found:
     native: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse what is no probability."""
+        """Refuse probabilities outside of 0 to 1."""
         check_number("probability", self.probability, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
 class MismatchCell:
-    """How far the nominal sim is from one channel of the recordings.
+    """The error of the nominal sim in one channel of the recordings.
 
     Attributes:
       channel: such as "position.LKneePitch" or "gyroscope.x".
-      unit: of the two errors.
-      share: of the squared error of all channels that noise does not explain, each in
-        units of its noise, 0 to 1.
-      error_rms: real less sim.
-      noise_rms: what the sensor's noise alone makes.
+      unit: unit of the two errors.
+      share: this channel's share, 0 to 1, of the squared error of all channels that
+        noise does not explain, with each channel in units of its noise.
+      error_rms: rms difference of recording and sim.
+      noise_rms: rms of the sensor's noise.
       regimes: rms error as a multiple of the noise, in parts of the data such as
         "reversals" or "fast".
-      bursts: times (start, end) [s] at which the error stands out.
+      bursts: times (start, end) [s] during which the error stands out.
+
+    Example:
+      See docs/diagnosis_json.md.
     """
 
     channel: str
@@ -163,22 +202,25 @@ class MismatchCell:
 
 @dataclass(frozen=True)
 class Pulse:
-    """A torque that a joint's servo did not ask for, for a while.
+    """A constant torque, for a while, that a joint's servo did not ask for.
 
     Attributes:
-      recording: its name.
-      joint: at which.
-      start_s: in the recording's time.
-      end_s: likewise.
-      torque: measured less what the servo asked for.
-      unit: of the torque.
-      source: where it came in. "actuator input": it was real, the motion obeys it.
-        "torque sensor": the joint never felt it. "position sensor": the measured
-        position jumped, so that the servo seems to be wrong.
-      jumps: at the edges of the joint's pulses, by signal ("torque", "position",
-        "command"), as a share of the pulse.
-      felt: share of the measured torque that the motion obeys; 0 where the pulse is
-        not in the torque.
+      recording: name of the recording.
+      joint: the joint.
+      start_s: start of the pulse in the recording's time.
+      end_s: end of the pulse in the recording's time.
+      torque: measured torque less the torque that the servo asked for.
+      unit: unit of the torque.
+      source: where the pulse came in. "actuator input": a real torque, which the motion
+        obeys. "torque sensor": the joint never felt it. "position sensor": the measured
+        position jumped, so that the servo seems to have erred.
+      jumps: mean jump at the edges of the joint's pulses, as a share of the pulse, by
+        signal ("torque", "position", "command").
+      felt: share of the measured torque that the motion obeys; 0 if the pulse is not in
+        the torque.
+
+    Example:
+      See docs/diagnosis_json.md.
     """
 
     recording: str
@@ -192,7 +234,7 @@ class Pulse:
     felt: float
 
     def __post_init__(self) -> None:
-        """Refuse pulses that run backwards."""
+        """Refuse pulses that end before they start."""
         check_number("start of a pulse", self.start_s, -math.inf)
         check_number("end of a pulse", self.end_s, self.start_s)
         for name in ("torque", "felt"):
@@ -203,19 +245,22 @@ class Pulse:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """An error with a shape that no effect of the library makes.
+    """The shape of an error that no effect of the library explains.
 
-    The curve is the mean error of a channel over another quantity, bin by bin.
+    A curve shows the mean error of a channel over another quantity, bin by bin.
 
     Attributes:
-      share: of the squared error above noise that is left.
-      channel: in which it is largest.
-      unit: of that channel.
-      against: the quantity, such as "position.LKneePitch".
-      against_unit: its unit.
-      at: middles of the bins.
-      mean: error of the corrected sim in each bin.
+      share: share of the squared error above the noise that remains, 0 to 1.
+      channel: the channel in which the remaining error is largest.
+      unit: unit of that channel.
+      against: the other quantity, such as "position.LKneePitch".
+      against_unit: unit of the other quantity.
+      at: middle of each bin.
+      mean: mean error of the corrected sim in each bin.
       spread: standard error of each mean.
+
+    Example:
+      See docs/diagnosis_json.md.
     """
 
     share: float
@@ -241,7 +286,17 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class NextExperiment:
-    """The recording that would tell most: a motion, of a joint or of all, and why."""
+    """The recording that would best decide what is still open.
+
+    Attributes:
+      motion: what to record, such as "slow ramps".
+      joint: the joint that moves; None for all joints.
+      why: what the recording would decide.
+
+    Example:
+      >>> NextExperiment("slow ramps", "elbow", "friction or play").motion
+      'slow ramps'
+    """
 
     motion: str
     joint: str | None
@@ -250,7 +305,17 @@ class NextExperiment:
 
 @dataclass(frozen=True)
 class Recordings:
-    """Names of recordings, or parts of them, by what they were used for."""
+    """Names of the recordings, or of parts of them, by their use.
+
+    Attributes:
+      fit: used to fit parameters.
+      select: used to choose between fitted models.
+      test: held out for the final errors.
+
+    Example:
+      >>> Recordings(fit=("a",), select=("b",), test=("c",)).test
+      ('c',)
+    """
 
     fit: tuple[str, ...] = ()
     select: tuple[str, ...] = ()

@@ -1,4 +1,4 @@
-"""The diagnosis' answer, as `diagnosis.json` holds it; see docs/diagnosis_json.md."""
+"""The answer of a diagnosis, and its file `diagnosis.json` (docs/diagnosis_json.md)."""
 
 import json
 from collections.abc import Mapping
@@ -45,29 +45,29 @@ VerdictKind = Literal["effects", "none", "unknown", "not_identifiable"]
 
 @dataclass(frozen=True)
 class Verdict:
-    """What physics the sim lacks, how sure that is, and what remains open.
+    """Which physics the sim lacks, how sure that is, and what remains open.
 
     Attributes:
-      kind: "effects": these are missing. "none": nothing that the data show. "unknown":
-        something that no effect of the library explains. "not_identifiable": something
-        may be missing that these data cannot name.
-      effects: what was found, the surest first; beside an "unknown" rest there may be
-        some that are sure.
-      alternatives: other answers that these data do not rule out, each of them whole.
-      smallest_detectable: the least that these data could have shown, by
+      kind: "effects": the sim lacks the effects named. "none": the data show nothing
+        missing. "unknown": an error remains that no effect of the library explains.
+        "not_identifiable": something may be missing, but these data cannot name it.
+      effects: the effects found, the surest first; a verdict of kind "unknown" may
+        have some, too.
+      alternatives: other complete answers that these data do not rule out.
+      smallest_detectable: smallest size that these data could have shown, by
         "effect@place".
       unexplained: the shape of an error that no effect explains.
-      limits: what these data cannot tell, in plain words.
-      mismatch: where and when the nominal sim is off, the worst channel first.
+      limits: sentences on what these data cannot show.
+      mismatch: where and when the nominal sim errs, the worst channel first.
       pulses: torques that servos did not ask for, in the order of time.
-      fit: before and after on recordings that were kept out; None where none could be.
-      next_experiment: what to record next, if anything is open.
-      recordings: which were used for what.
-      seconds: how long the diagnosis took.
+      fit: errors of nominal and corrected sim on held-out data; None if there are none.
+      next_experiment: what to record next; None if nothing is open.
+      recordings: which recordings were used for what.
+      seconds: duration of the diagnosis.
 
     Example:
-      >>> verdict = Verdict.from_json(Path("diagnosis.json").read_text())
-      >>> print(verdict.kind, [one.name for one in verdict.effects])
+      >>> Verdict.from_json(Verdict("none").to_json()).kind
+      'none'
     """
 
     kind: VerdictKind
@@ -84,7 +84,7 @@ class Verdict:
     seconds: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse answers that contradict themselves.
+        """Refuse verdicts that contradict themselves.
 
         Raises:
           BadValueError: the kind does not fit what was found.
