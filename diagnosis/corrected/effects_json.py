@@ -1,4 +1,4 @@
-"""What a diagnosis found, as a file that a sim can take: `corrected.json`."""
+"""The effects that a diagnosis found, as a file for simulations: `corrected.json`."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -29,13 +29,16 @@ class Entry:
 
 @dataclass(frozen=True)
 class Correction:
-    """The effects that a sim lacked.
+    """The effects that correct a robot's nominal sim.
 
     Attributes:
-      robot: the plant's name.
-      base: how it was held in the recordings.
-      native: effects that MuJoCo has, so that `corrected.xml` holds them.
-      per_tick: effects that something beside MuJoCo must do at every step.
+      robot: name of the robot model.
+      base: how the base was held in the recordings.
+      native: effects that MuJoCo can simulate; `corrected.xml` contains them.
+      per_tick: effects that must be computed beside MuJoCo at every step.
+
+    Example:
+      See docs/python.md.
     """
 
     robot: str
@@ -45,7 +48,7 @@ class Correction:
 
     @classmethod
     def of(cls, plant: Plant, model: Model) -> "Correction":
-        """What a model changes of a plant."""
+        """The correction with the effects and values of a fitted model."""
         parts = [
             Entry(
                 placed.name,
@@ -58,7 +61,13 @@ class Correction:
 
     @classmethod
     def of_verdict(cls, verdict: Verdict, robot: str, base: Base) -> "Correction":
-        """The best estimates of a verdict, which does not say whose it is."""
+        """The correction with a verdict's best estimates.
+
+        Args:
+          verdict: the answer of a diagnosis.
+          robot: name of the robot model, which a verdict does not hold.
+          base: how the base was held, which a verdict does not hold either.
+        """
         parts = [
             Entry(
                 found.name,
@@ -70,16 +79,17 @@ class Correction:
         return cls(robot, base, *_sorted(parts))
 
     def to_json(self) -> str:
-        """As text; the same correction gives the same text."""
+        """The correction as JSON; the same correction gives the same text."""
         plain = {"format": FORMAT, **to_plain(self)}
         return json.dumps(plain, indent=1, allow_nan=False) + "\n"
 
     def model(self, plant: Plant) -> Model:
-        """The effects for a plant of the same robot.
+        """The effects as a model for a plant of the same robot.
 
         Raises:
-          BadModelError: they are another robot's, lack parameters, or cannot be there.
-          UnknownNameError: the plant lacks a place, or there is no such effect.
+          BadModelError: the effects belong to another robot, have other parameters, or
+            cannot act on this plant.
+          UnknownNameError: the plant lacks a place, or an effect does not exist.
         """
         if self.robot != plant.name:
             raise BadModelError(
@@ -105,16 +115,19 @@ class Correction:
 
 
 def load_correction(source: str | Path, plant: Plant) -> Model:
-    """The effects that a diagnosis found, for a sim of the same robot.
+    """Read the effects that a diagnosis found, for a sim of the same robot.
 
     Args:
       source: a folder that `groundwalk diagnose` has written, a `corrected.json`, or
-        a `diagnosis.json`, whose base is taken for fixed.
-      plant: the sim's own.
+        a `diagnosis.json`, for which the base is assumed to be fixed.
+      plant: the robot model of the sim.
 
     Raises:
-      BadModelError: it is no diagnosis, or not this robot's.
-      UnknownNameError: it speaks of what is not there.
+      BadModelError: the file is no diagnosis, or one of another robot.
+      UnknownNameError: it names an effect or a place that does not exist.
+
+    Example:
+      See docs/python.md.
     """
     path = _file(Path(source))
     try:
@@ -149,7 +162,7 @@ def _correction(text: str, plant: Plant) -> Correction:
 def _sorted(
     parts: Sequence[Entry],
 ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-    """Those that MuJoCo has, and the others."""
+    """Divide effects into those that MuJoCo can simulate and the others."""
     native = [effect(part.name).native for part in parts]
     pairs = list(zip(parts, native, strict=True))
     return tuple(part for part, own in pairs if own), tuple(

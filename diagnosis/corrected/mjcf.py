@@ -1,4 +1,4 @@
-"""A plant with the effects in it that MuJoCo has, as MJCF: `corrected.xml`."""
+"""Writes `corrected.xml`: a robot model with the effects found, as MuJoCo has them."""
 
 import ctypes
 from collections.abc import Iterator
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 CORRECTED_XML = "corrected.xml"
 _LINEAR = 1
-"""MuJoCo's number for a course between two controls that is straight."""
+"""MuJoCo's number for linear interpolation between two delayed controls."""
 
 _CONTACTS = " and all contacts switched off"
 _DIGITS = 17
-"""As many as it takes to read a number back as it was."""
+"""Digits with which every float is read back unchanged."""
 
 
 def corrected_mjcf(
@@ -95,20 +95,20 @@ def _comment(variants: Variants, native: Model, model: Model) -> str:
 
 
 class _OneModel:
-    """A compiled model as a batch of one, whose fields can be written."""
+    """A compiled model with the interface of a batch of one, to write its fields."""
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         self._model = model
 
     def expand(self, name: str) -> FloatArray:
-        """(1, ...) live values of an array."""
+        """The values (1, ...) of a field; writing to them changes the model."""
         return np.asarray(getattr(self._model, name))[None]
 
 
 def _write_fields(
     compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
 ) -> None:
-    """Put the only row of some variants into a model."""
+    """Write the only row of `variants` into a compiled model."""
     import mujoco
 
     for name, values in variants.fields.items():
@@ -133,7 +133,7 @@ def _write_fields(
 
 
 def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:
-    """Let actuators act on old controls, a mix of two where it is not whole steps."""
+    """Delay all actuators; delays that are no whole steps interpolate two controls."""
     if delay_s == 0:
         return
     for actuator in spec.actuators:
@@ -144,7 +144,7 @@ def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> Non
 
 @contextmanager
 def _all_digits() -> Iterator[None]:
-    """MuJoCo writes six digits unless its library is told otherwise."""
+    """Let MuJoCo write XML with all digits; it writes six by default."""
     import mujoco
 
     folder = Path(mujoco.__file__).parent

@@ -1,4 +1,4 @@
-"""The sim with the physics in it that a diagnosis has found."""
+"""The sim world with the effects that a diagnosis has found."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,12 +30,15 @@ def sim_plant(
     options: WorldOptions,
     grounds: Sequence[Heightfield] = (),
 ) -> Plant:
-    """The sim's own model as a plant, on all of the grounds at once.
+    """Make the plant of the sim world's own model, with all grounds in it.
 
     Args:
       description: the robot.
       options: time step, friction, fixed base.
-      grounds: none of them where the base is fixed; a plane where there are none.
+      grounds: heightfields; a plane if there are none, and unused for a fixed base.
+
+    Example:
+      See docs/python.md.
     """
     base: Base = "fixed" if options.fixed_base else "floating"
     spec = world_spec(description, options, () if options.fixed_base else grounds)
@@ -43,9 +46,15 @@ def sim_plant(
 
 
 def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
-    """All n rows with a model's effects, as a rollout can have them.
+    """Make n equal variants of a plant with a model's effects, for rollouts.
 
-    A slope turns gravity, not the ground, so that the robot walks on its heightfield.
+    A slope turns gravity instead of the ground, so that the robot stays on its
+    heightfield.
+
+    Args:
+      plant: the sim's plant.
+      model: the effects.
+      n: number of robots.
 
     Raises:
       BadModelError: a sim cannot have one of the effects.
@@ -59,9 +68,13 @@ def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
 
 
 class CorrectedSim(SimWorld):
-    """`SimWorld` with effects, the same for all robots; without any, the same bits.
+    """The sim world with found effects, the same ones for all robots.
 
-    Effects that have a time, such as pushes, count it from the start of the rollout.
+    Without effects it computes exactly the same as `SimWorld`. Effects with a time,
+    such as pushes, count it from the start of the rollout.
+
+    Example:
+      See docs/python.md.
     """
 
     def __init__(
@@ -72,13 +85,13 @@ class CorrectedSim(SimWorld):
         options: WorldOptions,
         model: Model,
     ) -> None:
-        """Put the effects in.
+        """Make the world.
 
         Args:
           description: the robot.
           grounds: one per robot; give one object n times to share it.
           seeds: one per robot, for its sensor noise.
-          options: as of `SimWorld`; the model's latency comes on top of theirs.
+          options: as for `SimWorld`; a latency of the model is added to theirs.
           model: the effects.
 
         Raises:
@@ -89,7 +102,7 @@ class CorrectedSim(SimWorld):
         super().__init__(description, grounds, seeds, options)
 
     def _made_batch(self) -> "Batch":
-        """One model has all grounds; each robot's feet only touch its own."""
+        """Make the batch; its model has all grounds, each robot touches its own."""
         if not self._model:
             return super()._made_batch()
         from mujoco.batch import Batch
@@ -135,7 +148,7 @@ class CorrectedSim(SimWorld):
                 self._encoders.note(self._laws.encoder_rad(), velocity)
 
     def _read(self) -> tuple[Truth, Observation]:
-        """As the encoders and the gyroscope show it."""
+        """Read truth and observation, the latter with the effects on the sensors."""
         truth, observation = super()._read()
         if self._laws is None:
             return truth, observation

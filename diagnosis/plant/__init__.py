@@ -1,1 +1,10 @@
-"""The nominal model of a robot, and where it comes from."""
+"""The nominal robot model (the plant) that a diagnosis replays, and its servos.
+
+`load_plant` makes one from a robot's name, an MJCF or a URDF.
+"""
+
+from diagnosis.plant.load import described_plant, load_plant
+from diagnosis.plant.plant import Base, Plant
+from diagnosis.plant.servo import Servo
+
+__all__ = ["Base", "Plant", "Servo", "described_plant", "load_plant"]

@@ -1,4 +1,4 @@
-"""How a plant is held: its base in the air or on the ground, joints locked."""
+"""Changes how a robot model is held: a fixed or floating base, and locked joints."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +11,18 @@ if TYPE_CHECKING:
     import mujoco
 
 _LEVEL_M = 0.02
-"""Bodies whose lowest points differ by less than this stand side by side."""
+"""Bodies whose lowest points differ by less than this [m] both count as feet."""
 
 
 def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
-    """Weld the base to the world, without contacts, or set it free above a ground.
+    """Weld the base to the world, without contacts, or let it float above a ground.
 
-    A model without any free joint gets one at its only body under the world; a
-    ground that the model has is kept.
+    For a floating base, a model without a free joint gets one at its only body under
+    the world, and a model without a ground gets a plane.
+
+    Args:
+      spec: the robot model, which is changed.
+      base: "fixed" or "floating".
 
     Raises:
       BadModelError: a floating base is asked for and it is unclear which body it is.
@@ -44,10 +48,14 @@ def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
 
 
 def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
-    """Take all other joints out: what they carry is welded at their zero.
+    """Remove all joints except some; the bodies that they carry are welded at zero.
 
     Welded bodies become part of the body that carries them. Equalities, tendons and
-    sensors that speak of a joint that is gone go, too.
+    sensors that refer to a removed joint are removed, too.
+
+    Args:
+      spec: the robot model, which is changed.
+      free: names of the joints that stay.
     """
     import mujoco
 
@@ -68,9 +76,10 @@ def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
 
 
 def standing_bodies(model: "mujoco.MjModel") -> tuple[str, ...]:
-    """Bodies that reach lowest with all joints at zero, left before right.
+    """Names of the bodies that stand on the ground, left before right.
 
-    Only bodies at the end of a chain, with shapes that can touch something.
+    These are the bodies at the end of a chain, with shapes that can touch something,
+    whose lowest points are lowest with all joints at zero.
     """
     import mujoco
 
@@ -92,7 +101,7 @@ def standing_bodies(model: "mujoco.MjModel") -> tuple[str, ...]:
 
 
 def _bottom(model: "mujoco.MjModel", data: Any, geom: int) -> float:
-    """Lowest point of the box around a shape [m]."""
+    """Height of the lowest corner of a shape's bounding box [m]."""
     centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
     down = data.geom_xmat[geom].reshape(3, 3)[2]
     return float(data.geom_xpos[geom, 2] + down @ centre - np.abs(down) @ half)

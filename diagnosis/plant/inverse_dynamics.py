@@ -1,4 +1,4 @@
-"""What torques a motion takes, by a plant's own mechanics."""
+"""Inverse dynamics: the torques that a motion needs, by the robot model."""
 
 import copy
 from typing import TYPE_CHECKING
@@ -19,16 +19,20 @@ def inverse_dynamics(
     velocity_rad_s: FloatArray,
     acceleration_rad_s2: FloatArray,
 ) -> FloatArray:
-    """(R, j) torques at the joints of a plant with a fixed base.
+    """Compute the joint torques that motions of a fixed-base robot need.
 
-    Constraints are left out: where joints are tied, they would fight the noise.
+    Constraints such as ties between joints are left out: they would turn sensor noise
+    into large torques.
 
     Args:
-      plant: tells which rows are the joints'.
-      model: the plant's, or one with other numbers.
-      position_rad: (R, j).
-      velocity_rad_s: (R, j).
-      acceleration_rad_s2: (R, j).
+      plant: the robot model; it gives the joints' places in MuJoCo's vectors.
+      model: the compiled model to use: the plant's, or a copy with other numbers.
+      position_rad: (R, j) joint positions.
+      velocity_rad_s: (R, j) joint velocities.
+      acceleration_rad_s2: (R, j) joint accelerations.
+
+    Returns:
+      (R, j) torques [N m].
     """
     import mujoco
 

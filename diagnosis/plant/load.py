@@ -1,4 +1,4 @@
-"""From a robot's name or model file to a plant."""
+"""Loads the nominal robot model (the plant) from a robot's name or a model file."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 _SUFFIXES = (".xml", ".urdf")
 _HELD_AT_M = 1.0
+"""Height at which a described robot with a fixed base hangs [m]."""
 
 
 def load_plant(
@@ -37,18 +38,21 @@ def load_plant(
     joints: Sequence[str] | None = None,
     servo: Gains | None = None,
 ) -> Plant:
-    """The plant of a robot.
+    """Load the nominal robot model that a diagnosis replays.
 
-    Joints that recordings lack are taken out, so that what they carry is welded at
-    their zero. Contacts only exist with a floating base. The integrator is
-    implicitfast; a diverged model shows NaN.
+    Joints that the recordings lack are removed, so that the bodies they carry are
+    welded at zero. Contacts exist only with a floating base. The integrator is
+    implicitfast; the state of a simulation that diverges becomes NaN.
 
     Args:
       source: a robot of `robots`, a path to MJCF (.xml) or URDF (.urdf), or a robot
         of example-robot-data, such as "so101".
       base: how the base is held.
-      joints: those that recordings have; None for all hinges and slides.
-      servo: gains instead of the model's own; gains in a recording go before both.
+      joints: joints that the recordings have; None for all hinges and slides.
+      servo: gains instead of the model's own.
+
+    Returns:
+      The plant; its servos are the model's own or those given.
 
     Raises:
       UnknownNameError: no such robot; the message has the nearest name.
@@ -56,7 +60,8 @@ def load_plant(
       BadRecordingError: the model lacks one of the joints.
 
     Example:
-      >>> plant = load_plant("so101", base="fixed")
+      >>> load_plant("nao", "fixed").joints[:2]
+      ('HeadYaw', 'HeadPitch')
     """
     quiet_mujoco()  # of trial values that blow up, or joints that mimic others
     name, spec, description = _read(source, base)
@@ -77,12 +82,15 @@ def load_plant(
 def described_plant(
     description: Description, spec: "mujoco.MjSpec", base: Base
 ) -> Plant:
-    """The plant of a described robot in a specification, which is changed.
+    """Make the plant of a robot whose MuJoCo specification exists already.
 
     Args:
       description: the robot.
-      spec: the robot's, with or without a ground.
+      spec: its specification, with or without a ground; it is changed.
       base: how the base is held.
+
+    Example:
+      See `diagnosis.corrected.sim.sim_plant`.
     """
     servo = described_servo(description, description.joints)
     _equip(spec, base, description.joints, servo)
@@ -93,7 +101,7 @@ def described_plant(
 def _equip(
     spec: "mujoco.MjSpec", base: Base, joints: Sequence[str], servo: Servo
 ) -> None:
-    """Hold the base, lock what is not recorded, put the servos in."""
+    """Hold the base, lock the joints that were not recorded, and add the servos."""
     import mujoco
 
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -132,7 +140,7 @@ def _described_spec(description: Description) -> "mujoco.MjSpec":
     spec = mujoco_spec(description)
     spec.worldbody.bodies[0].pos = [0, 0, _HELD_AT_M]
     for geom in spec.geoms:
-        # The sole's friction counts, not the larger of sole's and ground's.
+        # The sole's own friction counts, not the larger one of sole and ground.
         geom.priority = int(geom.contype == 1)
     return spec
 
@@ -150,7 +158,7 @@ def _compiled(spec: "mujoco.MjSpec", name: str) -> "mujoco.MjModel":
 def _chosen(
     model: "mujoco.MjModel", joints: Sequence[str] | None, name: str
 ) -> tuple[str, ...]:
-    """The joints that count, in the model's order."""
+    """The hinges and slides that recordings have, in the model's order."""
     import mujoco
 
     kinds = (mujoco.mjtJoint.mjJNT_HINGE.value, mujoco.mjtJoint.mjJNT_SLIDE.value)
@@ -164,7 +172,7 @@ def _chosen(
         if joint not in there:
             hint = nearest(joint, there) or f"; it has {', '.join(there)}"
             raise BadRecordingError(
-                f"recordings speak of a joint {joint!r} that {name} lacks{hint}"
+                f"the recordings have a joint {joint!r} that {name} lacks{hint}"
             )
     return tuple(joint for joint in there if joints is None or joint in joints)
 

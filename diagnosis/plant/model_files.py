@@ -1,4 +1,4 @@
-"""Robots in files: MJCF and URDF."""
+"""Reads robot models from MJCF and URDF files."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,12 +17,11 @@ _NO_DYNAMICS = ("transmission", "gazebo", "material", "mujoco")
 
 
 def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
-    """A URDF as a MuJoCo specification, without what it looks like.
+    """Read a URDF as a MuJoCo specification without visual shapes.
 
     Meshes are never read: they do not matter to the dynamics, and their paths are
-    often wrong. Inertias that no body can have are replaced as MuJoCo's
-    `balanceinertia` does; moving links without mass or inertia get next to
-    none.
+    often wrong. Impossible inertias are replaced as MuJoCo's `balanceinertia` does;
+    moving links without mass or inertia get a tiny one.
 
     Args:
       path: the file.
@@ -57,7 +56,7 @@ def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
 
 
 def mjcf_spec(path: Path) -> "mujoco.MjSpec":
-    """An MJCF file as a MuJoCo specification.
+    """Read an MJCF file as a MuJoCo specification.
 
     Raises:
       BadModelError: MuJoCo cannot read it.
@@ -71,7 +70,7 @@ def mjcf_spec(path: Path) -> "mujoco.MjSpec":
 
 
 def _strip(link: ElementTree.Element, contacts: bool) -> None:
-    """Take out shapes, and inertials that state no mass."""
+    """Remove shapes that are not simulated, and inertials without a mass."""
     for shape in [*link.findall("visual"), *link.findall("collision")]:
         is_mesh = shape.find("geometry/mesh") is not None
         if shape.tag == "visual" or is_mesh or not contacts:
@@ -87,7 +86,7 @@ def _strip(link: ElementTree.Element, contacts: bool) -> None:
 
 
 def _is_positive(inertia: ElementTree.Element) -> bool:
-    """Whether MuJoCo takes the inertia: its eigenvalues are above zero."""
+    """Whether MuJoCo accepts an inertia: all of its eigenvalues are positive."""
     xx, yy, zz, xy, xz, yz = (
         float(inertia.get(f"i{axes}", "0")) for axes in _INERTIA_AXES
     )

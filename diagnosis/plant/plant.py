@@ -1,4 +1,4 @@
-"""The nominal model of a robot, as the diagnosis replays it."""
+"""The nominal robot model (the plant) that the diagnosis replays."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -11,7 +11,9 @@ if TYPE_CHECKING:
     import mujoco
 
 Base = Literal["fixed", "floating"]
+"""How a robot's base is held."""
 ROOT = "root"
+"""Name of a floating base's free joint."""
 _SLIDING = {
     "rad": "m",
     "rad/s": "m/s",
@@ -20,6 +22,7 @@ _SLIDING = {
     "N m s/rad": "N s/m",
     "kg m^2": "kg",
 }
+"""Units of sliding joints by those of turning joints."""
 
 
 @dataclass(frozen=True)
@@ -45,15 +48,16 @@ class ModelOptions:
 
 @dataclass(frozen=True, eq=False)
 class Plant:
-    """A MuJoCo model whose joints are driven by servos of one law.
+    """A nominal robot model whose joints are driven by servos.
 
     Attributes:
-      name: of the robot, or the stem of its file.
-      spec: has one affine actuator for each driven joint, named as the joint; its
-        control is a position target. A floating base has the free joint `root`.
-      joints: hinges and slides that traces speak of, in the model's order; all others
-        are held still.
-      servo: of these joints, where a trace does not say otherwise.
+      name: name of the robot, or the stem of its file.
+      spec: MuJoCo specification with one affine actuator for each driven joint, named
+        as the joint; its control is a position target. A floating base has the free
+        joint `root`.
+      joints: hinges and slides that recordings have, in the model's order; all other
+        joints are held still.
+      servo: servos of these joints, for recordings that state no gains.
       base: "fixed" or "floating".
       feet: names of the bodies that touch the ground, left before right.
       options: of the file that the model was read from; None if the file has none, as
@@ -78,22 +82,22 @@ class Plant:
 
     @cached_property
     def dofs(self) -> list[int]:
-        """Degree of freedom of each joint."""
+        """Index of each joint in MuJoCo's velocity vector."""
         return [int(self.model.joint(name).dofadr[0]) for name in self.joints]
 
     @cached_property
     def qpos(self) -> list[int]:
-        """Row in the position vector of each joint."""
+        """Index of each joint in MuJoCo's position vector."""
         return [int(self.model.joint(name).qposadr[0]) for name in self.joints]
 
     @cached_property
     def actuators(self) -> list[int]:
-        """Actuator of each joint."""
+        """Index of each joint's actuator."""
         return [int(self.model.actuator(name).id) for name in self.joints]
 
     @cached_property
     def slides(self) -> frozenset[str]:
-        """The joints that slide instead of turning."""
+        """Names of the joints that slide instead of turning."""
         import mujoco
 
         kinds = {name: int(self.model.joint(name).type[0]) for name in self.joints}
@@ -101,11 +105,11 @@ class Plant:
         return frozenset(name for name, kind in kinds.items() if kind == slide)
 
     def unit(self, unit: str, place: str) -> str:
-        """A unit at a place: of joints that slide it is metres where others turn.
+        """The unit of a quantity at a place; sliding joints have metres and newtons.
 
         Args:
-          unit: as it is where joints turn.
-          place: a joint, or anything else.
+          unit: the unit for a joint that turns, such as "N m/rad".
+          place: name of a joint, or any other place, which keeps the unit.
         """
         return _SLIDING.get(unit, unit) if place in self.slides else unit
 
@@ -120,7 +124,7 @@ class Plant:
         )
 
     def neighbours(self, body: str) -> frozenset[str]:
-        """The bodies that carry a body, and those that it carries."""
+        """Names of the bodies that carry a body, and of those that it carries."""
         model = self.model
         own = int(model.body(body).id)
         carried = [i for i in range(1, model.nbody) if _carries(model, own, i)]
@@ -128,7 +132,7 @@ class Plant:
         return frozenset(model.body(i).name for i in (*carried, *carrying))
 
     def at_rest(self, still: Collection[str]) -> frozenset[str]:
-        """The bodies that no joint moves as long as some of the joints are still."""
+        """Names of the bodies that stay at rest as long as the `still` joints do."""
         if self.base == "floating":
             return frozenset()
         moved = [

@@ -1,4 +1,4 @@
-"""The servos of a plant: where they come from and how the model carries them."""
+"""Reads servo gains from descriptions and models, and adds servos to models."""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
     import mujoco
 
 Gains = Mapping[str, ServoGains] | ServoGains
+"""Servo gains by joint, or the same for all joints."""
 
 
 def described_servo(description: Description, joints: Sequence[str]) -> Servo:
-    """The servos of a described robot; its motors' damping is back-EMF."""
+    """Servos of a described robot's joints; the motors' damping counts as back-EMF."""
     motors = [
         description.links[description.joints.index(name)].motor for name in joints
     ]
@@ -33,11 +34,15 @@ def described_servo(description: Description, joints: Sequence[str]) -> Servo:
 
 
 def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
-    """The servos that a model has itself; joints with motors or nothing have none.
+    """Read the servos that a compiled model has; joints without one get zero stiffness.
 
     Position actuators (fixed gain, affine bias) give stiffness and damping, through
-    their gear. Limits are the tightest of actuators and joint (`actuatorfrcrange`,
-    which is a URDF's effort).
+    their gear. The torque limit is the tightest of those of the actuators and of the
+    joint (`actuatorfrcrange`, which is a URDF's effort).
+
+    Args:
+      model: the compiled model.
+      joints: names of the joints whose servos are read.
     """
     servo = Servo.ideal(len(joints))
     kp, kd = servo.kp_nm_rad, servo.kd_nm_s_rad.copy()
@@ -59,19 +64,19 @@ def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
 
 
 def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Servo:
-    """A servo with other gains for some or all of its joints.
+    """Replace the gains of some or all joints of a servo.
 
-    Where the servo's damping is back-EMF, so is that of the gains: recordings state
-    one damping, the motor says on which side of the torque limit it acts.
+    A recording states one damping; it replaces the back-EMF where the servo has one,
+    otherwise the damping within the torque limit.
 
     Args:
-      servo: of `joints`.
-      joints: their names.
-      gains: by joint, or the same for all; the largest float as `max_torque` stands
-        for no limit.
+      servo: the servos of `joints`.
+      joints: names of all joints.
+      gains: new gains by joint, or the same for all joints; the largest float as
+        `max_torque` stands for no limit.
 
     Raises:
-      UnknownNameError: gains of a joint that is not there.
+      UnknownNameError: there are gains for a joint that does not exist.
     """
     if gains is None:
         return servo
@@ -91,7 +96,7 @@ def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Serv
 
 
 def remove_actuators(spec: "mujoco.MjSpec") -> None:
-    """Take all actuators out of a specification, and what speaks of them."""
+    """Remove all actuators of a specification, their sensors and all keyframes."""
     import mujoco
 
     kinds = (mujoco.mjtObj.mjOBJ_ACTUATOR,)
@@ -104,9 +109,15 @@ def remove_actuators(spec: "mujoco.MjSpec") -> None:
 
 
 def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> None:
-    """One affine actuator for each joint, named as the joint; back-EMF is damping.
+    """Add one affine actuator for each joint, named as the joint.
 
-    Its force is clip(kp control - kp q - kd v, +-max).
+    Its force is clip(kp control - kp q - kd v, +-max); the back-EMF becomes damping of
+    the joint.
+
+    Args:
+      spec: the robot model, which is changed.
+      joints: names of the joints.
+      servo: their servos.
     """
     import mujoco
 
