@@ -61,7 +61,7 @@ def load_plant(
 
     Example:
       >>> load_plant("nao", "fixed").joints[:2]
-      ('HeadYaw', 'HeadPitch')
+      ('LHipYawPitch', 'LHipRoll')
     """
     quiet_mujoco()  # of trial values that blow up, or joints that mimic others
     name, spec, description = _read(source, base)
