@@ -18,8 +18,7 @@ import numpy as np
 from benchmarks.ratios import judged, seconds
 from diagnosis.baselines.sysid import fitted
 from diagnosis.baselines.sysid_models import FreeParameter, free_parameters
-from diagnosis.effects.library import effect
-from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects import PlacedEffect, effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Model, Predictor

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from diagnosis.effects.library import all_effects
+from diagnosis.effects import all_effects
 from diagnosis.verdict.verdict import Found, Verdict
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase

@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.conclude.oracle import fit_structure
-from diagnosis.effects.library import all_effects, effect
-from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects import PlacedEffect, all_effects, effect
 from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import Found
 from experiments.concealed.reading import read_case
