@@ -16,7 +16,8 @@ class Errors:
     Attributes:
       nominal: error of the nominal sim.
       corrected: error of the sim with the effects found.
-      floor: error that the sensors' noise alone makes.
+      floor: noise floor: the measured noise, or the accuracy of simulation and clocks
+        where that is larger.
       ceiling: error of a flexible regression without physics.
       without: error with the effect left out that closes most, the others refitted.
       wrong_place: error with that effect moved to the best other place.
