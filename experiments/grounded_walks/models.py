@@ -110,7 +110,7 @@ class WalkModels:
 
 
 def action_envelope(deviation_rad: float) -> ActionNoise:
-    """White noise on the legs' commands, by its deviation [rad]: the method ANE."""
+    """Action noise envelope (ANE): white noise [rad] on the legs' commands."""
     bound = _bound()
     return ActionNoise(deviation_rad, -bound, bound)
 

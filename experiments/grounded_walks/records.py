@@ -18,9 +18,9 @@ EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
 without noise, data do not show the effect of a single action."""
 
 REAL_EXPLORATION_RAD = (0.0, 0.03)
-"""The same for the real world: noise on every second walk. A gait changes all commands
-smoothly, and from its data alone the latency of the roll joints was learned at half its
-length."""
+"""Standard deviations [rad] of the noise on commands in the real world: every second
+walk has noise. A gait changes all commands smoothly, and from its data alone the
+latency of the roll joints was learned at half its length."""
 
 
 class RealWalks(NamedTuple):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.command_line import run_verb
+from experiments.reports.figure_file import write_figure
 from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
@@ -12,7 +13,7 @@ from experiments.runs.options import RunOptions
 from experiments.runs.progress import progress
 from experiments.transfer.claims import claim_lines
 from experiments.transfer.cliff_study.claims import check_claims
-from experiments.transfer.cliff_study.figure import FIGURE, draw_cliff
+from experiments.transfer.cliff_study.figure import FIGURE, cliff_figure
 from experiments.transfer.cliff_study.page import returns_table, write_cliff_page
 from experiments.transfer.cliff_study.study import CliffStudy, Row, compare
 from groundwalk.errors import BadValueError
@@ -60,7 +61,9 @@ def main(config: TransferCliff) -> None:
     result = {"rows": rows, "claims": [claim.to_json() for claim in claims]}
     folder.write_json(RESULT, result)
     with extra(FIGURE):
-        draw_cliff(rows, (config.rows, config.columns), folder.path / FIGURE)
+        write_figure(
+            cliff_figure(rows, (config.rows, config.columns)), folder.path / FIGURE
+        )
     write_cliff_page(folder, config.study(), rows, claims)
     if config.json:
         print_json(result)

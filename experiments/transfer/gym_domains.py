@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from experiments.reports.figure_file import write_figure
 from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
@@ -15,7 +16,7 @@ from experiments.transfer.gym_studies.environments import (
     INVERTED_PENDULUM,
     Domain,
 )
-from experiments.transfer.gym_studies.figure import draw_returns
+from experiments.transfer.gym_studies.figure import returns_figure
 from experiments.transfer.gym_studies.grounding import GroundingConfig
 from experiments.transfer.gym_studies.page import write_gym_page
 from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
@@ -52,7 +53,7 @@ class TransferGym(RunOptions):
     threads: int = 2
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse options with which nothing can run, before anything is written."""
         self.study()
         check_at_least(self, threads=1)
         super().__post_init__()
@@ -113,7 +114,7 @@ def main(config: TransferGym) -> None:
     }
     folder.write_json(RESULT, result)
     with extra(figure):
-        draw_returns(rows, folder.path / figure)
+        write_figure(returns_figure(rows), folder.path / figure)
     write_gym_page(folder, config.title, figure, (config.size, study), result)
     if config.json:
         print_json(result)

@@ -10,12 +10,13 @@ import worlds
 from experiments.command_line import run_verb
 from experiments.grounded_walks.courses import Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
+from experiments.reports.figure_file import write_figure
 from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
-from experiments.transfer.nao_studies.figure import FIGURE, draw_cells
+from experiments.transfer.nao_studies.figure import FIGURE, cells_figure
 from experiments.transfer.nao_studies.page import (
     CELLS,
     HEADINGS,
@@ -157,7 +158,7 @@ def _write(
     """Write the results so far, since a study takes hours."""
     folder.write_json(RESULT, {CELLS: cells})
     with extra(FIGURE):
-        draw_cells(cells, folder.path / FIGURE)
+        write_figure(cells_figure(cells), folder.path / FIGURE)
     write_nao_page(folder, cells, len(config.plan), config.places.real)
 
 

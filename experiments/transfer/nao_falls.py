@@ -13,16 +13,17 @@ from experiments.grounded_walks.data import walk
 from experiments.grounded_walks.models import WalkModels
 from experiments.grounded_walks.records import record_real, record_walks
 from experiments.grounded_walks.sim import ROBOT, walk_in_sim
+from experiments.reports.figure_file import write_figure
 from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, open_run
 from experiments.runs.options import RunOptions
 from experiments.runs.progress import progress
-from experiments.transfer.nao_studies.falls_figure import FIGURE, draw_falls
+from experiments.transfer.nao_studies.falls_figure import FIGURE, falls_figure
 from experiments.transfer.nao_studies.falls_measures import (
     GROUNDINGS,
     MEASURES_FIGURE,
-    draw_measures,
+    measures_figure,
     measures_of,
 )
 from experiments.transfer.nao_studies.falls_page import (
@@ -79,9 +80,9 @@ def main(config: TransferNaoFalls) -> None:
     rows = prediction_rows(state)
     folder.write_json(RESULT, {"predictions": rows, MEASURES: state[MEASURES]})
     with extra(MEASURES_FIGURE):
-        draw_measures(state[MEASURES], folder.path / MEASURES_FIGURE)
+        write_figure(measures_figure(state[MEASURES]), folder.path / MEASURES_FIGURE)
     with extra(FIGURE):
-        draw_falls(state, folder.path / FIGURE)
+        write_figure(falls_figure(state), folder.path / FIGURE)
     write_falls_page(folder, rows, state, config.trials)
     if config.json:
         print_json(folder.read_json(RESULT))

@@ -1,12 +1,10 @@
 """The figure of cliff walking: returns over noise, and two paths along the cliff."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.reports.figure_file import write_figure
 from experiments.transfer.cliff_study.study import GAT, OPTIMUM, SGAT, UNGROUNDED, Row
 
 if TYPE_CHECKING:
@@ -25,11 +23,6 @@ STYLES: dict[str, dict[str, Any]] = {
 and Ito)."""
 
 CLIFF_COLOUR, GOAL_COLOUR = "#f4c7b8", "#bfe3d0"
-
-
-def draw_cliff(rows: Sequence[Row], grid: tuple[int, int], path: Path) -> None:
-    """Draw `cliff_figure` into a PNG file."""
-    write_figure(cliff_figure(rows, grid), path)
 
 
 def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":

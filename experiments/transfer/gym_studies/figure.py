@@ -1,10 +1,8 @@
 """Figure of a Gymnasium study: each method's return on real, over noise."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from experiments.reports.figure_file import write_figure
 from experiments.transfer.gym_studies.rows import Row
 from experiments.transfer.gym_studies.study import ANE, GAT, NONE, REAL, SGAT, SGAT_FULL
 
@@ -23,11 +21,6 @@ COLOURS = {
 OTHER_COLOUR = "#009e73"
 LINE_COLOUR = "#b2182b"
 GROUP_WIDTH = 0.8
-
-
-def draw_returns(rows: Sequence[Row], path: Path) -> None:
-    """Draw `returns_figure` into a PNG file."""
-    write_figure(returns_figure(rows), path)
 
 
 def returns_figure(rows: Sequence[Row]) -> "Figure":

@@ -73,7 +73,7 @@ class GymStudy:
     seed: int
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do."""
+        """Refuse settings with which nothing can run."""
         for name in ("seeds", "episodes"):
             if getattr(self, name) < 2:
                 raise BadValueError(

@@ -1,10 +1,8 @@
 """Figure of predicted against real fall rates and speeds."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments.reports.figure_file import write_figure
 from experiments.transfer.nao_studies.falls_measures import GROUNDINGS
 
 if TYPE_CHECKING:
@@ -14,11 +12,6 @@ FIGURE = "transfer_nao_falls.png"
 
 PANELS = (("fall_rate", "fall rate", 1.0), ("speed_cm_s", "speed [cm/s]", 40.0))
 """For each row of panels: key of the results, label, and end of the axes."""
-
-
-def draw_falls(state: Mapping[str, Any], path: Path) -> None:
-    """Draw `falls_figure` into a PNG file."""
-    write_figure(falls_figure(state), path)
 
 
 def falls_figure(state: Mapping[str, Any]) -> "Figure":

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +16,6 @@ from experiments.grounded_walks.models import (
     WalkModels,
 )
 from experiments.grounded_walks.sim import ROBOT
-from experiments.reports.figure_file import write_figure
 from groundwalk.arrays import FloatArray
 from robots import biped
 from sgat.grounding_report import GroundingReport
@@ -129,11 +127,6 @@ def measure_rows(measures: Measures) -> list[list[str]]:
             ]
         )
     return rows
-
-
-def draw_measures(measures: Measures, path: Path) -> None:
-    """Draw `measures_figure` into a PNG file."""
-    write_figure(measures_figure(measures), path)
 
 
 def measures_figure(measures: Measures) -> "Figure":

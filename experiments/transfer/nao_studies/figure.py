@@ -1,10 +1,8 @@
 """Figure of the NAO study: how fast each gait is, and how often it falls."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments.reports.figure_file import write_figure
 from experiments.reports.statistics import wilson
 
 if TYPE_CHECKING:
@@ -13,11 +11,6 @@ if TYPE_CHECKING:
 FIGURE = "transfer_nao.png"
 COLOURS = ("0.6", "#56b4e9", "#0072b2")
 """Colours of the grounding steps 0, 1 and 2."""
-
-
-def draw_cells(cells: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Draw `cells_figure` into a PNG file."""
-    write_figure(cells_figure(cells), path)
 
 
 def cells_figure(cells: Sequence[Mapping[str, Any]]) -> "Figure":

@@ -13,6 +13,7 @@ from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.figure import FIGURE
+from experiments.walking.trials import FALL_PENALTY_CM_S
 from experiments.walking.tuning import RATINGS
 from sgat.transformers.catalogue import groundings
 from terrain import Flat, Lumps, configuration, parse
@@ -108,7 +109,7 @@ def claims_of(cells: Sequence[Cell]) -> list[Claim]:
         ),
         Claim(
             "on an uneven sim SGAT tunes a better gait than on the flat",
-            _earned(best) > _earned(sgat),
+            worth_cm_s(best) > worth_cm_s(sgat),
             f"{_walked(best)} against {_walked(sgat)}",
         ),
     ]
@@ -118,7 +119,7 @@ def _better_than_nominal(diagnosed: Cell, nominal: Cell) -> Claim:
     return Claim(
         "the gait tuned on the diagnosed sim walks better than the one tuned on the "
         "nominal sim",
-        _earned(diagnosed) > _earned(nominal),
+        worth_cm_s(diagnosed) > worth_cm_s(nominal),
         f"{_walked(diagnosed)} against {_walked(nominal)}; one-sided, Fisher's exact "
         f"test of the falls: p = {more_falls_p(nominal, diagnosed):.2g}, Welch's test "
         f"of the speeds: p = {faster_p(diagnosed, nominal):.2g}",
@@ -208,7 +209,7 @@ def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
 
 def answer_of(cells: Sequence[Cell]) -> list[str]:
     """The best gait beside the one tuned in the plain sim, and whether it is good."""
-    best = max(cells, key=_earned)
+    best = max(cells, key=worth_cm_s)
     step = f", step {best['step']}" if best["step"] else ""
     good = "It reaches" if _is_good(best) else "It does not reach"
     said = f"The best gait is that of {best['method']}{step}: {_walked(best)}."
@@ -234,6 +235,13 @@ def _walked(cell: Cell) -> str:
     )
 
 
-def _earned(cell: Cell) -> float:
-    """Speed minus the SGAT paper's 15 cm/s for each fall, per trial."""
-    return float(cell["speed_mean"] - 15 * cell["falls"] / cell["trials"])
+def worth_cm_s(cell: Cell) -> float:
+    """Speed minus the SGAT paper's cost of falls [cm/s]: what a gait is worth on real.
+
+    Searches in a grounded sim charge `FALL_PENALTY_WALK_CM_S`, four times as much,
+    since their walks are short. Here, where whole courses were walked, the paper's
+    value is
+    used: to name the best gait, and for ANE to choose its level of noise.
+    """
+    falls = FALL_PENALTY_CM_S * cell["falls"] / cell["trials"]
+    return float(cell["speed_mean"] - falls)

@@ -1,4 +1,4 @@
-"""The cells of the NAO study: each finds a gait its own way and tries it on real.
+"""The cells of the NAO study: ways to find a gait, each tried in the real world.
 
 A cell is one method after one grounding step. To try another grounding of
 `sgat.transformers`, add its title to `PLAN`.
@@ -28,9 +28,13 @@ from experiments.grounded_walks.raters import (
 from experiments.grounded_walks.sim import ROBOT, GroundedSim
 from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
-from experiments.transfer.nao_studies.page import CELLS, DIAGNOSED, DIAGNOSED_SIM
+from experiments.transfer.nao_studies.page import (
+    CELLS,
+    DIAGNOSED,
+    DIAGNOSED_SIM,
+    worth_cm_s,
+)
 from experiments.walking.evaluation import Study, evaluate
-from experiments.walking.trials import FALL_PENALTY_CM_S
 from experiments.walking.tuning import Budget, Rater, tune
 from sgat.transformers.catalogue import grounding
 from sgat.walks.gait_cloud import GaitCloud
@@ -81,12 +85,6 @@ ENVELOPES_RAD = (0.02, 0.05)
 
 ENVELOPE_WALKS = 12
 """Real walks by which ANE judges each level."""
-
-ENVELOPE_FALL_COST_CM_S = FALL_PENALTY_CM_S
-"""What a fall costs [cm/s] where ANE chooses its level: the SGAT paper's 15. Searches
-in a grounded sim use `FALL_PENALTY_WALK_CM_S`, four times as much. The published
-results were made with 15 here, so it stays; with 12 walks a level, the choice is coarse
-anyway."""
 
 OF_DATA, OF_SEARCH, OF_TRIALS, OF_ENVELOPES = range(4)
 """Numbers of the streams of random numbers; all cells share them, so that differences
@@ -227,9 +225,7 @@ class NaoStudy:
             rater = GroundedRater(envelope, self._effort.repeats)
             gait = self._tune(path, gaits.get("start"), rater)
             score = self._try(gait, ENVELOPE_WALKS, OF_ENVELOPES)
-            share = score["falls"] / score["trials"]
-            worth = score["speed_mean"] - ENVELOPE_FALL_COST_CM_S * share
-            found.append((worth, level, gait))
+            found.append((worth_cm_s(score), level, gait))
         _, level, gait = max(found, key=lambda entry: entry[:2])
         walks = ENVELOPE_WALKS * len(found)
         return gait, {"real_walks": walks, "envelope_rad": level}

@@ -27,6 +27,7 @@ from experiments.transfer.nao_studies.page import (
     faster_p,
     more_falls_p,
     table_of,
+    worth_cm_s,
 )
 from experiments.transfer.nao_studies.study import START
 from groundwalk.errors import BadValueError, UnknownNameError
@@ -222,3 +223,8 @@ def test_the_claim_of_a_diagnosed_sim_can_fail(nominal, diagnosed, holds):
     cells = [cell(NONE, 1, *nominal), cell(DIAGNOSED_SIM, 1, *diagnosed)]
     (claim,) = claims_of(cells)
     assert claim.holds is holds
+
+
+def test_a_fall_costs_what_it_costs_in_the_paper():
+    """15 cm/s, where a whole course is walked: 10 falls of 40 cost a quarter of it."""
+    assert worth_cm_s(cell(NONE, 1, 20, 10, 40)) == pytest.approx(20 - 15 / 4)
