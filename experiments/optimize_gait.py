@@ -1,5 +1,6 @@
 """`groundwalk optimize-gait`: CMA-ES tunes the 16 gait parameters in the sim."""
 
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -67,18 +68,9 @@ class OptimizeGait(RunOptions):
             self.study(world)
 
     def plan(self) -> SearchPlan:
-        """The search."""
-        return SearchPlan(
-            robot=self.robot,
-            start=self.start,
-            terrain=self.terrain,
-            sim=self.sim,
-            population=self.population,
-            generations=self.generations,
-            sigma=self.sigma,
-            seed=self.seed,
-            threads=self.threads,
-        )
+        """The search that these options ask for."""
+        names = [field.name for field in dataclasses.fields(SearchPlan)]
+        return SearchPlan(**{name: getattr(self, name) for name in names})
 
     def study(self, world: str) -> Study:
         """How start and tuned gait are evaluated in a world, "sim" or "real"."""

@@ -84,6 +84,16 @@ def check_run_folder(folder: Path, result):
     assert kept <= {path.name for path in folder.iterdir()}
 
 
+def test_an_extended_search_has_the_bits_of_a_long_one(tmp_path):
+    folder = RunFolder(tmp_path / "extended")
+    search_gait(SearchPlan(population=6, generations=1), folder)
+    longer = search_gait(SearchPlan(population=6, generations=2), folder)
+    whole = RunFolder(tmp_path / "whole")
+    assert search_gait(SearchPlan(population=6, generations=2), whole) == longer
+    name = "history.json"
+    assert (folder.path / name).read_bytes() == (whole.path / name).read_bytes()
+
+
 def test_the_same_seed_gives_the_same_history_on_any_number_of_threads(tmp_path):
     one = history_of(tmp_path, "one", threads=1)
     assert one == history_of(tmp_path, "two", threads=2)

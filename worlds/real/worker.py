@@ -1,5 +1,6 @@
 """The process that computes some robots of the real world."""
 
+import contextlib
 import os
 import signal
 from multiprocessing.connection import Connection
@@ -34,7 +35,7 @@ def state_columns(joints: int) -> dict[str, slice]:
 
 
 def serve(connection: Connection) -> None:
-    """Compute robots until told to stop.
+    """Compute robots until told to stop, or until the world's process has ended.
 
     The first message is (description, grounds, options) and has no answer. Then come
     ("start", poses, heights), ("step", active, schedule) or ("stop",). The answer to
@@ -50,6 +51,12 @@ def serve(connection: Connection) -> None:
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 1)
     import_bullet()
+    with contextlib.suppress(EOFError, ConnectionError):
+        _answer(connection)
+
+
+def _answer(connection: Connection) -> None:
+    """Make the robots, and answer messages until one says stop; see `serve`."""
     description, grounds, options = connection.recv()
     kind = HiddenRobot if options.hidden else BulletRobot
     robots = [kind(description, ground, options) for ground in grounds]
