@@ -1,4 +1,4 @@
-"""Verdicts of each kind, and series that go with them, made up by hand."""
+"""Made-up verdicts of each kind, with held-out series that match them."""
 
 import numpy as np
 
@@ -207,7 +207,7 @@ KINDS = {"effects": EFFECTS, "none": NONE, "unknown": UNKNOWN, "not_identifiable
 
 
 def series(name="air_multisine_1", duration_s=20.0, seed=3, joints=JOINTS):
-    """Positions of which the left knee is off by play, most in reversals."""
+    """Held-out positions; only the left knee differs from the sim, by backlash."""
     random = np.random.default_rng(seed)
     time_s = np.arange(0.0, duration_s, 0.01)
     channels = {}

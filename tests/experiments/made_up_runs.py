@@ -1,4 +1,4 @@
-"""Runs that never ran: a robot that glides along on straight legs, a plain search."""
+"""Made-up run folders: a robot that glides on straight legs, and a simple search."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ STANDING_M = 0.085 + 0.1 + 0.1029 + 0.04511
 
 
 def glide(x_m, y_m=0.0, **about):
-    """A recording at 100 Hz with these (ticks,) base positions."""
+    """A recording at 100 Hz with the given (ticks,) base positions."""
     x_m = np.asarray(x_m, dtype=float)
     columns = {"time": 0.01 * np.arange(len(x_m))}
     for joint in NAO.joints:
@@ -28,12 +28,12 @@ def glide(x_m, y_m=0.0, **about):
 
 
 def steady(speed_m_s=0.2, duration_s=2.0, **about):
-    """From x = 0 on at a constant speed."""
+    """A recording of a robot that moves from x = 0 at a constant speed."""
     return glide(speed_m_s * np.arange(0, duration_s + 0.005, 0.01), **about)
 
 
 def history(generations, fell=()):
-    """Four gaits a generation; one more centimetre a second each time."""
+    """A search with four gaits a generation, each generation 1 cm/s faster."""
     return [
         {
             "generation": k,

@@ -59,7 +59,7 @@ def case(number, kind, *effects):
 
 
 def scored(*rows, method=DIAGNOSIS):
-    """Score of (kind, effects, verdict or None, oracle or None) rows."""
+    """Score of a set from rows (kind, effects, verdict or None, oracle or None)."""
     cases = tuple(case(i, kind, *hidden) for i, (kind, hidden, _, _) in enumerate(rows))
     verdicts = {
         one.name: row[2] for one, row in zip(cases, rows, strict=True) if row[2]

@@ -14,7 +14,7 @@ from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
-    """A pendulum's servo that lets a tenth of its stiffness go."""
+    """A recording of a pendulum whose servo has 0.9 of its nominal stiffness."""
     path = tmp_path_factory.mktemp("recorded") / "swing.parquet"
     hidden = ("servo_gain@swing:factor=0.9",)
     record(
@@ -108,7 +108,7 @@ def test_recordings_that_the_audit_refuses_leave_no_folder(recording, tmp_path):
 
 @pytest.mark.slow
 def test_an_arm_from_a_urdf_is_diagnosed_to_the_end(tmp_path, capsys):
-    """Two feet are asked of walking robots only: an arm's overlay has its curves."""
+    """An arm has no feet: its overlay shows curves without a robot."""
     path = tmp_path / "arm.parquet"
     record(Record(robot="so101", motion="steps", duration=5.0, out=path))
     model = path.with_name("arm.nominal.urdf")

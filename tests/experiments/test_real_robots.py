@@ -161,7 +161,7 @@ def test_the_console_stays_short():
 
 
 def test_the_report_is_the_one_that_judges(tmp_path, monkeypatch, capsys):
-    """The diagnosis wrote its own before; it is kept beside."""
+    """The report of the diagnosis is kept under another name."""
 
     def diagnosed(config):
         folder = RunFolder.create("diagnose", config)

@@ -1,4 +1,4 @@
-"""Drawn truths against the diagnosis that is to find them, and against closed forms."""
+"""Tests that drawn effects can be found by the diagnosis, and have the right sizes."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ def rng(*seed):
 
 
 def short_motion(name):
-    """The robot, its nominal scales, and a trace for the diagnosis."""
+    """A robot, the scales of its nominal motion, and a trace for the diagnosis."""
     motion = CaseMotion.drawn(name, False, 1e-4, rng(3))
     short = replace(motion, spans_s=((0.3, DURATION_S),) * 4)
     runs = []
@@ -47,7 +47,7 @@ def short_motion(name):
 
 @pytest.fixture(scope="module")
 def drawn():
-    """All motions by plant, and 300 cases: (sort, what is hidden)."""
+    """Motions by plant, and 300 drawn cases: (sort, hidden effects)."""
     motions = {name: short_motion(name) for name in PLANTS}
     cases = []
     for number in range(CASES):
@@ -61,7 +61,7 @@ def drawn():
 
 @pytest.fixture(scope="module")
 def searched(drawn, tmp_path_factory):
-    """What the diagnosis makes of each plant: its plant and traces."""
+    """Each robot as the diagnosis sees it: its plant and traces."""
     folder, found = tmp_path_factory.mktemp("plants"), {}
     for name, (motion, runs, _) in drawn[0].items():
         plant = motion.plant

@@ -21,12 +21,12 @@ from worlds.hidden.run import run_hidden
 
 @pytest.fixture
 def pendulums(monkeypatch):
-    """Sets of the cheapest plant only."""
+    """Draw the pendulum only, which is simulated fastest."""
     monkeypatch.setattr(concealed_draw, "PLANTS", {"pendulum": 1.0})
 
 
 def make(folder, cases=2, seed=4):
-    """Make a set in this process, with what a test has changed in it."""
+    """Make a set in this process, where the changes of a test apply."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             processes, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
@@ -42,7 +42,7 @@ def contents(folder):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Folders of sets of pendulums by their number of cases; they stay as they are."""
+    """Folders of sets of pendulums, by their number of cases; tests must not change them."""
     folder = tmp_path_factory.mktemp("concealed")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(concealed_draw, "PLANTS", {"pendulum": 1.0})

@@ -17,7 +17,7 @@ ANSWERS = "answers"
 
 
 def noted(case: Path, seed: int) -> Verdict:
-    """A verdict that says which case and seed it is of."""
+    """A verdict whose text names its case and seed."""
     return Verdict(kind="not_identifiable", limits=(f"{case.name}, seed {seed}",))
 
 
@@ -68,7 +68,7 @@ def test_a_failure_is_raised_and_loses_no_answer(folder):
 
 
 def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkeypatch):
-    """From what a diagnosis learns from; what is kept for its test stays unseen."""
+    """Baselines see the recordings that are fitted and selected on, not the held-out ones."""
     traces = [made_up_trace(name) for name in "abcdef"]
     monkeypatch.setattr(concealed_run, "read_case", lambda case: (None, traces, []))
     seen = []

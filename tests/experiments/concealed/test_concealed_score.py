@@ -1,4 +1,4 @@
-"""`groundwalk concealed score` on folders that are made up."""
+"""Tests `groundwalk concealed score` on made-up folders."""
 
 import hashlib
 import json

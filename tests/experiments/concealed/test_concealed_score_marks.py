@@ -1,4 +1,4 @@
-"""Scores of made-up sets: every figure is known by hand."""
+"""Tests the scores of made-up sets, whose figures can be computed by hand."""
 
 import pytest
 from made_up_scores import (

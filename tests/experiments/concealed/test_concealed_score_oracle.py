@@ -1,4 +1,4 @@
-"""What the true structure reaches: on a pendulum whose truth MuJoCo makes directly."""
+"""Tests the oracle on a pendulum that MuJoCo simulates with viscous friction."""
 
 import json
 

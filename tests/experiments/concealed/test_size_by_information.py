@@ -1,4 +1,4 @@
-"""Sizes by information: what runs tell, and the ease at which they tell so much."""
+"""Tests the nats of simulated motions, and the search for the ease that gives them."""
 
 import math
 from types import SimpleNamespace
@@ -32,7 +32,7 @@ def run(encoder_rad, first=2, ok=True):
 
 
 def test_half_the_squared_difference_in_units_of_noise():
-    """The log-likelihood ratio of two Gaussians that differ in their mean."""
+    """Nats are the log-likelihood ratio of two Gaussians that differ in their mean."""
     was = np.zeros((12, 3))
     now = was.copy()
     now[:, 1] = 0.002  # two standard deviations in each of ten rows
@@ -82,7 +82,7 @@ def test_where_no_size_tells_so_much_there_is_none():
 @pytest.mark.parametrize("wanted", [5.0, 50.0, 2000.0])
 @pytest.mark.parametrize("first", [-0.5, 0.3, 0.9])
 def test_what_tells_nothing_when_small_does_not_mislead(wanted, first):
-    """A limit that is not reached, a stop that is not touched."""
+    """Some sizes give no nats, such as a torque limit that is not reached."""
 
     def told(ease):
         return 0.0 if ease < 0.4 else math.exp(20 * (ease - 0.4))

@@ -218,7 +218,7 @@ def test_what_comes_and_goes_is_told_one_by_one():
 
 
 def test_what_the_data_do_not_show_is_not_given_as_a_number():
-    """A push across an axis that only slides, all the time."""
+    """A push on a sliding joint shows along its axis only."""
     shown, not_shown = Estimate(3.4, 3.1, 3.6, "N"), Estimate(2.0, -598.0, 598.0, "N")
     force = {"x": shown, "y": not_shown, "z": not_shown}
     push = Found("external_force", "carriage", force, 0.8)
