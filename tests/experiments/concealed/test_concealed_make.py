@@ -42,7 +42,7 @@ def contents(folder):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Folders of sets of pendulums, by their number of cases; tests must not change them."""
+    """Folders of sets of pendulums, by number of cases; tests leave them unchanged."""
     folder = tmp_path_factory.mktemp("concealed")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(concealed_draw, "PLANTS", {"pendulum": 1.0})

@@ -68,7 +68,7 @@ def test_a_failure_is_raised_and_loses_no_answer(folder):
 
 
 def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkeypatch):
-    """Baselines see the recordings that are fitted and selected on, not the held-out ones."""
+    """A baseline does not see the held-out recordings."""
     traces = [made_up_trace(name) for name in "abcdef"]
     monkeypatch.setattr(concealed_run, "read_case", lambda case: (None, traces, []))
     seen = []
