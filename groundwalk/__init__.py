@@ -1,3 +1,6 @@
-"""The ground floor of the house: what every room may import, and nothing else."""
+"""The ground floor: small modules that every other package may import.
+
+Errors, array types, JSON of dataclasses, atomic files, gravity and BLAS threads.
+"""
 
 __version__ = "0.1.0"

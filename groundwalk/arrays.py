@@ -1,4 +1,4 @@
-"""Array types used in signatures throughout the house."""
+"""NumPy array types for signatures: floats, indices and flags."""
 
 import numpy as np
 import numpy.typing as npt

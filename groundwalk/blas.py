@@ -1,4 +1,4 @@
-"""BLAS in one thread."""
+"""Runs functions with BLAS limited to one thread, for reproducible results."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -11,10 +11,17 @@ Result = TypeVar("Result")
 
 
 def one_blas_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
-    """A function whose result does not depend on the number of cores.
+    """Make a function whose result does not depend on the number of cores.
 
-    Several threads add in another order, and a fit or a search that stands on such sums
-    may end elsewhere. Only libraries count that are loaded when it is called.
+    Several BLAS threads add numbers in another order, so that a fit or a search may end
+    at other values. The limit applies to libraries that are loaded when the function
+    is called.
+
+    Args:
+      function: any function.
+
+    Returns:
+      A function with the same arguments and result.
     """
 
     @wraps(function)

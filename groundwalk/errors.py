@@ -1,4 +1,4 @@
-"""The one base class of the errors that a user can cause, and their wording.
+"""Errors that a user can cause: one base class, and a common wording.
 
 A message says in one line what was wrong, what would be right and, where a name
 was misspelt, the nearest one that exists. The command line turns every
@@ -14,11 +14,11 @@ errors give more than 0.8; insensitive between 0.4 and 0.6."""
 
 
 class GroundwalkError(Exception):
-    """Something that the caller gave cannot be used; the message says what."""
+    """An argument, a file or a name cannot be used; the one-line message says why."""
 
 
 class UnknownNameError(GroundwalkError):
-    """A name that stands for nothing here."""
+    """A name is not one of those that are known; the message suggests the nearest."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Word the message.
@@ -64,16 +64,16 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
 
 
 class BadValueError(GroundwalkError):
-    """A value outside of what its meaning allows."""
+    """A value is outside of its allowed range, or of the wrong kind."""
 
 
 class BadRecordingError(GroundwalkError):
-    """A recording that cannot be read or that contradicts its format."""
+    """A recording cannot be read, or contradicts the recording format."""
 
 
 class BadModelError(GroundwalkError):
-    """A file that holds no model, or not the kind of model that was asked for."""
+    """A file holds no model, or another kind of model than was asked for."""
 
 
 class RunFolderError(GroundwalkError):
-    """A run folder that is in the way, missing or not what it should be."""
+    """A run folder exists already, is missing, or is not of the expected kind."""

@@ -1,15 +1,15 @@
-"""Writing files so that a reader never sees half of one."""
+"""Writes files atomically, so that a reader never sees half of one."""
 
 import os
 from pathlib import Path
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Write content to path at once: to a file beside it, then renamed.
+    """Write a file atomically: to a temporary file beside it, which is then renamed.
 
     Args:
-      path: the file; its folder is made if it is not there.
-      content: everything that the file shall hold.
+      path: the file; its folder is made if it does not exist.
+      content: all bytes of the file.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.name}.partial")
@@ -21,5 +21,10 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def write_text(path: Path, content: str) -> None:
-    """Write UTF-8 text to path at once; see `write_bytes`."""
+    """Write a text file in UTF-8 atomically, as `write_bytes` does.
+
+    Args:
+      path: the file; its folder is made if it does not exist.
+      content: the whole text.
+    """
     write_bytes(path, content.encode())

@@ -1,4 +1,4 @@
-"""Gravity, as both worlds have it."""
+"""Gravity, as both simulated worlds have it."""
 
 GRAVITY_M_S2 = 9.81
-"""On Earth, rounded as physics engines round it."""
+"""Standard gravity, rounded to two digits as MuJoCo and PyBullet users do."""

@@ -1,7 +1,7 @@
-"""What others would do: plain methods that answer the same question as a diagnosis.
+"""Baselines: established methods that answer the same question as a diagnosis.
 
-Each is `answer(plant, traces)`: the nominal plant and the recordings that a diagnosis
-would fit, and a verdict that can be scored beside the diagnosis' own.
+Each one is a function `answer(plant, traces)` of the nominal robot model and the
+recordings that a diagnosis would fit. Its verdict can be scored like a diagnosis'.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -11,9 +11,15 @@ from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict.verdict import Verdict
 
+__all__ = ["BASELINES"]
+
 BASELINES: Mapping[str, Callable[[Plant, Sequence[Trace]], Verdict]] = {
     "sysid": sysid.answer,
     "bic": bic.answer,
     "sparse": sparse.answer,
 }
-"""By the name of their folder among the answers."""
+"""The baselines by name; concealed sets keep their answers in folders of these names.
+
+Example:
+  See docs/concealed.md.
+"""

@@ -1,4 +1,4 @@
-"""Every single effect fitted alone; the Bayesian information criterion decides."""
+"""Baseline: fits single effects; the Bayesian information criterion chooses one."""
 
 import time
 from collections.abc import Sequence
@@ -17,10 +17,10 @@ from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray
 
 CANDIDATES = 8
-"""So many of all effects and places are fitted: those whose first guesses are best."""
+"""Number of effects at places that are fitted: those with the best first guesses."""
 
 CONFUSABLE = 10.0
-"""Differences below this are not yet very strong (Kass and Raftery 1995)."""
+"""Differences of BIC below this are no very strong evidence (Kass and Raftery 1995)."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
@@ -30,8 +30,8 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     is usual; nothing is held out.
 
     Args:
-      plant: nominal.
-      traces: to be fitted, all of them.
+      plant: the nominal robot model.
+      traces: recordings; all of them are fitted.
     """
     begun_s = time.monotonic()
     predictor = Predictor(plant, traces)
@@ -65,12 +65,12 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 
 
 def criterion(fit: FittedModel, samples: int) -> float:
-    """BIC of a fit, up to what all fits share."""
+    """BIC of a fit, up to a constant that all fits share."""
     return 2 * fit.energy + float(fit.jacobian.shape[1] * np.log(samples))
 
 
 def intervals(fit: FittedModel) -> list[tuple[float, float]]:
-    """(low, high) of each value of a model: 80 %, as if the residual were white."""
+    """80 % intervals (low, high) of a model's values, as if the residual were white."""
     information = fit.jacobian.T @ fit.jacobian
     variance = np.diag(np.linalg.pinv(information))
     x = fit.coordinates.of(fit.model)

@@ -1,4 +1,4 @@
-"""Fitted numbers as parts of a verdict."""
+"""Turns fitted numbers into the effects of a verdict."""
 
 from collections.abc import Sequence
 
@@ -11,9 +11,10 @@ from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import Estimate, Found
 
 NORMAL_80 = float(norm.ppf(0.9))
-"""Half of an 80 % interval, in standard deviations."""
+"""Half width of an 80 % interval in standard deviations."""
 
 _LARGEST = 1e12
+"""Size of the numbers that stand for infinite bounds in a verdict."""
 
 
 def found_effect(
@@ -23,14 +24,14 @@ def found_effect(
     probability: float,
     confusable_with: Sequence[PlacedEffect] = (),
 ) -> Found:
-    """An effect with its values and their 80 % intervals, within the bounds.
+    """Make an effect of a verdict, with values and intervals within their bounds.
 
     Args:
-      plant: nominal.
-      placed: what was found.
-      spans: (low, high) of each value; clipped to what makes sense.
-      probability: that it is right.
-      confusable_with: what else would explain the same.
+      plant: the nominal robot model.
+      placed: the effect found, with its values.
+      spans: 80 % interval (low, high) of each value; clipped to the parameter's bounds.
+      probability: probability that the effect is right.
+      confusable_with: effects that would explain the recordings about as well.
     """
     kind = effect(placed.name)
     estimates = {}

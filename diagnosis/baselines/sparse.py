@@ -1,4 +1,4 @@
-"""Sparse regression of the torque that the nominal model cannot account for."""
+"""Baseline: sparse regression of the torque that the nominal model does not explain."""
 
 import time
 from collections.abc import Sequence
@@ -16,13 +16,18 @@ from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray, IntArray
 
 THRESHOLD = 0.1
-"""A column stays if its part is this large, measured against all that is to explain."""
+"""Smallest length of a column times its size, relative to the missing torque's."""
 
 MOST_EFFECTS = 3
+"""Most effects in an answer."""
+
 _ROUNDS = 20
+"""Rounds of thresholding; it settles after a few."""
+
 _RIDGE = 0.05
-"""PySINDy's own default, on columns of length one. It makes sizes a little too small,
-but without it they run away: the equation of motion itself is a sum of columns."""
+"""Ridge penalty on columns of length one, PySINDy's default. It makes sizes slightly
+too small; without it they diverge, since the equation of motion itself is a sum of
+columns."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
@@ -32,8 +37,9 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     by sparse identification of nonlinear dynamical systems".
 
     Args:
-      plant: nominal; its base must be fixed, since forces of contact are not known.
-      traces: to be fitted.
+      plant: the nominal robot model; its base must be fixed, since contact forces are
+        not known.
+      traces: recordings; all of them are fitted.
     """
     begun_s = time.monotonic()
     recordings = Recordings(fit=tuple(trace.name for trace in traces))
@@ -66,16 +72,16 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 def sequential_threshold(
     columns: FloatArray, target: FloatArray, threshold: float = THRESHOLD
 ) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Least squares, again and again without the columns that do little.
+    """Repeat least squares, each time without the columns that contribute little.
 
     Args:
-      columns: (N, k).
-      target: (N,).
-      threshold: least length of a column times its size, over that of the target.
+      columns: (N, k) candidate terms.
+      target: (N,) values to be explained.
+      threshold: smallest length of a column times its size, relative to the target's.
 
     Returns:
-      Which columns are left, their sizes, and the sizes' standard errors as if what is
-      left were white.
+      Indices of the columns that remain, their sizes, and the sizes' standard errors as
+      if the residual were white.
     """
     length = np.linalg.norm(columns, axis=0)
     whole = float(np.linalg.norm(target))
@@ -106,10 +112,10 @@ def _placed(
     size: FloatArray,
     error: FloatArray,
 ) -> list[tuple[PlacedEffect, list[tuple[float, float]], float]]:
-    """Effects with values, spans and how much they explain, the largest first.
+    """Effects with values, intervals and the share they explain, the largest first.
 
-    An effect's columns each are one of its parameters. Sizes with the wrong sign
-    belong to no effect, save a negative viscous friction: that is a weaker damping.
+    Each column of an effect is one of its parameters. Sizes with the wrong sign belong
+    to no effect, except a negative viscous friction, which is a weaker servo damping.
     """
     groups: dict[tuple[str, str], dict[int, tuple[float, float, float]]] = {}
     for index, value, spread in zip(kept, size, error, strict=True):

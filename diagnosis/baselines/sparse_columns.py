@@ -1,4 +1,4 @@
-"""What each effect would add to the missing torque, linear in its size."""
+"""Regression columns: the torque that each effect adds, linear in its size."""
 
 import copy
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""Torques that servos give and that motions take, on smoothed recordings."""
+"""Servo torques and inverse dynamics of smoothed recordings, and their difference."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -16,24 +16,25 @@ if TYPE_CHECKING:
     import mujoco
 
 MOST_ROWS = 1500
+"""Most rows of all traces together that enter the regression."""
 _EDGE_S = 0.2
-"""Smoothed accelerations are poor at both ends."""
+"""Time at both ends [s] that is left out, as smoothed accelerations are poor there."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """R rows of all traces together, arrays (R, j); `since_s` is (R, 1).
+    """R rows of all traces together, with their smoothed motion and servo torques.
 
     Attributes:
-      since_s: since the trace's start.
-      position_rad: smoothed, as are the next two.
-      velocity_rad_s: its rate.
-      acceleration_rad_s2: and the rate's.
-      command_rad: position targets.
-      command_rate_rad_s: how fast they change.
-      kp_nm_rad: stiffness of the servos, of each row's trace.
-      damping_nm_s_rad: their damping and back-EMF.
-      servo_nm: torque that they give by their law, without back-EMF.
+      since_s: (R, 1) time since the trace's start.
+      position_rad: (R, j) smoothed positions.
+      velocity_rad_s: (R, j) rate of the smoothed positions.
+      acceleration_rad_s2: (R, j) second derivative of the smoothed positions.
+      command_rad: (R, j) position targets.
+      command_rate_rad_s: (R, j) rate of the position targets.
+      kp_nm_rad: (R, j) stiffness of the servos.
+      damping_nm_s_rad: (R, j) damping and back-EMF of the servos.
+      servo_nm: (R, j) torque that the servos ask for, without back-EMF.
     """
 
     since_s: FloatArray
@@ -48,7 +49,7 @@ class Motion:
 
     @classmethod
     def of(cls, traces: Sequence[Trace]) -> "Motion":
-        """At most `MOST_ROWS` of all rows, evenly taken."""
+        """Take at most `MOST_ROWS` of all rows, evenly spaced."""
         every = max(1, -(-sum(trace.ticks for trace in traces) // MOST_ROWS))
         parts = [_motion(trace, every) for trace in traces]
         return cls(
@@ -83,14 +84,14 @@ def _motion(trace: Trace, every: int) -> Motion:
 
 @dataclass(frozen=True, eq=False)
 class Torques:
-    """What the nominal model cannot account for.
+    """The torque that the nominal model does not explain.
 
     Attributes:
-      motion: of R rows.
-      nominal_nm: (R, j) what the motion takes by the nominal model.
-      weight_rad_nm: (j,) one over the stiffness: torques as errors of position, of
-        which all joints' encoders make about as much.
-      missing: (R j,) torque that servos gave and the motion did not take, weighted.
+      motion: the motion in R rows.
+      nominal_nm: (R, j) torque that the motion needs by the nominal model.
+      weight_rad_nm: (j,) weights, one over the stiffness. They turn torques into
+        position errors, which are about equally large at all joints.
+      missing: (R j,) weighted servo torque less the torque that the motion needs.
     """
 
     motion: Motion
@@ -100,9 +101,9 @@ class Torques:
 
     @classmethod
     def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Torques":
-        """Servo torque less inverse dynamics."""
+        """Compute servo torque less inverse dynamics for all traces of a plant."""
         motion = Motion.of(traces)
-        # what a servo does beside its own law is in the model as damping
+        # the model has the nominal servo's back-EMF as damping
         emf = traces[0].servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
         nominal = inverse_nm(plant, plant.model, motion.position_rad, motion)
         nominal = nominal + emf * motion.velocity_rad_s
@@ -114,13 +115,13 @@ class Torques:
 def inverse_nm(
     plant: Plant, model: "mujoco.MjModel", position_rad: FloatArray, motion: Motion
 ) -> FloatArray:
-    """(R, j) torques that a motion takes.
+    """Torques (R, j) [N m] that a motion needs, at positions other than its own.
 
     Args:
-      plant: tells which rows are the joints'.
-      model: the plant's, or one with other numbers.
-      position_rad: (R, j) instead of the motion's own.
-      motion: velocities and accelerations.
+      plant: the nominal robot model.
+      model: the compiled model to use: the plant's, or a copy with other numbers.
+      position_rad: (R, j) positions, used instead of the motion's own.
+      motion: gives velocities and accelerations.
     """
     return inverse_dynamics(
         plant, model, position_rad, motion.velocity_rad_s, motion.acceleration_rad_s2

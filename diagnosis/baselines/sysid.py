@@ -1,8 +1,8 @@
-"""All parameters at once with mujoco.sysid; the largest change is the answer.
+"""Baseline: fits all parameters with mujoco.sysid, and names the largest change.
 
-Free are what its users free: rotor inertia, viscous and dry friction, stiffness and
-damping of the servo at every joint, and the mass of every body. Parameters are counted
-in sizes worth trying first, so that changes can be compared.
+The free parameters are those that its users usually free: rotor inertia, viscous and
+dry friction, stiffness and damping of the servo at every joint, and the mass of every
+body. Each is counted in units of its typical size, so that changes can be compared.
 """
 
 import io
@@ -34,34 +34,38 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 SECONDS, FLOATING_SECONDS = 8.0, 2.0
-"""Of motion in all: recordings' beginnings of a second at least. 120 parameters take
-their time, and contacts more of it."""
+"""Motion that is fitted, all recordings together [s]; contacts are slow to simulate."""
 
 SHORT, LONG = 6, 20
-"""Iterations: with more than `MANY` parameters the short number."""
+"""Iterations of the optimiser: `SHORT` with more than `MANY` parameters."""
 
 MANY = 60
+"""Number of parameters above which fewer iterations are made."""
+
 NUDGE = 0.01
+"""Step of the finite differences, as a share of a typical size."""
+
 START = 0.002
-"""Part of its range by which what starts at a bound, as no friction, is moved off."""
+"""Distance from a bound, as a share of the range, at which parameters start."""
 
 PRIOR = 3.0
-"""Standard deviation of a weak prior, in sizes worth trying first: some parameters, as
-viscous friction and a servo's damping, are the same to these data."""
+"""Standard deviation of a weak prior, in typical sizes. It is needed since the data do
+not distinguish some parameters, such as viscous friction and a servo's damping."""
 
 LEAST_CHANGE = 0.1
-"""Of a size worth trying first; below it nothing counts as missing."""
+"""Smallest change, in typical sizes, that counts as a missing effect."""
 
 _NORMAL_95 = float(norm.ppf(0.975))
 _WORST = 1e3
+"""Largest residual [standard deviations]; larger ones and NaN are replaced by it."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
-    """Name the parameter that moved most, of those that sysid says have moved.
+    """Name the parameter that changed most, of those whose interval excludes no change.
 
     Args:
-      plant: nominal.
-      traces: to be fitted.
+      plant: the nominal robot model.
+      traces: recordings; their beginnings are fitted.
 
     Raises:
       GroundwalkError: mujoco.sysid is not installed.
@@ -90,12 +94,12 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 def fitted(
     plant: Plant, traces: Sequence[Trace], free: Sequence[FreeParameter]
 ) -> tuple[FloatArray, FloatArray]:
-    """(p,) changes of all parameters, and half of their 95 % intervals.
+    """Fit all p parameters: their changes (p,), and half widths of 95 % intervals (p,).
 
     Args:
-      plant: nominal.
-      traces: to be fitted whole.
-      free: p parameters.
+      plant: the nominal robot model.
+      traces: recordings that are fitted as a whole.
+      free: the p parameters.
     """
     sysid = _package()
     models = SysidModels(plant, traces, free)
@@ -159,7 +163,7 @@ class _Residual:
 
 
 def _beginnings(plant: Plant, traces: Sequence[Trace]) -> list[Trace]:
-    """Of each trace as long a part as there is time for."""
+    """The beginning of each trace, all together as long as `SECONDS` allows."""
     seconds = SECONDS if plant.base == "fixed" else FLOATING_SECONDS
     some = traces[: int(seconds)]
     each_s = seconds / len(some)
@@ -174,6 +178,6 @@ def _package() -> "ModuleType":
     sysid = import_module("mujoco.sysid")
     if not hasattr(sysid, "optimize"):
         raise GroundwalkError(
-            "mujoco.sysid lacks what it needs: pip install 'mujoco[sysid]'"
+            "mujoco.sysid is not complete: pip install 'mujoco[sysid]'"
         )
     return sysid

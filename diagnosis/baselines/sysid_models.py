@@ -1,4 +1,4 @@
-"""Models and measurements in the form that mujoco.sysid works with."""
+"""Converts models and recordings to the form that mujoco.sysid expects."""
 
 import copy
 from collections.abc import Sequence
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import mujoco
 
 STEP_S = 0.002
+"""Time step of the simulations [s]."""
 
 
 @dataclass(frozen=True)
@@ -83,12 +84,12 @@ def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter
 
 
 class SysidModels:
-    """Compiled models with parameters put in: compiling anew each time is too slow."""
+    """Writes parameters into compiled models, since compiling each time is too slow."""
 
     def __init__(
         self, plant: Plant, traces: Sequence[Trace], free: Sequence[FreeParameter]
     ) -> None:
-        """One model for each trace: each has its own servos."""
+        """Prepare one model for each trace, as each has its own servos."""
         self._plant, self._free = plant, free
         self._nominal = {
             _label(number): (self._with_servo(trace.servo), trace.servo)
@@ -96,7 +97,12 @@ class SysidModels:
         }
 
     def build(self, parameters: Any, spec: "mujoco.MjSpec") -> "mujoco.MjModel":
-        """The model of a specification's trace, with the parameters' values."""
+        """Make the model of the trace that a specification belongs to, with parameters.
+
+        Args:
+          parameters: mujoco.sysid's `ParameterDict`.
+          spec: one made by `sequence_of`; its name says which trace it belongs to.
+        """
         import mujoco
 
         nominal, servo = self._nominal[spec.modelname]
@@ -131,7 +137,7 @@ class SysidModels:
     def _change(
         self, model: "mujoco.MjModel", servo: Servo, variants: Variants
     ) -> None:
-        """Put the only row of some variants into a model that has its servos."""
+        """Write the only row of `variants` into a model that has a trace's servos."""
         plant, joints = self._plant, variants.joints
         for name, values in variants.fields.items():
             getattr(model, name)[...] += values[0] - getattr(plant.model, name)
@@ -145,10 +151,16 @@ class SysidModels:
 
 
 def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> Any:
-    """A trace as mujoco.sysid's `ModelSequences`.
+    """Convert a trace to mujoco.sysid's `ModelSequences`.
 
-    The specification's name tells which trace it is of. Positions are compared as part
-    of the state: position sensors of a rollout are one step late.
+    The specification's name says which trace it belongs to. Positions are compared as
+    part of the state, since position sensors of a rollout are one step late.
+
+    Args:
+      sysid: the package mujoco.sysid.
+      plant: the nominal robot model.
+      trace: the recording.
+      number: of the trace among all of them.
     """
     import mujoco
 
@@ -180,7 +192,7 @@ def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> A
 
 
 def _control(plant: Plant, trace: Trace, size: int, since_s: FloatArray) -> FloatArray:
-    """(steps, size) commands, held from row to row; the position where none are."""
+    """Commands (steps, size), held from row to row; without any, measured positions."""
     asked = trace.position_rad if trace.command_rad is None else trace.command_rad
     held = Held.of(trace.time_s, asked)
     control = np.zeros((len(since_s), size))
