@@ -1,4 +1,4 @@
-"""Commands that take effect later than they are given."""
+"""A delay between giving a command and its effect."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from groundwalk.arrays import FloatArray
 
 
 class DelayLine:
-    """Holds commands back for a number of physics steps, whole ticks or not."""
+    """Delays commands by a number of physics steps, which need not be whole ticks."""
 
     def __init__(self, latency_steps: int, steps_per_tick: int) -> None:
         """An empty line; `reset` fills it.

@@ -1,4 +1,4 @@
-"""What a robot measures, and what only its world knows."""
+"""Measurements of robots (`Observation`), and their true motion (`Truth`)."""
 
 from dataclasses import dataclass, fields
 from typing import Self
@@ -37,7 +37,7 @@ class _PerRobot:
 
 @dataclass(frozen=True, eq=False)
 class Observation(_PerRobot):
-    """What n robots measure at a tick; `World.reset` and `World.step` return it.
+    """Measurements of n robots at a tick; `World.reset` and `World.step` return them.
 
     Attributes:
       time_s: (n,) since the start of the rollout.
@@ -61,7 +61,7 @@ class Observation(_PerRobot):
 
 @dataclass(frozen=True, eq=False)
 class Truth(_PerRobot):
-    """What only the world knows of n robots; `World.truth` returns it.
+    """True motion of n robots; `World.truth` returns it.
 
     A gait never sees it: a real robot could not measure it.
 

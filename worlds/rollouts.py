@@ -103,7 +103,7 @@ class RolloutWorld(ABC):
         return self._as_measured()
 
     def stop(self, robots: BoolArray) -> None:
-        """Take robots out of the batch; see `World.stop`."""
+        """End the rollouts of robots (n,); see `World.stop`."""
         self.active = self.active & ~robots
 
     def truth(self) -> Truth:

@@ -67,8 +67,8 @@ class NoisySensors:
     def __call__(self, clean: Observation, tick_s: float) -> Observation:
         """The observation as the sensors report it.
 
-        Joint velocities are what a board makes of quantised positions: the
-        difference over one tick.
+        Joint velocities are differences of quantised positions over one tick, as a
+        robot's electronics compute them.
 
         Args:
           clean: the noiseless observation.

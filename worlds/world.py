@@ -37,12 +37,12 @@ FALLS = (End.FALL, End.DIVERGED)
 
 @dataclass(frozen=True)
 class WorldOptions:
-    """How a world computes, and what it does to signals.
+    """Settings of a world: physics step, latency, noise, ground contact, effects.
 
     Attributes:
       timestep_s: physics step; a whole number of them makes a tick of 10 ms.
       latency_s: time until a command takes effect, a whole number of steps.
-      noise: what the sensors add, or None for perfect sensors.
+      noise: of the sensors; None for perfect sensors.
       friction: coefficient between sole and ground.
       sinkage_m: how deep the robot sinks in, standing on one foot; 0 for hard ground.
       fixed_base: hold the torso in the air where it started.

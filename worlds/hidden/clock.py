@@ -25,7 +25,7 @@ class Clock:
 
     @property
     def time_s(self) -> FloatArray:
-        """(rows,) in the recording's time; negative before it begins."""
+        """(rows,) time of each tick [s], negative before the recording begins."""
         return np.asarray((self.ticks - self.ticks[self.first]) * self.step_s)
 
     @classmethod

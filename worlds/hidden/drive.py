@@ -30,7 +30,7 @@ class HiddenDrive:
 
         Args:
           plant: the nominal robot.
-          effects: what is hidden.
+          effects: the hidden effects.
           world: an engine that has been reset to the pose.
           step_s: fine step.
           start_rad: (j,) the pose.

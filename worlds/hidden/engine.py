@@ -1,4 +1,4 @@
-"""What a hidden world asks of a physics engine."""
+"""The interface of the physics engines of robots with hidden physics."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -66,10 +66,10 @@ class HiddenEngine(Protocol):
         """(3,) velocity of a body's centre of mass [m/s]."""
 
     def watch(self) -> None:
-        """Take the sensors in; called after each of the last steps of a tick."""
+        """Add the sensors' values of this step; called after the last steps of a tick."""
 
     def sense(self) -> BodySense:
-        """What the sensors say: means over the steps watched since the last call."""
+        """Readings of the sensors: means over the steps watched since the last call."""
 
     def close(self) -> None:
         """Free memory."""

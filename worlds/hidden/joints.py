@@ -25,7 +25,7 @@ class HiddenJoints:
         step_s: float,
         inertia_kg_m2: FloatArray,
     ) -> None:
-        """Collect what the effects change at the joints.
+        """Apply the effects to the nominal servos and joints.
 
         Args:
           plant: the nominal robot.

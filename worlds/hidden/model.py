@@ -26,7 +26,7 @@ def hidden_model(
       plant: the nominal robot.
       effects: all that is hidden; effects on servos and signals change nothing here.
       step_s: time step.
-      ground: what it stands on; None for a fixed base.
+      ground: under a floating robot; None for a fixed base.
 
     Raises:
       UnknownNameError: the robot has no such body or joint.

@@ -17,7 +17,12 @@ class HiddenMujoco:
     """One robot under joint torques; see `HiddenEngine`."""
 
     def __init__(self, plant: HiddenPlant, model: "mujoco.MjModel") -> None:
-        """Bind the parts of the state."""
+        """Allocate the state.
+
+        Args:
+          plant: the nominal robot.
+          model: the robot with its hidden effects.
+        """
         import mujoco
 
         self._mujoco, self._model = mujoco, model
@@ -68,12 +73,12 @@ class HiddenMujoco:
         return both[3:]
 
     def watch(self) -> None:
-        """Take the sensors in; see `HiddenEngine`."""
+        """Add the sensors' values of this step; see `HiddenEngine.watch`."""
         self._sensors += self._data.sensordata
         self._watched += 1
 
     def sense(self) -> BodySense:
-        """What the sensors say; see `HiddenEngine`."""
+        """Readings of the sensors; see `HiddenEngine.sense`."""
         gyroscope, accelerometer, feet = np.zeros(3), np.zeros(3), np.zeros(8)
         if self._shares is not None:
             mean = self._sensors / max(self._watched, 1)

@@ -21,8 +21,8 @@ class HiddenSensors:
     """Standard deviations of the sensors' noise, and their resolution.
 
     Attributes:
-      quantum_rad: resolution of the encoders; 12 bits a turn.
-      encoder_rad: their noise, before they round.
+      quantum_rad: resolution of the encoders; by default 12 bits a turn.
+      encoder_rad: noise of the encoders, before they round.
       gyroscope_rad_s: noise of each axis.
       accelerometer_m_s2: noise of each axis.
       foot_force_n: noise of each foot's sum.
@@ -64,7 +64,7 @@ def hidden_recording(
     Args:
       plant: the robot.
       run: the true motion.
-      effects: what is hidden; one of them may bias the gyroscope.
+      effects: the hidden effects; one of them may bias the gyroscope.
       sensors: how good the sensors are.
       rng: draws the noise.
       metadata: goes into the recording as it is.

@@ -57,7 +57,7 @@ def run_hidden(
 
     Args:
       plant: the nominal robot.
-      effects: what is hidden.
+      effects: the hidden effects.
       engine: "bullet" or "mujoco".
       clock: when commands are sent and sensors read.
       feed: the commands.
@@ -123,7 +123,7 @@ def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
     Args:
       felt: "position_m" (rows, 3) and "orientation" (rows, 4) w, x, y, z of the base,
         in the ground's frame.
-      ground: what it stands on.
+      ground: under the robot.
     """
     place_m, turn = felt["position_m"], felt["orientation"]
     if not (np.isfinite(place_m).all() and np.isfinite(turn).all()):

@@ -1,4 +1,4 @@
-"""Measures what the nominal robot does in a motion: `worlds.hidden.setting.Scales`."""
+"""Measures torques, speeds, reach and masses of the nominal robot in a motion."""
 
 from collections.abc import Sequence
 

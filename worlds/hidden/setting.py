@@ -1,4 +1,4 @@
-"""What the size and the place of a hidden effect depend on in a concealed case."""
+"""Quantities from which the size and place of effects in concealed cases follow."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -46,7 +46,9 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False)
 class Scales:
-    """What the nominal robot does in a motion; sizes of effects are parts of it.
+    """Torques, speeds, reach and masses of the nominal robot in a motion.
+
+    Sizes of hidden effects are stated as parts of these.
 
     Attributes:
       torque_nm: (j,) 95th percentile of each servo's torque.
@@ -114,7 +116,7 @@ class Setting:
 
     Attributes:
       plant: the robot.
-      scales: what it does with nothing hidden.
+      scales: of the robot's motion with nothing hidden.
       spot: where the effect is.
       ease: how easy the effect is to see, from 0 (hard) to 1 (easy); negative values
         give effects that are smaller still.

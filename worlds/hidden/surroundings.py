@@ -1,4 +1,4 @@
-"""What hidden physics changes around a robot's body: its signals and its ground."""
+"""A robot's signals and ground, as hidden effects change them."""
 
 import math
 from dataclasses import dataclass, field
@@ -63,7 +63,7 @@ class Surroundings:
         return np.asarray(self.tilt().T @ np.array([0, 0, -GRAVITY_M_S2]))
 
     def ground(self, seed: np.random.SeedSequence) -> Heightfield:
-        """What a floating robot stands on: level ground, or bumps from the start on.
+        """The ground under a floating robot: level, or with bumps from the start on.
 
         Args:
           seed: of the bumps.

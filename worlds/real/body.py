@@ -47,7 +47,7 @@ def import_bullet() -> Any:
 
 @dataclass(frozen=True, eq=False)
 class BodySetup:
-    """What a client is given to compute.
+    """A robot, its ground and the physics of a PyBullet client.
 
     Attributes:
       urdf: text of the robot's model; a link for each joint and no others.
@@ -58,7 +58,7 @@ class BodySetup:
       friction: coefficient between soles and ground.
       description: feet, and joints that share a motor; None for a robot without.
       springs: softness of the ground under each foot; the last one counts.
-      ground: what a floating robot stands on.
+      ground: under a floating robot.
     """
 
     urdf: str
@@ -76,7 +76,7 @@ class BulletBody:
     """A robot in a PyBullet client of its own.
 
     Attributes:
-      setup: what was loaded.
+      setup: the robot and ground that were loaded.
       client: the keyword that names the client in PyBullet's functions.
       number: Bullet's number of the robot.
       position_rad, velocity_rad_s: (j,) of the joints, after the last step.

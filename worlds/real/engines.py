@@ -31,9 +31,9 @@ def hidden_engine(
     Args:
       name: "bullet" or "mujoco".
       plant: the nominal robot.
-      effects: what is hidden.
+      effects: the hidden effects.
       step_s: fine step.
-      ground: what it stands on; None for a fixed base.
+      ground: under a floating robot; None for a fixed base.
 
     Raises:
       GroundwalkError: the engine lacks an effect, or a place is unknown.
@@ -87,7 +87,7 @@ class HiddenBullet(BulletBody):
         self._earlier: FloatArray | None = None
 
     def watch(self) -> None:
-        """Take the sensors in; see `HiddenEngine`."""
+        """Add the sensors' values of this step; see `HiddenEngine.watch`."""
         if not self.setup.floating:
             return
         if self._earlier is None:
@@ -96,7 +96,7 @@ class HiddenBullet(BulletBody):
         self._feet += self.foot_forces()
 
     def sense(self) -> BodySense:
-        """What the sensors say; see `HiddenEngine`."""
+        """Readings of the sensors; see `HiddenEngine.sense`."""
         if not self.setup.floating:
             zero, up = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
             felt = -self.setup.gravity_m_s2 if self.setup.description else zero

@@ -31,7 +31,7 @@ def mujoco_model(
     Args:
       description: the robot.
       options: time step, friction, softness, fixed base.
-      ground: what it stands on; None for nothing.
+      ground: under the robot; None for no ground.
     """
     grounds = [] if ground is None else [ground]
     model = world_spec(description, options, grounds).compile()
@@ -49,7 +49,7 @@ def world_spec(
     Args:
       description: the robot.
       options: time step, friction, fixed base.
-      grounds: what it stands on; the geoms are `ground_name` of their numbers.
+      grounds: under the robot; their geoms are named by `ground_name`.
     """
     import mujoco
 

@@ -10,7 +10,7 @@ from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
 
 
 class _OneJointOneWeight(HiddenKind):
-    """A kind that changes what a joint has to carry or to accelerate."""
+    """A kind that changes the load of a joint: its weight or its inertia."""
 
     def cancels(self, plant: HiddenPlant) -> bool:
         """Whether the robot has a single joint, which only shows one weight."""
@@ -49,7 +49,7 @@ class Armature(_OneJointOneWeight):
         part.armature += values["inertia"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Inertia from 0.1 (hard to see) to 3 times (easy) what the joint moves."""
+        """Inertia from 0.1 (hard to see) to 3 times (easy) the joint's own."""
         return {"inertia": s.part(3, 0.1) * float(s.scales.inertia_kg_m2[s.joint])}
 
 

@@ -84,7 +84,7 @@ class StiffContact:
 class HiddenKind:
     """One kind of hidden physics: its parameters, physics, size and place.
 
-    A subclass overrides the methods of what it changes; by default they change nothing.
+    The methods change nothing by default; a subclass overrides some of them.
 
     Attributes:
       name: as in `name@place:parameter=value`.
@@ -178,7 +178,7 @@ class HiddenKind:
 
         Args:
           plant: the robot.
-          scales: what the robot does with nothing hidden.
+          scales: of the robot's motion with nothing hidden.
           joints: columns of the joints that may be chosen.
         """
         if not self.possible(plant):
