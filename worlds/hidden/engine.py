@@ -66,7 +66,7 @@ class HiddenEngine(Protocol):
         """(3,) velocity of a body's centre of mass [m/s]."""
 
     def watch(self) -> None:
-        """Add the sensors' values of this step; called after the last steps of a tick."""
+        """Add the sensors' values of a step; called after the last steps of a tick."""
 
     def sense(self) -> BodySense:
         """Readings of the sensors: means over the steps watched since the last call."""
