@@ -11,16 +11,21 @@ import numpy as np
 import tyro
 
 import robots
+from diagnosis import (
+    Diagnosis,
+    Hooks,
+    Plant,
+    Rules,
+    Trace,
+    Verdict,
+    diagnose,
+    read_reference,
+    read_traces,
+)
 from diagnosis.audit import audit
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
-from diagnosis.pipeline import Diagnosis, diagnose
-from diagnosis.plant.plant import Plant
-from diagnosis.search.hooks import Hooks
-from diagnosis.search.rules import Rules
-from diagnosis.traces.read import read_reference, read_traces
-from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.traces.trace import DriveBy
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
 from experiments.diagnosis_report.overlay import write_overlay

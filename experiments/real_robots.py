@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import tyro
 
-from diagnosis.search.rules import Rules
+from diagnosis import Rules
 from experiments.command_line import run_verb
 from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_report.console import print_verdict

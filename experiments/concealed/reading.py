@@ -3,9 +3,7 @@
 import json
 from pathlib import Path
 
-from diagnosis.plant.plant import Plant
-from diagnosis.traces.read import read_reference, read_traces
-from diagnosis.traces.trace import Trace
+from diagnosis import Plant, Trace, read_reference, read_traces
 from groundwalk.errors import RunFolderError
 
 CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"

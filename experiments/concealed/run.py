@@ -9,10 +9,9 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 import tyro
 
+from diagnosis import Verdict, diagnose
 from diagnosis.baselines import BASELINES
-from diagnosis.pipeline import diagnose
 from diagnosis.traces.split import split
-from diagnosis.verdict.verdict import Verdict
 from experiments.command_line import run_verb
 from experiments.concealed.reading import (
     ANSWERS,

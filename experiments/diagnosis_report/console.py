@@ -5,7 +5,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from diagnosis.verdict.verdict import Fit, Found, PlacedEffect, Verdict
+from diagnosis import PlacedEffect, Verdict
+from diagnosis.verdict.verdict import Fit, Found
 from experiments.diagnosis_report.findings import (
     at_many,
     parameter_rows,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from diagnosis import Verdict
 from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
 from diagnosis.effects import effect as kind_of
 from diagnosis.residuals.channels import (
@@ -13,7 +14,7 @@ from diagnosis.residuals.channels import (
     LEAST_RATE_RAD_S,
     LEAST_TORQUE,
 )
-from diagnosis.verdict.verdict import Errors, Fit, Found, Verdict
+from diagnosis.verdict.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
     View,

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from diagnosis.verdict.verdict import Verdict
+from diagnosis import Verdict
 from experiments.concealed.reading import (
     BASELINE_ANSWERS,
     FORMAT,
