@@ -71,6 +71,7 @@ def test_a_run_has_its_answer_first_then_table_figure_and_origin(tuned):
         "fall rate, 95 % interval",
         "60% to 98%",
         "The tuned gait",
+        "parameter unit start tuned",
         "How this was made",
         "groundwalk optimize-gait --population 8",
         "real_terrain lumps",
@@ -180,7 +181,7 @@ def test_the_nao_study_names_its_best_gait_and_the_goal():
     good, bad = cell("SGAT", 2, 19.0, 2), cell("SGAT", 2, 12.0, 2)
     best, goal = answer_of([plain, good])
     assert best.startswith("The best gait is that of SGAT, step 2: 19.0 ± 1.0 cm/s")
-    assert best.endswith("as it is: 20.0 ± 1.0 cm/s, 38 falls of 40.")
+    assert best.endswith("plain sim: 20.0 ± 1.0 cm/s, 38 falls of 40.")
     assert goal.startswith("It reaches the goal of 18 cm/s")
     assert answer_of([plain, bad])[1].startswith("It does not reach")
 
