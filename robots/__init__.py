@@ -1,4 +1,11 @@
-"""What a robot is: its description, and the two engines' models made from it."""
+"""Robots as data: descriptions, and both engines' models made from them.
+
+Example:
+  >>> import robots
+  >>> nao = robots.get("nao")
+  >>> len(nao.joints), robots.biped(nao).leg.thigh_m
+  (20, 0.1)
+"""
 
 from robots.biped import biped
 from robots.catalog import get, names

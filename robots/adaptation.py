@@ -1,4 +1,4 @@
-"""What to know of a robot beyond its URDF; all of it may be left out."""
+"""Facts about a robot that its URDF lacks; each of them is optional."""
 
 import tomllib
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ class SoleBox:
     y_m: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Refuse what is no sole."""
+        """Refuse boxes that are empty or do not lie below the ankle."""
         rises = self.x_m[0] < self.x_m[1] and self.y_m[0] < self.y_m[1]
         if not (self.height_m < 0 and rises):
             raise BadValueError(f"sole {self}: height_m < 0, x_m and y_m must rise")
@@ -36,18 +36,19 @@ class SoleBox:
 
 @dataclass(frozen=True)
 class Adaptation:
-    """How a URDF becomes a robot that walks; what is left out follows from the file.
+    """How a URDF becomes a robot that walks; missing parts follow from the URDF.
 
     Attributes:
       urdf: a file, or a URDF of example-robot-data, such as "g1_29dof_rev_1_0".
       forward: which way the robot faces in the root link's frame, one of `FORWARD`.
       left_leg, right_leg: the joints of the roles `ROLES`, in that order.
-      moving: joints besides the legs' and shoulders' that have motors in the worlds.
-      held: joints of legs or shoulders that have none.
+      moving: further joints with motors; those of legs and shoulders always have them.
+      held: joints of legs or shoulders that are held still.
       pose_rad: angles of joints without motors; the angle next to zero by default.
-      range_rad: ranges instead of the file's.
-      effort_nm, speed_rad_s: motors instead of the file's.
-      sole: of the left foot; the right one is its mirror image.
+      range_rad: lower and upper ends of joints, in place of the file's [rad].
+      effort_nm: largest torques of motors, in place of the file's [N m].
+      speed_rad_s: largest speeds of motors, in place of the file's [rad/s].
+      sole: the left sole; the right one is its mirror image.
     """
 
     urdf: str
@@ -63,7 +64,7 @@ class Adaptation:
     sole: SoleBox | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what names nothing."""
+        """Refuse unknown directions and legs without exactly six joints."""
         if self.forward is not None and self.forward not in FORWARD:
             raise UnknownNameError("direction", self.forward, FORWARD)
         for leg in (self.left_leg, self.right_leg):
@@ -75,18 +76,18 @@ class Adaptation:
             raise BadValueError("name the joints of both legs, or of none")
 
     def joints(self) -> set[str]:
-        """Every joint that is named."""
+        """Every joint that the adaptation names."""
         named = {*self.left_leg, *self.right_leg, *self.moving, *self.held}
         tables = (self.pose_rad, self.range_rad, self.effort_nm, self.speed_rad_s)
         return named.union(*tables)
 
 
 def read_adaptation(path: Path) -> Adaptation:
-    """The adaptation of a TOML file whose keys are the attributes' names.
+    """Read an adaptation from a TOML file whose keys are the attributes' names.
 
     Raises:
-      BadModelError: the file holds none.
-      UnknownNameError: it has a key that means nothing.
+      BadModelError: the file cannot be read as an adaptation.
+      UnknownNameError: it has a key that is no attribute.
     """
     try:
         table = tomllib.loads(path.read_text())
@@ -102,10 +103,14 @@ def read_adaptation(path: Path) -> Adaptation:
 
 
 def urdf_path(name: str, folder: Path) -> Path:
-    """The URDF that an adaptation names: a file seen from a folder, or an example.
+    """Find the URDF that an adaptation names.
+
+    Args:
+      name: a path, or a URDF of example-robot-data.
+      folder: the folder from which a path is seen.
 
     Raises:
-      UnknownNameError: there is neither.
+      UnknownNameError: there is neither such a file nor such an example.
     """
     path = folder / name
     if path.is_file():
@@ -117,7 +122,7 @@ def urdf_path(name: str, folder: Path) -> Path:
 
 
 def _tuples(value: Any) -> Any:
-    """TOML has lists where the dataclasses have tuples."""
+    """A value of a TOML file with tuples in place of lists."""
     if isinstance(value, dict):
         return {key: _tuples(item) for key, item in value.items()}
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

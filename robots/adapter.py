@@ -1,7 +1,7 @@
-"""From a URDF to the description of a robot that walks.
+"""Makes the description of a robot that walks from a URDF.
 
 Legs, feet, arms and the direction that the robot faces follow from the kinematics
-(`leg_roles`, `shoulders`), soles from what can touch the ground (`foot_shapes`), motors
+(`leg_roles`, `shoulders`), soles from collision shapes (`foot_shapes`), motors
 from effort and speed (`servo_size`), and the size of its gaits from the legs (`scale`).
 Joints of legs and shoulders have motors; waist, neck, elbows, wrists and fingers are
 held still, and what they carry becomes part of the link that carries them.
@@ -33,15 +33,15 @@ from robots.urdf_tree import UrdfShape, UrdfTree, read_urdf
 
 
 def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
-    """The robot of a URDF.
+    """Describe the robot of a URDF.
 
     Args:
-      name: what it shall be called.
-      adaptation: its URDF, and what does not follow from it.
-      folder: where a URDF that is a file is seen from.
+      name: the description's name.
+      adaptation: names the URDF, and overrides facts that do not follow from it.
+      folder: the folder from which the URDF's path is seen.
 
     Raises:
-      GroundwalkError: the URDF is not that of a robot on two legs; says why.
+      GroundwalkError: the URDF is no robot on two legs; the message says why.
     """
     tree = read_urdf(urdf_path(adaptation.urdf, folder))
     placed = tree.placements({})
@@ -56,7 +56,7 @@ def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
 def _held_pose(
     tree: UrdfTree, moving: set[str], adaptation: Adaptation
 ) -> dict[str, float]:
-    """Angles of the joints that are held: as told, or next to zero."""
+    """Angles [rad] of joints that are held: given, or as near to zero as possible."""
     pose = {
         joint.name: float(np.clip(0.0, *joint.range_rad))
         for joint in tree.joints.values()
@@ -69,7 +69,7 @@ def _held_pose(
 
 @dataclass(frozen=True, eq=False)
 class _Adapter:
-    """Makes the parts of one description."""
+    """Makes the parts of one robot's description."""
 
     posed: PosedTree
     legs: Legs
@@ -178,9 +178,9 @@ class _Adapter:
         )
 
     def _motor(self, name: str) -> Motor:
-        joint, told = self.posed.tree.joints[name], self.adaptation
-        effort = told.effort_nm.get(name, joint.effort_nm)
-        speed = told.speed_rad_s.get(name, joint.speed_rad_s)
+        joint, given = self.posed.tree.joints[name], self.adaptation
+        effort = given.effort_nm.get(name, joint.effort_nm)
+        speed = given.speed_rad_s.get(name, joint.speed_rad_s)
         load = None
         if name not in {*self.legs.left, *self.legs.right}:
             hanging, axis = self.posed.hanging(name), self.posed.axis(name)
@@ -204,7 +204,7 @@ class _Adapter:
         )
 
     def _meshes(self, joint: str) -> tuple[VisualMesh, ...]:
-        """The files that show what moves with a joint, if they are there."""
+        """Mesh files of everything that moves with a joint, as far as they exist."""
         meshes = []
         for link in self.posed.carried(joint):
             for shape in link.visual:

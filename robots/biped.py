@@ -115,7 +115,7 @@ def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
 
 
 def _geometry(description: Description, leg: _Leg) -> LegGeometry:
-    """Lengths of a left leg whose axes meet."""
+    """Lengths of a left leg whose hip axes meet in one point."""
     yaw, _, _, knee, ankle, _ = (description.links[joint] for joint in leg)
     hip_x, hip_y, hip_z = yaw.origin_m.tolist()
     axis_x, axis_y, axis_z = yaw.axis.tolist()
@@ -129,7 +129,7 @@ def _geometry(description: Description, leg: _Leg) -> LegGeometry:
 
 
 def _like(description: Description, chain: _Leg, leg: _Leg) -> LegGeometry:
-    """The leg with axes that meet which is most like a left leg whose axes do not.
+    """Approximate a leg whose hip axes do not meet by one whose axes do.
 
     Its hip is at the pitch axis, straight above the foot; thigh and shin are as long
     as they look from the side; the ankle is at its pitch axis.

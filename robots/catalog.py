@@ -1,4 +1,4 @@
-"""The robots that there are: by name, or from files."""
+"""Finds robots by name or in files."""
 
 import dataclasses
 import tomllib
@@ -22,15 +22,20 @@ def names() -> list[str]:
 
 @cache
 def get(name: str) -> Description:
-    """The robot of that name, or of a file.
+    """Describe a robot by its name, or from a file.
 
     Args:
       name: one of `names`, a URDF (.urdf) of a robot on two legs, or a TOML file
-        (.toml) that says what a URDF leaves open (`Adaptation`).
+        (.toml) that completes a URDF (`Adaptation`).
 
     Raises:
-      UnknownNameError: there is none.
-      GroundwalkError: the file holds no robot that walks on two legs; says why.
+      UnknownNameError: there is no such robot.
+      GroundwalkError: the file holds no robot that walks on two legs; the message says
+        why.
+
+    Example:
+      >>> get("nao").joints[:2]
+      ('LHipYawPitch', 'LHipRoll')
     """
     path = Path(name)
     if path.suffix.lower() not in (_URDF, _TOML):

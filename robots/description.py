@@ -1,4 +1,4 @@
-"""What a robot is, as data: links, joints, motors, feet and sensors.
+"""A robot as data: links, joints, motors, feet and sensors.
 
 Both engines' models are made from this one description. Frames: x forward, y
 left, z up; with all joints at zero every joint frame is parallel to the root's.
@@ -36,7 +36,7 @@ class Capsule:
     colour: str = "shell"
 
     def __post_init__(self) -> None:
-        """Refuse what is no colour."""
+        """Refuse unknown colours."""
         if self.colour not in SHAPE_COLOURS:
             raise UnknownNameError("colour of a shape", self.colour, SHAPE_COLOURS)
 
@@ -81,7 +81,7 @@ class Motor:
     rotor_kg_m2: float
 
     def __post_init__(self) -> None:
-        """Refuse what no motor has."""
+        """Refuse negative and infinite values."""
         for name, value in vars(self).items():
             if not (math.isfinite(value) and value >= 0):
                 raise BadValueError(f"motor {name} is {value}; it must not be negative")
@@ -119,8 +119,8 @@ class Link:
     Attributes:
       name: the link's name.
       inertial: in the frame of the link's joint, without any rotor.
-      shapes: what it looks like.
-      meshes: the same in more detail, where there are files.
+      shapes: round shapes to draw.
+      meshes: mesh files to draw in their place, where there are any.
     """
 
     name: str
@@ -139,8 +139,8 @@ class Joint:
       origin_m: (3,) in the frame of the parent link's joint.
       axis: (3,) unit vector.
       range_rad: lower and upper end.
-      motor: what drives it; of a coupled pair, each joint's half.
-      link: what it moves.
+      motor: the motor; for a coupled pair, half of the shared motor in each joint.
+      link: the body that the joint moves.
       slides: whether it slides along its axis instead of turning about it. Only robot
         models that are shown have such joints (`worlds.scenes.mechanism`); positions
         are then in m.

@@ -1,4 +1,4 @@
-"""The sole of a foot, from the shapes that touch the ground."""
+"""Finds the sole of a foot in the shapes of a URDF."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ from robots.posed_tree import PosedTree
 from robots.urdf_tree import UrdfShape
 
 THICKNESS_M = 0.005
-"""Points less than this above the lowest one belong to the sole."""
+"""Points less than this above the lowest one belong to the sole [m]."""
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 _AROUND = np.linspace(0, 2 * np.pi, 24, endpoint=False)
@@ -24,7 +24,7 @@ _AROUND = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def foot(
     posed: PosedTree, joint: str, index: int, box: SoleBox | None, side: int
 ) -> Foot:
-    """A foot whose sole is the bottom of what can touch, or what the user says.
+    """Describe a foot; its sole is the bottom of its collision shapes, or as given.
 
     Its force sensors are at the corners of the rectangle around the sole.
 
@@ -59,7 +59,7 @@ def foot(
 
 
 def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
-    """(points, 3) corners of a shape in its own frame; those of round ones, around."""
+    """(points, 3) corners of a shape in its own frame [m]; rims for round shapes."""
     values = shape.values
     if shape.kind == "mesh":
         path = mesh_path(posed.tree.path, values["filename"])
@@ -68,7 +68,6 @@ def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
         return _CORNERS * _numbers(values["size"]) / 2
     radius = float(values["radius"])
     if shape.kind == "sphere":
-        # All that is level with the lowest point: the point itself.
         return radius * np.vstack([np.eye(3), -np.eye(3)])
     half = float(values["length"]) / 2
     ring = radius * np.stack([np.cos(_AROUND), np.sin(_AROUND)], axis=1)
@@ -78,7 +77,7 @@ def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
 
 
 def _points(posed: PosedTree, joint: str) -> FloatArray:
-    """(points, 3) of everything that touches, or else is seen, in the root's frame."""
+    """(points, 3) of all collision shapes, or else visual ones, in the root's frame."""
     for kind in ("collision", "visual"):
         parts = list(_of_kind(posed, joint, kind))
         if parts:

@@ -16,7 +16,8 @@ def roles(axes: FloatArray) -> tuple[int, ...]:
     """Where in a leg's chain each of `ROLES` is.
 
     At the hip, yaw, roll and pitch are the joints whose axes come closest to z, x and
-    y, all three together: on the NAO yaw leans by 45 degrees. Likewise at the ankle.
+    y, all three together: on the NAO yaw leans by 45 degrees. The same holds for
+    pitch and roll at the ankle.
 
     Args:
       axes: (6, 3) unit vectors from the hip to the foot, x forward, y left, z up.

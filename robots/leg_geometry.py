@@ -1,4 +1,4 @@
-"""What a walk engine must know of a robot: its leg, its joints and its sensors."""
+"""A robot's geometry for a walk engine: its legs, arms, joint ranges and sensors."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ FOOT_SENSORS = 8
 
 @dataclass(frozen=True, eq=False)
 class LegChain:
-    """One leg whose axes need not meet, joint by joint from the hip to the foot.
+    """One leg as a chain of joints from the hip to the foot; its axes need not meet.
 
     Frames are parallel to the torso's with all joints at zero. Roles are yaw, roll,
     pitch, knee, ankle pitch and ankle roll. Angles by role are positive about +z, +x
@@ -62,7 +62,7 @@ class LegGeometry:
     ankle_height_m: float
 
     def __post_init__(self) -> None:
-        """Refuse lengths and axes that no leg has."""
+        """Refuse lengths that are not positive and yaw axes that turn no foot."""
         for name in ("thigh_m", "tibia_m", "ankle_height_m"):
             length = getattr(self, name)
             if not (math.isfinite(length) and length > 0):
@@ -88,12 +88,12 @@ class Biped:
     Attributes:
       leg: lengths and axes of the left leg.
       left_leg: columns of yaw, roll, pitch, knee, ankle pitch and ankle roll.
-      right_leg: the same of the right leg.
+      right_leg: columns of the right leg's joints, in that order.
       left_arm: columns of shoulder pitch and, where it has one, of shoulder roll; None
         without arms.
-      right_arm: the same of the right arm.
+      right_arm: columns of the right arm's joints, in that order.
       joint_range_rad: (joints, 2) lower and upper end.
-      max_speed_rad_s: (joints,) what the motors can do without load.
+      max_speed_rad_s: (joints,) speeds of the motors without load.
       foot_sensor_xy_m: (8, 2) force sensors: left foot front left, front right, rear
         left, rear right, then the right foot; each in its own foot's ankle frame.
     """

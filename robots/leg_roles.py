@@ -1,8 +1,8 @@
-"""Which joints of a URDF are the legs, and which way the robot faces.
+"""Finds the legs of a URDF, and the direction that the robot faces.
 
 No name is looked at. The feet are the two lowest ends of the tree of moving joints;
-a leg is what one foot hangs on and the other does not: three joints at the hip, the
-knee, two at the ankle (`leg_axes` tells which is which). Knees bend one way: the robot
+a leg is the joints above one foot but not above the other: three at the hip, the knee,
+two at the ankle (`leg_axes` finds the role of each). Knees bend one way: the robot
 faces where a knee goes when it bends as far as it can.
 """
 
@@ -43,7 +43,7 @@ def find_legs(
     Args:
       tree: the robot, z up.
       placed: where each link is in the root's frame.
-      adaptation: what the user says.
+      adaptation: the user's facts about the robot.
 
     Raises:
       BadModelError: there are no two legs of six joints, or no knee bends one way.

@@ -1,6 +1,6 @@
 """The MuJoCo model of a robot, made from its description.
 
-The ground is not part of it: a world adds that. Nothing of the robot touches
+The ground is not part of the model: a world adds it. Nothing of the robot touches
 anything but the soles' rims: small spheres around each sole, which meet planes
 and heightfields alike in one point each and cost a quarter of what boxes do.
 """
@@ -123,7 +123,7 @@ def _add_shape(body: Any, shape: Capsule) -> None:
 
 
 def _add_motor(spec: Any, joint: Joint) -> None:
-    """A DC motor whose voltage the position error sets, saturating at 1."""
+    """Add a DC motor whose drive voltage follows the position error, up to 1."""
     import mujoco
 
     motor = joint.motor

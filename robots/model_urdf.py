@@ -1,6 +1,6 @@
 """A compiled MuJoCo model as a URDF that PyBullet and MuJoCo read alike.
 
-Only what moves becomes a link: MuJoCo has merged or placed everything that is fixed,
+Only moving bodies become links: MuJoCo has merged or placed everything that is fixed,
 and PyBullet would give a massless link a kilogram.
 """
 

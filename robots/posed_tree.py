@@ -48,7 +48,7 @@ class PosedTree:
         return carriers
 
     def in_pose(self, angles_rad: Mapping[str, float]) -> "PosedTree":
-        """The same robot with some more joints at an angle."""
+        """This robot with further joints held at the given angles."""
         return replace(self, pose_rad={**self.pose_rad, **angles_rad})
 
     def carried(self, joint: str) -> list[UrdfLink]:
@@ -78,7 +78,7 @@ class PosedTree:
         return np.asarray(np.round(offset, _NOISE) + 0.0)
 
     def inertial(self, joint: str) -> Inertial:
-        """All that moves with a joint as one body, in its frame.
+        """The links that move with a joint, without joints below, as one body.
 
         Raises:
           BadModelError: it has no mass.
@@ -100,11 +100,11 @@ class PosedTree:
         ]
 
     def hanging(self, joint: str) -> Inertial:
-        """What a joint moves, with all that hangs on it, in the root's frame."""
+        """Everything that a joint carries, joints below included, as one body."""
         return combined(self._bodies(self.below(joint)))
 
     def _bodies(self, joints: Sequence[str]) -> list[Inertial]:
-        """What moves with some joints, in the root's frame."""
+        """The bodies that move with some joints, in the root's frame."""
         bodies = []
         for link in (link for joint in joints for link in self.carried(joint)):
             if link.inertial is not None:

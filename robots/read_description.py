@@ -30,7 +30,7 @@ def read_description(path: Path) -> Description:
     """The robot of a TOML file; `nao.toml` beside this file shows the format.
 
     Raises:
-      UnknownNameError: a joint, foot or pair names what is not there.
+      UnknownNameError: a joint, foot or pair refers to an unknown name.
     """
     table = tomllib.loads(path.read_text())
     joints: dict[str, Table] = table["joint"]
@@ -152,7 +152,7 @@ def _foot(values: Table, index: dict[str, int]) -> Foot:
 
 
 def _named(kind: str, name: str, known: dict[str, T]) -> T:
-    """What a name stands for."""
+    """Look a name up."""
     if name not in known:
         raise UnknownNameError(kind, name, known)
     return known[name]

@@ -11,7 +11,7 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True, eq=False)
 class Inertial:
-    """What a rigid body weighs and how it resists turning.
+    """Mass, centre of mass and rotational inertia of a rigid body.
 
     Attributes:
       mass_kg: the mass.
@@ -35,15 +35,15 @@ class Inertial:
             )
 
     def moved(self, offset_m: FloatArray) -> "Inertial":
-        """The same body seen from a frame at -offset_m (parallel axes)."""
+        """This body in a frame that lies at -offset_m, with parallel axes."""
         return Inertial(self.mass_kg, self.com_m + offset_m, self.inertia_kg_m2)
 
     def with_rotor(self, axis: FloatArray, rotor_kg_m2: float) -> "Inertial":
-        """The body with a geared rotor's inertia about the joint axis lumped in.
+        """This body with a geared rotor's inertia about the joint axis added.
 
-        Bullet has no joint armature, and the same torque computed from outside
-        explodes; a disc fixed to the link is what both engines can carry in one
-        way. A thin disc has half of its axial inertia across the axis:
+        Bullet has no joint armature, and a torque computed outside of it makes the
+        simulation unstable; both engines can carry a disc fixed to
+        the link. A thin disc has half of its axial inertia across the axis:
         J (E + a a^T) / 2.
 
         Args:

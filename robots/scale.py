@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from groundwalk.errors import BadValueError
 
 NAO_HIP_M, NAO_CENTRE_M, NAO_KG = 0.248, 0.277, 5.305
-"""Of nao.toml, its legs straight and its arms hanging."""
+"""Hip height [m], height of the centre of mass [m] and mass [kg] of nao.toml, with
+straight legs and hanging arms."""
 
 
 @dataclass(frozen=True)
@@ -19,9 +20,9 @@ class Scale:
     """A robot's size in units of the NAO's.
 
     Attributes:
-      length: hip above sole, legs straight.
-      time: square root of the centre of mass's height above the soles.
-      weight: the weight.
+      length: ratio of hip heights above the sole, legs straight.
+      time: square root of the ratio of the centre of mass's heights above the soles.
+      weight: ratio of the weights.
     """
 
     length: float = 1.0
@@ -29,14 +30,14 @@ class Scale:
     weight: float = 1.0
 
     def __post_init__(self) -> None:
-        """Refuse what no robot has."""
+        """Refuse factors that are not positive."""
         for name, value in vars(self).items():
             if not (math.isfinite(value) and value > 0):
                 raise BadValueError(f"scale {name} is {value}; it must be positive")
 
     @classmethod
     def of_robot(cls, hip_m: float, centre_m: float, mass_kg: float) -> "Scale":
-        """The size of a robot.
+        """Compare a robot with the NAO.
 
         Args:
           hip_m: height of the hip above the sole, the legs straight.
@@ -49,11 +50,11 @@ class Scale:
 
     @property
     def speed(self) -> float:
-        """Of velocities."""
+        """Factor between velocities of the NAO and of this robot."""
         return self.length / self.time
 
     def of(self, unit: str) -> float:
-        """What a value in that unit is multiplied by.
+        """Factor that turns a value for the NAO into one for this robot.
 
         Args:
           unit: "m", "s", "m/s", "rad/s", "rad/m", "N", or one without size: "1", "m/m"

@@ -1,4 +1,4 @@
-"""Servos of a robot whose description tells no more than effort and speed.
+"""Sizes servos of a robot of which only effort and speed of its motors are known.
 
 Gains follow from a natural frequency and a damping ratio about a reflected inertia,
 kp = I (w^2 + g / h) and kd = 2 z I w. For a leg's joint that is the whole robot on one

@@ -1,4 +1,4 @@
-"""Shoulders that swing an arm, and the angle at which it hangs."""
+"""Finds the shoulders that swing the arms, and the angle at which an arm hangs."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -49,7 +49,7 @@ def find_shoulders(
 
 
 def hanging_rad(posed: PosedTree, joint: str) -> float:
-    """The angle within its range at which what a shoulder carries hangs lowest.
+    """The angle within a shoulder's range at which the arm hangs lowest [rad].
 
     With the axis a and the centre of mass at c from it, the height is
     z(q) = (c_a)_z + cos(q) (c - c_a)_z + sin(q) (a x c)_z, c_a being the part of c

@@ -1,4 +1,4 @@
-"""Where a sole meets the ground, and how its sensors feel that."""
+"""Contact points of a sole, and how a force at each is shared by its sensors."""
 
 import numpy as np
 
@@ -6,24 +6,28 @@ from groundwalk.arrays import FloatArray
 from robots.description import Foot
 
 CONTACT_RADIUS_M = 0.01
-"""Radius of the spheres that touch the ground; 3 mm got caught under it in Bullet."""
+"""Radius [m] of the spheres that touch the ground: smaller ones, of 3 mm, got caught
+below the ground in Bullet."""
 
 FRICTION = 0.8
-"""Of plastic soles on carpet: simulators of the NAO use 0.5 to 1 (no measurement)."""
+"""Friction coefficient of plastic soles on carpet: no measurement is known, and
+simulators of the NAO use 0.5 to 1."""
 
 RIM_POINTS = 10
-"""On the NAO ten points keep 98 % of the area; all fifteen cost a quarter more time."""
+"""Corners kept of a sole's rim: on the NAO ten keep 98 % of the area, and all fifteen
+cost a quarter more time."""
 
 
 def rim_points(outline_m: FloatArray, count: int = RIM_POINTS) -> FloatArray:
-    """The corners of a convex outline that keep the most of its area.
+    """Reduce a convex outline to corners that keep most of its area.
 
     Args:
       outline_m: (points, 2) corners in order.
       count: how many corners to keep; fewer if the outline has fewer.
 
     Returns:
-      (count, 2) corners: again and again the one left out that costs least area.
+      (count, 2) corners [m], after removing one by one the corner that costs the least
+      area.
     """
     corners = outline_m
     while len(corners) > count:
@@ -35,9 +39,9 @@ def rim_points(outline_m: FloatArray, count: int = RIM_POINTS) -> FloatArray:
 
 
 def contact_points(foot: Foot) -> FloatArray:
-    """Where a sole touches: (points, 2), its rim and two places on its midline.
+    """(points, 2) contact points [m]: the sole's rim and two places on its midline.
 
-    Those in the middle let a foot rock on a crest; on level ground they add nothing.
+    The two in the middle let a foot rock on a crest; on level ground they add nothing.
     """
     low, high = foot.outline_m.min(axis=0), foot.outline_m.max(axis=0)
     middle = low + np.array([[1 / 3, 1 / 2], [2 / 3, 1 / 2]]) * (high - low)

@@ -1,6 +1,8 @@
 """A URDF as data: links with their inertials and shapes, and the joints between them.
 
-Nothing is interpreted here: frames, names and signs are those of the file.
+Nothing is interpreted here: frames, names and signs are those of the file. Unlike the
+libraries yourdfpy and urdf_parser_py, it names the file in each error and mends
+inertias that no body can have.
 """
 
 from collections.abc import Mapping
@@ -25,7 +27,7 @@ _AXES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 @dataclass(frozen=True, eq=False)
 class UrdfShape:
-    """A shape of a link.
+    """A shape of a URDF's link.
 
     Attributes:
       kind: "box", "cylinder", "sphere" or "mesh".
@@ -50,7 +52,7 @@ class UrdfLink:
 
 @dataclass(frozen=True, eq=False)
 class UrdfJoint:
-    """A joint.
+    """A joint of a URDF.
 
     Attributes:
       name: the joint's name.
@@ -59,7 +61,8 @@ class UrdfJoint:
       placement: of the child's frame in the parent's, the joint at zero.
       axis: (3,) unit vector in the child's frame.
       range_rad: lower and upper end; a whole turn to both sides without any.
-      effort_nm, speed_rad_s: of the motor; None where the file does not say.
+      effort_nm: the motor's largest torque; None where the file does not say.
+      speed_rad_s: its largest speed; None where the file does not say.
     """
 
     name: str
@@ -174,8 +177,8 @@ def _inertial(element: Element | None) -> Inertial | None:
 def _possible(inertia: FloatArray, mass_kg: float) -> FloatArray:
     """The matrix if a body of that mass can have it, else one that is close.
 
-    A body with next to no inertia gets that of a ball of water: iCub's right leg is
-    such a one. Principal moments that are not positive become next to nothing; if two
+    A body with next to no inertia, such as iCub's right leg, gets that of a ball of
+    water. Principal moments that are not positive become next to nothing; if two
     of them do not add up to the third, all become their mean, as with MuJoCo's
     `balanceinertia`.
     """

@@ -1,4 +1,4 @@
-"""Parameters of a terrain that know what values make sense."""
+"""Parameters of terrains, with bounds that are checked."""
 
 import dataclasses
 import numbers
@@ -13,7 +13,7 @@ T = TypeVar("T", float, int, tuple[float, float])
 def bounded(default: T, low: float, high: float) -> T:
     """Declare a dataclass field with a default and inclusive bounds.
 
-    The default's type says what the field takes: a whole number, any number, or
+    The default's type decides what the field takes: a whole number, any number, or
     a pair of numbers in increasing order.
     """
     return dataclasses.field(default=default, metadata={"bounds": (low, high)})
@@ -49,10 +49,10 @@ def _increase(low: float, pair: tuple[Any, ...], high: float) -> bool:
 
 
 def _is_real(value: object) -> TypeGuard[float]:
-    """Whether a value is a number; a bool is none."""
+    """Whether a value is a number; a bool does not count as one."""
     return isinstance(value, numbers.Real) and not isinstance(value, bool)
 
 
 def _is_whole(value: object) -> TypeGuard[int]:
-    """Whether a value is a whole number; a bool is none."""
+    """Whether a value is a whole number; a bool does not count as one."""
     return isinstance(value, numbers.Integral) and not isinstance(value, bool)

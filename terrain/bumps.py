@@ -20,7 +20,7 @@ class Bumps(Ground):
 
     Centres are a Poisson process over the ground. A bump of height h is
     h (1 - (r / radius_m)^2)^2 at distance r from its centre: level at its top and
-    at its foot. Where bumps overlap the higher one counts, so no point is lower
+    at its foot. Where bumps overlap the higher one counts: no point is lower
     than 0 or higher than `height_m`.
 
     Attributes:

@@ -1,4 +1,4 @@
-"""What every family of terrain has in common: where it lies and how it starts."""
+"""The base of all terrains: the place of the ground, and its flat start."""
 
 import dataclasses
 import math
@@ -77,7 +77,7 @@ class Ground(ABC):
         Args:
           x_m: world x of the columns [m], shape (1, columns).
           y_m: world y of the rows [m], shape (rows, 1).
-          generator: where all randomness comes from.
+          generator: source of all randomness.
         """
 
     def make(self, seed: Seed) -> Heightfield:
@@ -108,7 +108,7 @@ class Ground(ABC):
         return t * t * (3.0 - 2.0 * t)
 
     def _require_spacings(self, name: str, least: int) -> None:
-        """Refuse a length that the grid is too coarse for."""
+        """Refuse a length for which the grid is too coarse."""
         length_m, least_m = getattr(self, name), least * self.spacing_m
         if length_m < least_m:
             raise BadValueError(

@@ -22,7 +22,7 @@ class Heightfield:
 
     Attributes:
       heights_m: heights z [m], shape (rows, columns), rows along +y and columns
-        along +x; a read-only copy of what was given.
+        along +x; a read-only copy of the given array.
       origin_m: world (x, y) of `heights_m[0, 0]` [m].
       spacing_m: distance between neighbouring samples, along x and y [m].
 

@@ -17,7 +17,7 @@ class TerrainSpec:
 
     Attributes:
       name: one of `terrain.names()`.
-      parameters: any parameters of the family; what is left out is filled in, so
+      parameters: any parameters of the family; parameters left out are filled in, so
         that a spec means the same ground when defaults change later.
       seed: a whole number of 0 or more.
 
@@ -31,7 +31,7 @@ class TerrainSpec:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        """Check everything, and fill in what was left to defaults."""
+        """Check all parts, and fill in the defaults of missing parameters."""
         ground = configuration(self.name, **self.parameters)
         object.__setattr__(self, "parameters", dataclasses.asdict(ground))
         object.__setattr__(self, "seed", checked_seed(self.seed))

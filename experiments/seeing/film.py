@@ -1,4 +1,4 @@
-"""Pictures of walks put together: strips and films, as bytes of a file."""
+"""Puts pictures of walks together: film strips and films, as bytes of a file."""
 
 import io
 import shutil
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     import PIL.Image
 
 GIF_BYTES = 1_000_000
-"""A GIF gets fewer colours until it is smaller than this, as far as that goes."""
+"""A GIF gets fewer colours until it is smaller than this, down to 16 colours."""
 
 _GIF_COLOURS = (128, 64, 32, 16)
 _AFTER_FALL_S = 0.7
-"""A film goes on for this long after a fall: the robot lies."""
+"""A film goes on for this long after a fall [s], until the robot lies."""
 
 _TITLE_PX = 26
 _TEXT_PX = 15
@@ -38,14 +38,14 @@ _INK = (40, 44, 52)
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Which walks are shown, and which part of them.
+    """The walks that a film shows, and which part of them.
 
     Attributes:
       scenes: from left to right.
       size_px: width and height of each walk's picture.
-      start_s: first moment; None to choose it.
-      duration_s: how much is shown.
-      with_balance: see `SceneCamera`.
+      start_s: first moment [s]; None for the fall, or the middle of a walk without one.
+      duration_s: length of the part that is shown [s].
+      with_balance: whether forces, support polygon, ZMP and centre of mass are drawn.
     """
 
     scenes: Sequence[Scene]
@@ -63,7 +63,7 @@ class Film:
         ]
 
     def titled(self, index: int, time_s: float) -> Image:
-        """A scene at a moment, or its last one, below its name and the time."""
+        """Draw a scene at a moment, or its last one, below its name and the time."""
         scene = self.scenes[index]
         times_s = scene.recording.time_s
         tick = max(int(np.searchsorted(times_s, time_s + 1e-9, side="right")) - 1, 0)
@@ -76,18 +76,18 @@ class Film:
         return _with_title(picture, name, label, FALL if end in FALLS else _INK)
 
     def shown_s(self, scenes: Sequence[Scene]) -> tuple[float, float]:
-        """First and last moment that is shown of these scenes."""
+        """First and last moment shown of these scenes [s]."""
         if self.start_s is None:
             return window_s(scenes, self.duration_s)
         return self.start_s, self.start_s + self.duration_s
 
 
 def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
-    """First and last moment of a part: around the first fall, else in the middle.
+    """First and last moment to show [s]: around the first fall, else in the middle.
 
     Args:
-      scenes: shown together.
-      duration_s: of the part; shorter if the walks are.
+      scenes: scenes that are shown together.
+      duration_s: length of the part [s]; the result is shorter if the walks are.
     """
     first_s = min(float(scene.recording.time_s[0]) for scene in scenes)
     lasts_s = [float(scene.recording.time_s[-1]) for scene in scenes]
@@ -105,11 +105,11 @@ def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
 
 
 def strip_bytes(film: Film, frames: int) -> bytes:
-    """A PNG: a row for each walk, its pictures at even times.
+    """Draw a PNG with a row for each walk, its pictures at even times.
 
     Args:
-      film: what to show. Where it has no start, every row has its own: its last
-        picture is the fall.
+      film: the walks. Where it has no start, each row has its own, chosen so that the
+        last picture shows the fall.
       frames: pictures in a row.
     """
     rows = []
@@ -130,15 +130,15 @@ def _strip_times_s(film: Film, scene: Scene, frames: int) -> FloatArray:
 
 
 def film_bytes(film: Film, rate_hz: float, suffix: str) -> bytes:
-    """A film: all walks side by side, at the same moments.
+    """Make a film of all walks side by side, at the same moments.
 
     Args:
-      film: what to show.
+      film: the walks.
       rate_hz: pictures a second.
       suffix: ".gif" or ".mp4".
 
     Raises:
-      GroundwalkError: for .mp4 the program ffmpeg is needed, and is not there.
+      GroundwalkError: an .mp4 needs the program ffmpeg, which is not installed.
     """
     if suffix == ".mp4":
         _ffmpeg()

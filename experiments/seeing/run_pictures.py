@@ -1,4 +1,4 @@
-"""The pictures of a run: its search, its walks, and its recordings in Rerun."""
+"""Draws a run: its search, its walks, and its recordings in Rerun."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ OVERLAY = "overlay.rrd"
 
 
 def picture_run(folder: RunFolder) -> None:
-    """Draw what a run's folder holds: its history, and all of its recordings."""
+    """Draw a run's history and all of its recordings, as far as there are any."""
     picture_search(folder)
     recordings = read_recordings(folder.path / RECORDINGS)
     if recordings:

@@ -70,7 +70,7 @@ def read_with_model(path: Path) -> Recording:
 
 
 def scene_names(texts: Iterable[str]) -> list[str]:
-    """Texts as names that scenes can have, no two of them the same."""
+    """Turn texts into names that scenes can have, all different."""
     taken: Counter[str] = Counter()
     names = []
     for text in texts:
@@ -85,10 +85,10 @@ def make_scenes(recordings: Mapping[str, Recording]) -> list[Scene]:
     """Set recordings on their grounds, with their robots.
 
     Args:
-      recordings: by the scene's name; what a recording's metadata say counts.
+      recordings: by the scene's name; their metadata name robot and ground.
 
     Raises:
-      BadRecordingError: a robot or a ground is none that is known here.
+      BadRecordingError: a robot or a ground is unknown here.
     """
     return [_scene(name, recording) for name, recording in recordings.items()]
 
@@ -117,7 +117,7 @@ def _robot(recording: Recording) -> robots.Description:
 
 
 def _ground(metadata: RecordingMetadata) -> Heightfield | None:
-    """What was walked on, made again; None where the recording does not say."""
+    """The ground that was walked on, made again; None if the recording has none."""
     if metadata.terrain is None:
         return None
     whole = {"parameters": {}, "seed": 0, **metadata.terrain}

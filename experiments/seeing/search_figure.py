@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MEAN, BEST, TRIED, FALLS = "#0072b2", "#e69f00", "#7f8894", "#d55e00"
-"""Colours that colour-blind people tell apart (Okabe and Ito)."""
+"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
 
 MOST_MARKED = 40
 """Lines of more generations carry no markers."""
 
 WIDTH = 0.6
-"""Of what is drawn of a generation, as a part of the step to the next one."""
+"""Width of the marks of one generation, as a share of the step to the next."""
 
 
 def draw_search(history: Sequence[Mapping[str, Any]], path: Path) -> None:
@@ -32,7 +32,7 @@ def search_figure(history: Sequence[Mapping[str, Any]]) -> "Figure":
     """Rewards above, and the share of gaits that fell below.
 
     Args:
-      history: what a search notes of each generation, from the first one on:
+      history: a search's notes on each generation, from the first one on:
         `rewards` [cm/s] and number of `falls` of the gaits that it tried, and
         `mean_reward` and `mean_fell` of the distribution's mean.
 

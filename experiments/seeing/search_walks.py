@@ -20,10 +20,10 @@ _NEEDED = ("robot", "terrain", "sim", "seed", "threads")
 
 
 def search_plan(stored: Mapping[str, Any]) -> SearchPlan:
-    """What a search walked on and with, from a run's `config.json`.
+    """Read robot, grounds and settings of a search from a run's `config.json`.
 
     Raises:
-      GroundwalkError: something of it is not there any more, or cannot be.
+      GroundwalkError: a file that it names is gone, or a setting is impossible.
     """
     given = {name: stored[name] for name in _NEEDED if name in stored}
     if given.get("sim") is not None:
@@ -73,7 +73,7 @@ def _metadata(
 
 
 def _shared(grounds: Sequence[Heightfield]) -> list[Heightfield]:
-    """The same grounds, but one object where all are alike: a sim then loads one."""
+    """The grounds, as one object if all are alike: a sim then loads only one."""
     first = grounds[0]
     if all(np.array_equal(first.heights_m, one.heights_m) for one in grounds):
         return [first] * len(grounds)

@@ -26,8 +26,8 @@ Entries = Sequence[Mapping[str, Any]]
 def visualize_search(folder: RunFolder) -> Path | None:
     """Write a run's search for Rerun, and let its best gaits walk for that.
 
-    Of earlier versions nobody knows the best gaits. Where they cannot walk any more,
-    the page of each generation says why.
+    Runs of earlier versions did not note the best gaits. Where these cannot walk any
+    more, the page of each generation says why.
 
     Returns:
       The file; None if there is no history, as before the first generation.
@@ -72,11 +72,11 @@ def _with_walks(
 def read_history(entries: Entries) -> SearchHistory:
     """What `optimize-gait` notes, generation by generation, as columns.
 
-    Entries of earlier versions have no `best_gait`; parameters that nobody noted are
+    Entries of earlier versions have no `best_gait`; parameters that were not noted are
     left out.
 
     Raises:
-      KeyError: an entry lacks what every version has noted.
+      KeyError: an entry lacks a value that every version notes.
     """
     mean = _columns(entries, "mean_gait")
     ranges = np.array([parameter.high - parameter.low for parameter in PARAMETERS])

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 LEGS = {"left": "#0072b2", "right": "#d55e00"}
 ARMS, TORSO, GROUND, ENDED = "#009e73", "#444444", "#dddddd", "#b2182b"
-"""Colours of limbs that colour-blind people tell apart (Okabe and Ito)."""
+"""Colours of limbs that colour-blind people can distinguish (Okabe and Ito)."""
 
 PANEL_IN = 5.0
 """Width of a panel [inch]."""
@@ -45,12 +45,12 @@ def draw_walk(recordings: Mapping[str, Recording], path: Path) -> None:
 def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "Figure":
     """A panel for each walk, all of one scale.
 
-    Faint figures follow each other every 0.12 s; wherever there is room for it, one is
+    Faint figures follow every 0.12 s; wherever there is room for it, one is
     clear and has its time above. Thin lines are the ways of the ankles. The ground is
     drawn as it is under each foot, in the foot's colour.
 
     Args:
-      strips: by name. What stands before the last "/" says the column, what stands
+      strips: by name. The text before the last "/" is the column, the text
         after it the row: "sim/tuned" and "real/tuned" come side by side.
       dots_per_inch: a panel is some 5 inches wide.
 
@@ -157,7 +157,7 @@ def _draw_head(axes: "Axes", strip: WalkStrip, still: int) -> None:
 
 
 def _add_key(figure: "Figure") -> None:
-    """What the colours mean, once for all panels."""
+    """Draw the legend, once for all panels."""
     from matplotlib.lines import Line2D
 
     names = {f"{side} leg": colour for side, colour in LEGS.items()}

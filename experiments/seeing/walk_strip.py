@@ -1,4 +1,4 @@
-"""What a picture shows of a walk: which piece of it, and which moments."""
+"""Chooses the part and the moments of a walk that its figure shows."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ COURSE_M, LONGEST_S = 1.0, 5.0
 """How far and how long a piece may be."""
 
 WIDTH_M = 1.5
-"""What is shown of the course: a piece, and room for arms, legs and a fall."""
+"""Length of the part of the course that is shown, and the figure's width [m]."""
 
 STILL_S = 0.12
 """From one still to the next: about half a step."""
@@ -34,7 +34,7 @@ class WalkStrip:
       time_s: (ticks,) of all ticks.
       figure: the robot at all ticks.
       ticks: the piece.
-      x_range_m: what is shown.
+      x_range_m: first and last x that are shown [m].
       stills: ticks 0.12 s apart, the piece's last one among them.
       clear: those of the stills that stand apart, from the last one back.
       ground_m: (points, 2) x and z of the ground under the way of each foot, by side;
@@ -60,10 +60,10 @@ class WalkStrip:
 
 
 def walk_strip(scene: Scene) -> WalkStrip:
-    """Choose what to show of a walk.
+    """Choose the part of a walk to show.
 
     Args:
-      scene: whose recording has the base and all joints at every tick.
+      scene: its recording must have the base and all joints at every tick.
 
     Raises:
       UnknownNameError: the recording does not say where the base was.
@@ -112,7 +112,7 @@ def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
 
 
 def _x_range(x_m: FloatArray) -> tuple[float, float]:
-    """What is shown around where the base was."""
+    """(2,) x range to show, around the places of the base [m]."""
     middle_m = (x_m.min() + x_m.max()) / 2
     return float(middle_m - WIDTH_M / 2), float(middle_m + WIDTH_M / 2)
 
@@ -124,12 +124,12 @@ def _stills(time_s: FloatArray) -> IntArray:
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
-    """The stills from the last one back that stand apart.
+    """Choose stills that do not overlap, from the last one back.
 
     Args:
       x_m: (ticks,) of the head.
       stills: ticks to choose from.
-      room_m: distance that two of them keep.
+      room_m: least distance between two of them [m].
     """
     chosen: list[int] = []
     for still in stills[::-1].tolist():

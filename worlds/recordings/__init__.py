@@ -1,1 +1,1 @@
-"""Rollouts written down: columns, metadata, files."""
+"""Recordings, format 1: their columns and metadata, in memory and in files."""

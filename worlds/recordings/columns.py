@@ -10,8 +10,8 @@ TIME = "time"
 SUPPORT = "support"
 ORIENTATION = "base.orientation"
 POSITION = "position"
-# Without one of these nothing says what the robot was told to do.
 DRIVES = ("command", "command_torque", "torque")
+"""Quantities that say what drove a joint: a recording has a column of one at least."""
 JOINT_QUANTITIES = (POSITION, "velocity", *DRIVES)
 VECTORS = {
     "base.position": ("x", "y", "z"),

@@ -1,4 +1,4 @@
-"""A recording's columns to and from CSV."""
+"""Reads and writes a recording's columns as CSV."""
 
 import csv
 from collections.abc import Iterator, Mapping, Sequence
@@ -43,7 +43,7 @@ def read_csv(path: Path) -> dict[str, FloatArray]:
 
 
 def csv_bytes(columns: Mapping[str, FloatArray]) -> bytes:
-    """The content of a CSV file: the shortest digits that give each float back.
+    """Columns as CSV, with the fewest digits from which each float is read back.
 
     Args:
       columns: values by name, of equal length.
@@ -63,11 +63,11 @@ def _header(path: Path) -> list[str]:
 
 
 def _batches(file: BinaryIO, names: Sequence[str]) -> Iterator[pa.RecordBatch]:
-    """Read text, a block of rows at a time, so that a cell that is no number is known.
+    """Read blocks of rows as text first, so that errors can name a bad cell.
 
     Args:
       file: open for reading bytes.
-      names: what the first line says.
+      names: column names, from the first line.
     """
     uneven: list[pa.csv.InvalidRow] = []
 
@@ -106,7 +106,7 @@ def _unreadable(
 
 
 def _numbers(batch: pa.RecordBatch, start: int) -> pa.RecordBatch:
-    """The batch with numbers for text; its first row is row `start` of the file."""
+    """Turn a batch of text into numbers; its first row is row `start` of the file."""
     columns = []
     for name, cells in zip(batch.schema.names, batch.columns, strict=True):
         try:

@@ -13,16 +13,16 @@ from worlds.recordings.recording import Recording
 
 
 def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Recording:
-    """Read a recording and check all of it.
+    """Read a recording and check all of its columns and metadata.
 
     Args:
       path: a `.parquet` or a `.csv` file. A CSV file has an empty cell (or `nan`)
         where a value is missing, and its metadata in a `.json` file of the same name.
-      metadata: stands in for that of the file, which is then not looked at.
+      metadata: replaces the metadata of the file, which are then not read.
 
     Raises:
-      BadRecordingError: naming the file and, where there is one, the column and the
-        row of what is wrong. The first row of values is row 0.
+      BadRecordingError: names the file and, where there is one, the column and the row
+        of the first fault. The first row of values is row 0.
     """
     is_csv = _is_csv(path)
     with _naming(path):
@@ -39,18 +39,18 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
 
 
 def write_recording(recording: Recording, path: Path) -> None:
-    """Write a recording, the file at once; the same recording gives the same bytes.
+    """Write a recording; the file appears whole, and has the same bytes each time.
 
     Missing values become nulls (Parquet) or empty cells (CSV); all others are read
     back bit by bit as they were.
 
     Args:
-      recording: what to write.
+      recording: the recording.
       path: a `.parquet` file, or a `.csv` file, beside which a `.json` file of the
         same name is written.
 
     Raises:
-      BadRecordingError: the path ends otherwise.
+      BadRecordingError: the path ends with neither .parquet nor .csv.
     """
     if _is_csv(path):
         write_text(path.with_suffix(".json"), recording.metadata.to_json() + "\n")
@@ -69,7 +69,7 @@ def _is_csv(path: Path) -> bool:
 
 @contextmanager
 def _naming(path: Path) -> Iterator[None]:
-    """Put the file's name in front of what is wrong with it."""
+    """Put the file's name in front of the text of every error."""
     try:
         yield
     except BadRecordingError as error:

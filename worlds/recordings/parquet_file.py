@@ -1,4 +1,4 @@
-"""A recording's columns and metadata text to and from Parquet."""
+"""Reads and writes a recording's columns and metadata as Parquet."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -19,14 +19,14 @@ Format 1. One row a tick, SI units and radians, joint names as in the model.
 | `foot_force.{left,right}.{front,rear}_{left,right}` | [N], each sensor |
 | `support` | the gait's own idea: -1 right leg, 0 both, 1 left leg |
 
-At least one column of `command`, `command_torque` or `torque` is there; all that is
-not `time` or `position` is optional by itself, but a vector comes whole. Values may
+At least one column of `command`, `command_torque` or `torque` is there. Every other
+column but `time` and `position` is optional, but a vector comes whole. Values may
 be missing (NaN here, null in a file). Row k holds what was measured at `time[k]`
 before `command[k]` took effect; the command holds until `time[k + 1]`.
 
-Besides come the metadata (`worlds.recordings.metadata`): robot, base and source, and
-where they are known servo, terrain, gait, world and end. The per-sensor forces,
-`support`, and the last four of the metadata are additions that files need not have.
+A recording also has metadata (`worlds.recordings.metadata`): robot, base and source,
+and where they are known servo, terrain, gait, world and end. Files need not have the
+forces of single sensors, `support`, or any metadata beyond robot, base and source.
 """
 
 from collections.abc import Sequence
@@ -54,8 +54,8 @@ from worlds.recordings.values import check_values, frozen_columns
 class Recording:
     """One rollout: columns of equal length and where they come from.
 
-    Whatever exists has been checked: construction refuses what format 1 does not
-    allow. The arrays are read-only.
+    Construction checks everything and refuses what format 1 does not allow. The
+    arrays are read-only.
     """
 
     columns: dict[str, FloatArray]
@@ -66,7 +66,7 @@ class Recording:
         """Check names, values and metadata.
 
         Raises:
-          BadRecordingError: naming the column and the row of what is wrong.
+          BadRecordingError: names the column and the row of the first fault.
         """
         check_names(list(self.columns))
         object.__setattr__(self, "columns", frozen_columns(self.columns))
@@ -115,31 +115,66 @@ class Recording:
         """Measured positions [rad; m if sliding], shape (ticks, joints).
 
         Args:
-          joints: whose; the order of the columns of the result.
+          joints: names of joints, in the order of the result's columns.
 
         Raises:
-          UnknownNameError: a joint has no such column. So do the next four.
+          UnknownNameError: a joint was not recorded.
         """
         return self._of_joints(POSITION, joints)
 
     def velocities(self, joints: Sequence[str]) -> FloatArray:
-        """Measured velocities [rad/s; m/s if sliding], shape (ticks, joints)."""
+        """Measured velocities [rad/s; m/s if sliding], shape (ticks, joints).
+
+        Args:
+          joints: names of joints, in the order of the result's columns.
+
+        Raises:
+          UnknownNameError: a joint has no column "velocity.<joint>".
+        """
         return self._of_joints("velocity", joints)
 
     def commands(self, joints: Sequence[str]) -> FloatArray:
-        """Position targets [rad; m if sliding], shape (ticks, joints)."""
+        """Position targets [rad; m if sliding], shape (ticks, joints).
+
+        Args:
+          joints: names of joints, in the order of the result's columns.
+
+        Raises:
+          UnknownNameError: a joint has no column "command.<joint>".
+        """
         return self._of_joints("command", joints)
 
     def command_torques(self, joints: Sequence[str]) -> FloatArray:
-        """Torque targets [N m; N if sliding], shape (ticks, joints)."""
+        """Torque targets [N m; N if sliding], shape (ticks, joints).
+
+        Args:
+          joints: names of joints, in the order of the result's columns.
+
+        Raises:
+          UnknownNameError: a joint has no column "command_torque.<joint>".
+        """
         return self._of_joints("command_torque", joints)
 
     def torques(self, joints: Sequence[str]) -> FloatArray:
-        """Measured torques [N m; N if sliding], shape (ticks, joints)."""
+        """Measured torques [N m; N if sliding], shape (ticks, joints).
+
+        Args:
+          joints: names of joints, in the order of the result's columns.
+
+        Raises:
+          UnknownNameError: a joint has no column "torque.<joint>".
+        """
         return self._of_joints("torque", joints)
 
     def has(self, vector: str) -> bool:
-        """Whether a vector was recorded; see `vector`."""
+        """Whether a vector was recorded.
+
+        Args:
+          vector: for example "base.orientation" or "foot_force".
+
+        Raises:
+          UnknownNameError: format 1 has no such vector.
+        """
         if vector not in VECTORS:
             raise UnknownNameError("vector", vector, VECTORS)
         return vector_columns(vector)[0] in self.columns
@@ -161,7 +196,7 @@ class Recording:
         return np.stack([self.columns[name] for name in vector_columns(vector)], axis=1)
 
     def slice(self, start: int, stop: int | None = None) -> "Recording":
-        """Rows from start to before stop, counted as Python counts; times stay.
+        """Rows from `start` to before `stop`, as in Python; their times stay the same.
 
         Raises:
           BadRecordingError: no row is left.

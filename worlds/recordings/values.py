@@ -1,4 +1,4 @@
-"""The values in the columns of a recording: numbers, and what they may be."""
+"""Checks the values in the columns of a recording."""
 
 from collections.abc import Mapping
 
@@ -9,17 +9,17 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
 from worlds.recordings.columns import ORIENTATION, SUPPORT, TIME, vector_columns
 
-# The most that rounding each component to three decimals can change the norm.
 UNIT_TOLERANCE = 1e-3
+"""Largest error of a quaternion's norm: that of components with three decimals."""
 
 
 def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
-    """The error for one value.
+    """Make the error for one wrong value.
 
     Args:
       column: its column.
       row: its row; the first row of values is row 0.
-      problem: what is wrong with it.
+      problem: the fault, in a few words.
     """
     return BadRecordingError(
         f"column {column!r}, row {row} (counted from 0): {problem}"
@@ -27,17 +27,17 @@ def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
 
 
 def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray]:
-    """The columns as read-only arrays of floats, all of the same length.
+    """Turn columns into read-only arrays of floats, all of the same length.
 
-    An array that can be written to is copied, so that nobody changes the recording
-    through it later; one that is read-only is taken as it is.
+    An array that can be written to is copied, so that later changes do not reach the
+    recording; a read-only array is used without a copy.
 
     Args:
       columns: values by column name; each a sequence of numbers.
 
     Raises:
-      BadRecordingError: a column holds no numbers, is not one-dimensional or has
-        another length than the first one.
+      BadRecordingError: a column holds no numbers, is not one-dimensional, or its
+        length differs from that of the first one.
     """
     frozen = {name: _frozen(name, values) for name, values in columns.items()}
     lengths = {name: values.size for name, values in frozen.items()}
@@ -88,7 +88,7 @@ def _frozen(name: str, values: npt.ArrayLike) -> FloatArray:
 def _refuse(
     column: str, bad: BoolArray, problem: str, values: FloatArray | None = None
 ) -> None:
-    """Raise for the first bad row; its value goes where the problem says {}."""
+    """Raise an error for the first bad row; {} in the text stands for its value."""
     if bad.any():
         row = int(np.argmax(bad))
         value = None if values is None else float(values[row])

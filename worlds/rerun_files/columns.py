@@ -1,4 +1,4 @@
-"""Columns of a Rerun file: values over the times of one recording."""
+"""Writes values over the times of one recording as columns of a Rerun file."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class ColumnLog:
-    """Writes what belongs to the same times, below one path.
+    """Writes values over the same times, at entities below one path.
 
     Timelines: `sim_time`, the times themselves, and `tick`, their row.
     """
@@ -24,15 +24,15 @@ class ColumnLog:
 
         Args:
           stream: of a recording.
-          at: what stands in front of all paths, with its "/".
-          time_s: (ticks,).
+          at: first part of all paths, with its "/"; may be empty.
+          time_s: (ticks,) [s].
         """
         self._stream, self._at = stream, at
-        # Rounded, because Rerun cuts off what is less than a nanosecond.
+        # Rounded, because Rerun cuts off fractions of a nanosecond.
         self._time = np.rint(time_s * 1e9).astype("timedelta64[ns]")
 
     def log(self, path: str, what: "rr.AsComponents") -> None:
-        """Log what does not change."""
+        """Log something that does not change over time."""
         self._stream.log(f"{self._at}{path}", what, static=True, strict=True)
 
     def trace(self, trace: Trace) -> None:
@@ -51,12 +51,12 @@ class ColumnLog:
             self.send_rows(path, rows, kind.columns(**known))
 
     def send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
-        """Send what is known at some of the times.
+        """Send values that are known at some of the times only.
 
         Args:
           path: of the entity.
-          rows: which times.
-          columns: an archetype's, one value a row.
+          rows: indices of those times.
+          columns: an archetype's columns, one value for each of the rows.
         """
         import rerun as rr
 

@@ -1,4 +1,4 @@
-"""How Rerun's viewer lays out a file: where robots, curves and feet are to be seen."""
+"""Layout of a Rerun file: which views show robots, feet and curves, and where."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
 MOST_ABREAST = 2
-"""As many scenes stand side by side with all their curves; of more, tabs hold these."""
+"""Most scenes that stand side by side with all their curves; more scenes get tabs."""
 
 _ON_GROUND = ("below", "pressure", "zmp", "polygon")
 _MARGIN = 0.05
@@ -27,12 +27,12 @@ _ROBOT_COLUMNS = 4
 def blueprint(
     scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
 ) -> "rrb.Blueprint":
-    """Everything at once: scenes from left to right, each above its traces.
+    """Lay out scenes from left to right, each above its curves.
 
     Args:
-      scenes: what the file shows, each below its own name.
-      pages: curves by the name of their page; if there are any, they stand below the
-        scenes, of which only the robots are shown then.
+      scenes: the scenes of the file.
+      pages: curves by the name of their tab. If there are any, they stand below the
+        robots, and the scenes' own curves are not shown.
     """
     import rerun.blueprint as rrb
 
@@ -108,7 +108,7 @@ def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
 
 
 def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
-    """The soles and what lies on the ground, followed from above; ahead is up."""
+    """Soles and marks on the ground, followed from above; ahead is up."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"
@@ -133,7 +133,7 @@ def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
 
 
 def _scene_views(scene: Scene) -> "rrb.Vertical":
-    """The robot above what it did and felt."""
+    """A scene's robot above its curves."""
     import rerun.blueprint as rrb
 
     rows, shares = _traces(scene)
@@ -144,7 +144,7 @@ def _scene_views(scene: Scene) -> "rrb.Vertical":
 
 
 def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
-    """What a scene did and felt, beside the ground from above."""
+    """A scene's curves beside its view from above."""
     import rerun.blueprint as rrb
 
     rows, shares = _traces(scene)
@@ -155,7 +155,7 @@ def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
 
 
 def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]":
-    """Rows of plots and the lanes of the legs, and how high each shall be."""
+    """Rows of plots and of the supporting legs' lanes, and each row's relative height."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"

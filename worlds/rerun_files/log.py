@@ -1,4 +1,4 @@
-"""Recordings as Rerun files: robots, ground and traces; the layout is another file's.
+"""Writes recordings as Rerun files: robots, ground and curves.
 
 Each scene has a path prefix of its own, so that scenes stand side by side in one file:
 
@@ -14,11 +14,11 @@ Each scene has a path prefix of its own, so that scenes stand side by side in on
 | `<scene>/events` | why the rollout ended |
 | `<scene>/{balance,fall}`, `<scene>/contact/support` | see `rerun_files.balance` |
 
-Beside scenes, or without any, there may be pages of curves, each at a path of its own.
+A file may also hold pages of further curves, each at a path of its own.
 
 Timelines: `sim_time`, the recording's own time, and `tick`, its row. A row in which a
-value is missing is left out of that entity. What the metadata say is in the file's
-properties, under the scene's name.
+value is missing is left out of that entity. The metadata are in the file's properties,
+under the scene's name.
 """
 
 from collections.abc import Mapping, Sequence
@@ -53,18 +53,19 @@ def write_rrd(
     recording_id: str | None = None,
     pages: Mapping[str, Sequence[Curve]] | None = None,
 ) -> None:
-    """Write recordings side by side into one Rerun file, the file at once.
+    """Write recordings side by side into one Rerun file, which appears whole.
 
     Args:
       path: the `.rrd` file.
-      scenes: what to show, from left to right.
-      recording_id: to the viewer, files of one id are one recording; by default an id
-        that follows from the scenes.
-      pages: curves by the name of their page, two beside each other; only the robots
-        of scenes are then shown, above. There may be no scenes.
+      scenes: recordings with robot and ground, from left to right; may be empty.
+      recording_id: the viewer shows files with equal ids as one recording; by default
+        an id that follows from the scenes.
+      pages: curves by the name of their tab, two beside each other, below the scenes'
+        robots. The scenes' own curves are then not shown.
 
     Raises:
-      BadValueError: there is nothing, or the names of scenes get in each other's way.
+      BadValueError: there are neither scenes nor pages, or the name of one scene is
+        that of another or the first part of it.
     """
     import rerun as rr
 

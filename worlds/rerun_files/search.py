@@ -1,7 +1,7 @@
-"""A search as a Rerun file: what each generation tried, and what it came to.
+"""Writes a search as a Rerun file: the gaits and rewards of each generation.
 
-Its one timeline is `generation`. What is drawn over it shows the whole search; bars,
-page and robot show the generation under the cursor.
+Its one timeline is `generation`. Curves show the whole search; bars, page and robot
+show the generation under the cursor.
 
 | entity | what |
 |---|---|
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 TIMELINE = "generation"
 _APPLICATION = "groundwalk-search"
-"""Not that of walks: the viewer has one layout for each application."""
+"""Differs from the name for walks: the viewer keeps one layout per application."""
 
 _BINS = 30
 _PARAMETER_COLUMNS = 4
@@ -41,12 +41,12 @@ _MEAN, _BEST, _TRIED = colours.accent(0), colours.accent(1), colours.NEITHER_SID
 
 
 def write_search(path: Path, history: SearchHistory, identity: str) -> None:
-    """Write a search into one Rerun file, the file at once.
+    """Write a search into one Rerun file, which appears whole.
 
     Args:
       path: the `.rrd` file.
       history: at least one generation.
-      identity: to the viewer, files of one identity are one recording.
+      identity: the viewer shows files of one identity as one recording.
     """
     import rerun as rr
 
@@ -103,7 +103,7 @@ def _write_parameters(stream: "rr.RecordingStream", history: SearchHistory) -> N
 def _write_generation(
     stream: "rr.RecordingStream", history: SearchHistory, generation: int
 ) -> None:
-    """What is shown of one generation at a time."""
+    """Write the bars and the page of one generation."""
     import rerun as rr
 
     tried = _tried(history)
@@ -121,7 +121,7 @@ def _write_generation(
 
 
 def _tried(history: SearchHistory) -> FloatArray:
-    """(generations, gaits) rewards from the best on, NaN where fewer were tried."""
+    """(generations, gaits) rewards, the best first; NaN fills short generations."""
     tried = np.full((len(history.rewards), max(map(len, history.rewards))), np.nan)
     for row, rewards in zip(tried, history.rewards, strict=True):
         row[: len(rewards)] = np.sort(rewards)[::-1]
@@ -131,7 +131,7 @@ def _tried(history: SearchHistory) -> FloatArray:
 def _send(
     stream: "rr.RecordingStream", path: str, values: FloatArray, look: Any
 ) -> None:
-    """Send (generations,) or (generations, lines) values and what they look like."""
+    """Send (generations,) or (generations, lines) values, and how they are drawn."""
     import rerun as rr
 
     stream.log(f"search/{path}", look, static=True, strict=True)

@@ -1,4 +1,4 @@
-"""What a search tried and how its best gaits walk, as plain columns."""
+"""The course of a search as columns: rewards, gaits, and walks of the best gaits."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -9,16 +9,16 @@ from worlds.world import FALLS
 
 
 class SearchWalk(NamedTuple):
-    """A gait's walk, once more."""
+    """A repeated walk of one generation's best gait."""
 
     scene: Scene
     """Robot, ground and recording."""
     distance_m: float
-    """Forward."""
+    """Distance walked forward [m]."""
     time_s: float
-    """Until the end of the walk."""
+    """Duration of the walk [s]."""
     reward: float
-    """What this walk is worth, in the unit of the search's rewards."""
+    """Reward of this walk, in the unit of the search's rewards."""
 
     @property
     def fell(self) -> bool:
@@ -27,23 +27,23 @@ class SearchWalk(NamedTuple):
 
 
 class SearchHistory(NamedTuple):
-    """What a search tried; its rows are generations."""
+    """The course of a search; rows of all arrays are generations."""
 
     rewards: Sequence[FloatArray]
-    """Of the gaits that were tried, each generation's."""
+    """For each generation, the rewards of all gaits that it tried."""
     falls: FloatArray
-    """(generations,) how many of them fell."""
+    """(generations,) number of tried gaits that fell."""
     mean_reward: FloatArray
-    """(generations,) of the gait in the middle of the distribution."""
+    """(generations,) reward of the gait in the middle of the distribution."""
     mean: Mapping[str, FloatArray]
-    """(generations,) each parameter of that gait."""
+    """(generations,) each parameter of the gait in the middle, by name."""
     spread: Mapping[str, FloatArray]
     """(generations,) standard deviation of each parameter, in its own unit."""
     best: Mapping[str, FloatArray]
-    """(generations,) each parameter of the best gait; empty where it is not known."""
+    """(generations,) each parameter of the best gait; no entries if it is unknown."""
     units: Mapping[str, str]
-    """Of parameters and, as "reward", of the reward."""
+    """Unit of each parameter by its name, and of the reward under "reward"."""
     walks: Sequence[SearchWalk] = ()
-    """Each generation's best gait; none, or one for each generation."""
+    """Walk of each generation's best gait; none, or one for each generation."""
     no_walks: str = ""
     """Why there are no walks though the best gaits are known."""

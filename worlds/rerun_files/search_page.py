@@ -1,4 +1,4 @@
-"""What is said of one generation of a search, in Markdown."""
+"""The text about one generation of a search, in Markdown."""
 
 from collections.abc import Mapping
 
@@ -8,11 +8,11 @@ from groundwalk.arrays import FloatArray
 from worlds.rerun_files.search_history import SearchHistory, SearchWalk
 
 SAME_REWARD = 0.05
-"""Rewards that differ by less are one reward, as they are printed."""
+"""Rewards that differ by less count as equal: they print with one decimal."""
 
 
 def search_page(history: SearchHistory, generation: int) -> str:
-    """The gaits of a generation, and how the best one walked."""
+    """Markdown: the gaits of one generation, and how the best one walked."""
     best = float(np.max(history.rewards[generation]))
     mean = float(history.mean_reward[generation])
     unit = history.units.get("reward", "")
@@ -40,7 +40,7 @@ def search_page(history: SearchHistory, generation: int) -> str:
 
 
 def _walk(walk: SearchWalk, rated: float, unit: str) -> str:
-    """Way, time and end; and what to think of a walk that is not the one of then."""
+    """How the best gait walked; a warning if the walk differs from the rated one."""
     end = walk.scene.recording.metadata.end
     text = f"The best gait walked {walk.distance_m:.2f} m in {walk.time_s:.2f} s"
     text += f": {end}." if end else "."

@@ -6,7 +6,7 @@
 | `search/walk/robot/<foot>/sole` | the sole's plate, in the same poses |
 | `search/walk/track` | the way of the centre of mass |
 | `search/walk/fall` | where the robot fell: a ring on the ground; else nothing |
-| `search/walk/ground` | what the walks went over, and a little beside it |
+| `search/walk/ground` | the ground under the walks, and a little beside it |
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 AT = "search/walk"
 POSES = 7
-"""Of a walk, at even times, its first and its last one among them."""
+"""Poses drawn of one walk: the first, the last, and some at even times between."""
 
 _BESIDE_M = 0.35
 """Ground beyond the places that a joint gets to."""
@@ -45,12 +45,12 @@ def write_walks(
     index: "rr.TimeColumn",
     colour: colours.Colour,
 ) -> None:
-    """Write the walks of one robot.
+    """Write one robot's walks: its poses, tracks and ground.
 
     Args:
       stream: of a recording.
       walks: at least one, all with ground or none; the grounds' grids are alike.
-      index: where they are on a timeline, one entry for each walk.
+      index: the walks' places on a timeline, one entry for each walk.
       colour: of the robot.
     """
     import rerun as rr
@@ -63,13 +63,13 @@ def write_walks(
 
 
 class _WalkLog:
-    """Writes what each walk has one of."""
+    """Writes entities that have one row for each walk."""
 
     def __init__(self, stream: "rr.RecordingStream", index: "rr.TimeColumn") -> None:
         self._stream, self._index = stream, index
 
     def log(self, path: str, what: "rr.AsComponents") -> None:
-        """Log what is the same in all walks."""
+        """Log something that all walks share."""
         self._stream.log(f"{AT}/{path}", what, static=True, strict=True)
 
     def send(self, path: str, columns: Any) -> None:
@@ -154,7 +154,7 @@ def _write_tracks(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
 
 
 def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
-    """Every walk's own ground, or the one that all of them have."""
+    """Write each walk's own ground, or once the ground that all of them share."""
     import rerun as rr
 
     around_m = _reached(walks) + np.array([[-_BESIDE_M], [_BESIDE_M]])
@@ -203,7 +203,7 @@ def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
     """
     size = np.array(ground.heights_m.shape[::-1])
     cells = (around_m - ground.origin_m) / ground.spacing_m
-    # At least one cell, even where nobody was on the ground.
+    # At least one cell, even where no robot was on the ground.
     first = np.clip(np.floor(cells[0]).astype(np.intp), 0, size - 2)
     last = np.clip(np.ceil(cells[1]).astype(np.intp), first + 1, size - 1)
     (column, row), (right, left) = first.tolist(), last.tolist()

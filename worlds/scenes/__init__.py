@@ -1,1 +1,1 @@
-"""Recordings with what it takes to draw them: robot, ground, balance, curves."""
+"""Scenes: recordings with robot and ground, and pictures of them drawn by NumPy."""

@@ -1,6 +1,6 @@
-"""What balance is about: where the robot's mass is, what carries it, and the ZMP.
+"""Where a robot's mass is, which feet carry it, and its zero-moment point (ZMP).
 
-Three points on the ground tell how a walk stands:
+Three points on the ground describe a walk's balance:
 
 - the centre of pressure, *measured*: the mean of the force sensors' places, weighted
   by their forces. It cannot leave the soles.
@@ -27,20 +27,20 @@ from worlds.scenes.forward_kinematics import LinkPoses
 from worlds.scenes.scene import SIDES, Scene
 
 LOADED_PART = 0.05
-"""A foot carries the robot if it feels more than this part of its weight."""
+"""A foot counts as carrying above this share of the robot's weight."""
 
 SMOOTHING_TICKS = 2.0
 """Standard deviation of the bell curve that smooths positions and momenta: 20 ms."""
 
 LEAST_WEIGHT_PART = 0.2
-"""With less than this part of its weight on the ground the ZMP says nothing."""
+"""The ZMP is not computed with less than this share of the weight on the ground."""
 
 
 class Balance(NamedTuple):
-    """Where things are, tick by tick; rows are NaN where that is not known."""
+    """Centre of mass and points on the ground, tick by tick; NaN where unknown."""
 
     centre_of_mass_m: FloatArray
-    """(ticks, 3)."""
+    """(ticks, 3) in the world frame [m]."""
     below_m: FloatArray
     """(ticks, 3) the centre of mass at the height of the lowest sole."""
     pressure_m: FloatArray | None
@@ -142,7 +142,7 @@ def _centres(
 
 
 def _zmp(scene: Scene, poses: dict[str, LinkPoses], height_m: FloatArray) -> FloatArray:
-    """Where the ground's force acts if the links move as they were seen to.
+    """(ticks, 3) ZMP: where the ground's force must act for the recorded motion [m].
 
     With momentum P and angular momentum L about the world's origin, the ground gives
     the force F = dP/dt + M g e_z and the moment N = dL/dt + M c x g e_z about the

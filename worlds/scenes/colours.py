@@ -1,4 +1,4 @@
-"""The colours of what is drawn: red, green, blue from 0 to 255."""
+"""Colours of robots, ground and curves: red, green, blue from 0 to 255."""
 
 Colour = tuple[int, int, int]
 
@@ -23,11 +23,11 @@ _ACCENTS: tuple[Colour, ...] = (
 
 
 def accent(scene: int) -> Colour:
-    """The colour by which a scene's robot is known; scenes are counted from 0."""
+    """The colour of the robot in scene number `scene`, counted from 0."""
     return _ACCENTS[scene % len(_ACCENTS)]
 
 
 def pale(colour: Colour) -> Colour:
-    """Most of the way to white: a command beside what was measured."""
+    """A colour mixed with twice as much white, for a command beside a measurement."""
     red, green, blue = ((part + 2 * 255) // 3 for part in colour)
     return red, green, blue

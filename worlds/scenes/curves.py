@@ -1,4 +1,4 @@
-"""What a scene has to plot over time, and which plots show it."""
+"""Curves of a scene over time, and the plots that show them."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -20,16 +20,16 @@ _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
 
 
 class Trace(NamedTuple):
-    """Lines over time, as recorded."""
+    """Lines over time, as recorded, at one path of a viewer's file."""
 
     path: str
-    """Where it belongs in its scene."""
+    """Path below the scene's name, such as "imu/gyroscope"."""
     names: Sequence[str]
     """One for each line."""
     values: FloatArray
     """(ticks,) or (ticks, lines); NaN where a value is missing."""
     lines: Sequence[colours.Colour] | None
-    """One for each line; None for any colour."""
+    """One for each line; None lets the viewer choose."""
 
 
 class Curve(NamedTuple):
@@ -47,7 +47,7 @@ class Curve(NamedTuple):
 
 
 class Plot(NamedTuple):
-    """Traces that are shown together."""
+    """Curves that one plot shows together, by their paths."""
 
     name: str
     paths: Sequence[str]
@@ -83,9 +83,9 @@ def traces(scene: Scene) -> Iterator[Trace]:
 
 
 def plots(scene: Scene) -> list[list[Plot]]:
-    """Rows of plots: each pitch joint of both legs, then what the sensors felt.
+    """Rows of plots: pitch joints of both legs (or all joints), then the sensors.
 
-    What was not recorded has no plot.
+    Quantities that were not recorded have no plot.
     """
     joints = [
         Plot(

@@ -10,11 +10,11 @@ _CORNERS = 48
 
 
 def fall_ring(place_m: FloatArray, ground: Heightfield | None) -> FloatArray:
-    """(corners, 3) once around a place, a little above the ground.
+    """(corners, 3) points once around a place [m], a little above the ground.
 
     Args:
-      place_m: (3,) in the world; its height counts where there is no ground.
-      ground: what the ring lies on.
+      place_m: (3,) in the world [m]; its height is used only without ground.
+      ground: the ground that the ring follows; None for a level ring.
     """
     turn = np.linspace(0, 2 * np.pi, _CORNERS + 1)
     ring = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)

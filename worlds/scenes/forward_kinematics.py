@@ -1,4 +1,7 @@
-"""Where every link of a robot is, for many ticks at once."""
+"""Forward kinematics: where every link of a robot is, for many ticks at once.
+
+These few lines keep NaN where a value is missing; SciPy's `Rotation` refuses it.
+"""
 
 from typing import NamedTuple
 
@@ -9,10 +12,10 @@ from robots.description import Description
 
 
 class LinkPoses(NamedTuple):
-    """Where a link's joint frame is in the world, tick by tick."""
+    """Pose of a link's joint frame in the world, tick by tick."""
 
     position_m: FloatArray
-    """(ticks, 3)."""
+    """(ticks, 3) [m]."""
     orientation: FloatArray
     """(ticks, 4) unit quaternions w, x, y, z from link to world."""
 

@@ -1,4 +1,4 @@
-"""A recording with what it takes to look at it: the robot and its ground."""
+"""A scene: one recording with the robot and the ground that are drawn with it."""
 
 import hashlib
 import itertools
@@ -24,13 +24,13 @@ _NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)*", re.ASCII)
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """One rollout to be shown.
+    """One recording with its robot and its ground, ready to be drawn.
 
     Attributes:
-      name: what stands in front of all its entity paths, such as "sim" or "start/real".
-      recording: what happened.
-      description: the robot; all joints of the recording must be its own.
-      ground: what it walked on, if anything.
+      name: first part of all its paths in a viewer, such as "sim" or "start/real".
+      recording: what the robot did.
+      description: the robot; it must have all joints of the recording.
+      ground: the ground that it walked on; None if there was none or it is unknown.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Scene:
 
     @property
     def arrow_m_per_n(self) -> float:
-        """Length of a force's arrow: the robot's weight is as long as its legs."""
+        """Length of an arrow per newton: the robot's weight is as long as its legs."""
         scale = self.description.scale
         return _NAO_ARROW_M_PER_N * scale.length / scale.weight
 
@@ -100,7 +100,7 @@ class Scene:
 
         Returns:
           (k, 3) points of the sole in the foot's frame [m] and (ticks, k) forces [N]:
-          the four sensors or, where only their sum was recorded, the middle of them.
+          the four sensors or, where only their sum was recorded, their mean place.
         """
         foot = self.description.feet[SIDES.index(side)]
         points_xy_m = foot.sensors_m
@@ -143,7 +143,7 @@ class Scene:
 
     @property
     def properties(self) -> dict[str, str]:
-        """What is known of where the recording comes from, as text."""
+        """The metadata that are known, as text by name."""
         about = self.recording.metadata
         known = {
             "robot": about.robot,
@@ -167,7 +167,8 @@ def check_beside(scenes: Sequence[Scene]) -> None:
     """Check that scenes can stand side by side.
 
     Raises:
-      BadValueError: there is none, or one's name is another's or the start of it.
+      BadValueError: there are no scenes; or the name of one is that of another one, or
+        the first part of it.
     """
     if not scenes:
         raise BadValueError("no scenes; at least one recording is needed")
@@ -181,7 +182,7 @@ def check_beside(scenes: Sequence[Scene]) -> None:
 
 
 def content_id(scenes: Sequence[Scene]) -> str:
-    """32 hexadecimal digits that belong to these recordings, names and grounds."""
+    """32 hexadecimal digits that identify these recordings, names and grounds."""
     content = hashlib.sha256()
     for scene in scenes:
         content.update(f"{scene.name}\n{scene.description.name}\n".encode())

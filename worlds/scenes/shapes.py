@@ -16,7 +16,7 @@ SOLE_THICKNESS_M = 0.012
 
 
 class Capsules(NamedTuple):
-    """Capsules as Rerun wants them: from one end along the turned z axis."""
+    """Capsules in Rerun's form: from one end along the turned z axis."""
 
     lengths: FloatArray
     radii: FloatArray
@@ -42,7 +42,7 @@ def shape_colours(shapes: Sequence[Capsule], accent: Colour) -> npt.NDArray[np.u
 
 
 def capsules(shapes: Sequence[Capsule], accent: Colour) -> Capsules:
-    """A link's shapes; see `shape_colours`."""
+    """A link's shapes in Rerun's form; `accent` is the robot's own colour."""
     start = np.array([shape.start_m for shape in shapes])
     axis = np.array([shape.end_m for shape in shapes]) - start
     downward = axis[:, 2] < 0
