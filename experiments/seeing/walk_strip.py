@@ -10,16 +10,16 @@ from worlds import TICK_S
 from worlds.scenes.scene import Scene
 
 COURSE_M, LONGEST_S = 1.0, 5.0
-"""How far and how long a piece may be."""
+"""Largest distance [m] and duration [s] of the part that is shown."""
 
 WIDTH_M = 1.5
-"""Length of the part of the course that is shown, and the figure's width [m]."""
+"""Width of the picture [m]: the part shown, and room for arms, legs and a fall."""
 
 STILL_S = 0.12
-"""From one still to the next: about half a step."""
+"""Time from one still to the next [s]: about half a step."""
 
 _ROOM = 2.9
-"""From one clear still to another, in radii of the head."""
+"""Least distance between two clear stills, in radii of the head."""
 
 _GROUND_POINTS = 500
 
@@ -31,11 +31,11 @@ class WalkStrip:
     Attributes:
       title: name and speed of the whole walk, and how it ended where it ended early.
       ended: whether it ended early, as by a fall.
-      time_s: (ticks,) of all ticks.
+      time_s: (ticks,) times of all ticks [s].
       figure: the robot at all ticks.
-      ticks: the piece.
+      ticks: the part that is shown, as a slice of the ticks.
       x_range_m: first and last x that are shown [m].
-      stills: ticks 0.12 s apart, the piece's last one among them.
+      stills: ticks 0.12 s apart, the last one shown among them.
       clear: those of the stills that stand apart, from the last one back.
       ground_m: (points, 2) x and z of the ground under the way of each foot, by side;
         empty where the ground is not known.
