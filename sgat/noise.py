@@ -21,7 +21,11 @@ Generators = Sequence[np.random.Generator]
 
 
 class NoiseLaw(Protocol):
-    """Describes the noise of one robot; a law of your own needs these two members."""
+    """Describes the noise of one robot; a law of your own needs these two members.
+
+    Example:
+      See `WhiteNoise`.
+    """
 
     @property
     def dimensions(self) -> int:

@@ -27,6 +27,9 @@ class TabularLoop:
       calm_steps: the loop ends after this number of grounding steps in a row without an
         improvement.
       most_steps: the loop ends after this number of grounding steps in any case.
+
+    Example:
+      See `ground_until_calm`.
     """
 
     episodes: int = 10_000
@@ -58,6 +61,9 @@ class Settled:
       steps: number of grounding steps.
       transitions: number of real transitions in all steps.
       calm: whether the loop ended because nothing improved any more.
+
+    Example:
+      See `ground_until_calm`.
     """
 
     policy: IntArray

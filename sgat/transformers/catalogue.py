@@ -28,6 +28,9 @@ def add_grounding(grounding: "Grounding") -> None:
 
     Raises:
       BadValueError: another grounding has this name already.
+
+    Example:
+      >>> add_grounding(ThroughModels("sgat-large", "SGAT, large", members=9))
     """
     if grounding.name in _GROUNDINGS:
         raise BadValueError(f"there is a grounding {grounding.name!r} already")
@@ -62,7 +65,11 @@ def grounding(name: str) -> "Grounding":
 
 
 def file_kind(cls: T) -> T:
-    """Class decorator: folders whose header names `cls.kind` are read by this class."""
+    """Class decorator: folders whose header names `cls.kind` are read by this class.
+
+    Example:
+      See `sgat.transformers.direct_transformer.DirectTransformer`.
+    """
     _KINDS[cls.kind] = cls
     return cls
 

@@ -10,7 +10,13 @@ from groundwalk.arrays import FloatArray
 
 
 class Transformer(Protocol):
-    """Stands between a policy and n robots of a world, and changes their actions."""
+    """Stands between a policy and n robots of a world, and changes their actions.
+
+    Example:
+      >>> transformer = grounding("sgat").transformer(data)
+      >>> transformer.reset(seeds)
+      >>> changed = transformer(state, action)
+    """
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode of n robots, each with its own seed."""
@@ -29,6 +35,9 @@ class KeptTransformer(Transformer, Protocol):
 
     Attributes:
       kind: what the folder's header calls this class.
+
+    Example:
+      See `write_transformer`.
     """
 
     kind: ClassVar[str]
