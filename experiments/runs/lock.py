@@ -39,6 +39,8 @@ class FolderLock:
                 f"{folder} is in use by process {process}: wait until it ends, or "
                 "choose another folder"
             ) from None
+        except OSError:
+            pass  # a file system without locks, such as some network folders
         weakref.finalize(self, os.close, file)
         os.ftruncate(file, 0)
         os.write(file, str(os.getpid()).encode())
