@@ -188,6 +188,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             "groundwalk diagnose --help",
             says="--reference",
         ),
+        "groundwalk diagnose --resume runs/knee": Run(says="LKneePitch"),
         "make results-diagnosed-gait": make("results-diagnosed-gait", "an hour"),
         "groundwalk real-robots so101 --data data": REAL,
         "groundwalk real-robots emps --data data": REAL,
