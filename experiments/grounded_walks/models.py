@@ -15,7 +15,7 @@ from sgat.models.forward_config import ForwardConfig
 from sgat.noise import child_of
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.catalogue import grounding
-from sgat.transformers.grounding import GroundingData
+from sgat.transformers.grounding_base import GroundingData
 from sgat.transformers.transformer import Transformer
 from sgat.walks.walk_senses import WalkSenses, leg_senses
 

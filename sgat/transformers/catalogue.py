@@ -15,7 +15,7 @@ from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transformers.transformer import KeptTransformer
 
 if TYPE_CHECKING:
-    from sgat.transformers.grounding import Grounding
+    from sgat.transformers.grounding_base import Grounding
 
 T = TypeVar("T", bound=type[KeptTransformer])
 

@@ -20,7 +20,7 @@ from sgat.models.scaling import Scaling
 from sgat.models.training import Examples, Loss, Stage, train
 from sgat.noise import child_of
 from sgat.transformers.catalogue import add_grounding, file_kind
-from sgat.transformers.grounding import (
+from sgat.transformers.grounding_base import (
     OF_DIRECT,
     OF_SIM_MODEL,
     Grounding,

@@ -9,7 +9,7 @@ from sgat.noise import NoiseLaw, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.block_noise import BlockNoise
 from sgat.transformers.catalogue import add_grounding
-from sgat.transformers.grounding import Grounding, GroundingData
+from sgat.transformers.grounding_base import Grounding, GroundingData
 
 BLOCK_TICKS = 50
 """Length of a block of residuals [ticks of 10 ms]: two to three steps of a walk, since

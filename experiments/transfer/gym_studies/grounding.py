@@ -13,7 +13,7 @@ from sgat.gym.collect import collect
 from sgat.models.inverse_model import InverseModel
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import grounding
-from sgat.transformers.grounding import GroundingData
+from sgat.transformers.grounding_base import GroundingData
 from sgat.transformers.transformer import KeptTransformer, Transformer
 from sgat.transitions import Transitions
 

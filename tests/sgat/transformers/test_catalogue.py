@@ -1,5 +1,6 @@
 """A grounding is known once its file is in the shelf."""
 
+import inspect
 import subprocess
 import sys
 from pathlib import Path
@@ -16,7 +17,7 @@ from sgat.transformers.catalogue import (
     grounding,
     groundings,
 )
-from sgat.transformers.grounding import GroundingData
+from sgat.transformers.grounding_base import GroundingData
 from sgat.transitions import Transitions
 
 LOW, HIGH = np.full(2, -1.0), np.full(2, 1.0)
@@ -40,6 +41,12 @@ def test_names_and_titles_lead_to_the_same_grounding():
     assert grounding("SGAT, uneven sim") is grounding("sgat-uneven")
     titles = [one.title for one in groundings().values()]
     assert len(set(titles)) == len(titles)
+
+
+def test_the_face_offers_functions_and_no_modules():
+    groundings()  # every file of the shelf is imported by now
+    for name in sgat.transformers.__all__:
+        assert not inspect.ismodule(getattr(sgat.transformers, name)), name
 
 
 def test_a_misspelt_name_gets_the_nearest():
@@ -90,7 +97,7 @@ NEW = '''
 import json
 
 from sgat.transformers.catalogue import add_grounding, file_kind
-from sgat.transformers.grounding import Grounding
+from sgat.transformers.grounding_base import Grounding
 
 
 @file_kind
