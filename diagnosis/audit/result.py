@@ -21,6 +21,10 @@ class Finding:
       trace: name of the trace; empty if the finding is about all of them together.
       channel: such as "position.LKneePitch" or "time"; empty if the finding is about
         the whole trace.
+
+    Example:
+      >>> Finding("limit", "knee never moves", channel="position.knee").severity
+      'limit'
     """
 
     severity: Severity
@@ -114,6 +118,9 @@ class Audit:
     Attributes:
       traces: measurements of each trace.
       findings: in the order of the traces, those about all together last.
+
+    Example:
+      See `diagnosis.audit.audit.audit`.
     """
 
     traces: tuple[TraceAudit, ...]

@@ -79,6 +79,7 @@ def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Colum
     damping = float(np.median(torques.motion.damping_nm_s_rad[:, joint]))
 
     def column(name: str, parameter: int, values: FloatArray) -> Column:
+        """The column of a torque that acts at this joint only."""
         whole = np.zeros_like(torques.motion.position_rad)
         whole[:, joint] = values
         return Column(name, place, parameter, _weighted(torques, whole), damping)

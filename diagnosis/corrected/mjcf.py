@@ -49,6 +49,11 @@ def corrected_mjcf(
       servo: of the recordings; the plant's own where None.
       step_s: time step [s]; the model file's own where None, or where that has none
         the one of replays.
+
+    Example:
+      >>> plant = load_plant("so101", "fixed")
+      >>> dry = PlacedEffect("coulomb_friction", "elbow_flex", (0.1,))
+      >>> Path("corrected.xml").write_text(corrected_mjcf(plant, (dry,)))
     """
     native = tuple(placed for placed in model if effect(placed.name).native)
     variants = variants_of(plant, [native])

@@ -151,6 +151,9 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
 
     Raises:
       BadRecordingError: the joints or the base are not the plant's.
+
+    Example:
+      >>> trace = trace_of(read_recording(path), load_plant("nao", "fixed"), "a")
     """
     for joint in recording.joints:
         if joint not in plant.joints:

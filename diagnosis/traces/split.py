@@ -39,6 +39,9 @@ class Split:
       fit: about half of the time; parameters are fitted to it.
       select: about a quarter of the time; decides which fitted model is taken.
       test: about a quarter of the time, held out for the final errors.
+
+    Example:
+      See `split`.
     """
 
     fit: tuple[Trace, ...]
@@ -56,6 +59,10 @@ def split(traces: Sequence[Trace]) -> Split:
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
+
+    Example:
+      >>> parts = split(traces)  # of `read_traces`
+      >>> [trace.name for trace in parts.test]
     """
     long = all(trace.duration_s >= _LONG_S for trace in traces)
     if len(traces) >= (_LEAST_WHOLE_IF_LONG if long else _LEAST_WHOLE):

@@ -121,6 +121,9 @@ def driven_by_torques(trace: Trace) -> Trace:
 
     Raises:
       BadRecordingError: no torque was measured.
+
+    Example:
+      >>> driven = driven_by_torques(trace)  # one of `read_traces`
     """
     if trace.torque_nm is None:
         raise BadRecordingError(
