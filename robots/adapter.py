@@ -77,7 +77,7 @@ class _Adapter:
     adaptation: Adaptation
 
     def description(self, name: str) -> Description:
-        """All parts together."""
+        """The whole description."""
         hanging = [hanging_rad(self.posed, joint) for joint in self.shoulders]
         left, right = hanging or (0.0, 0.0)
         return Description(
@@ -126,7 +126,7 @@ class _Adapter:
 
     @cached_property
     def _sole_m(self) -> float:
-        """Height of the left sole in the root's frame."""
+        """Height of the left sole in the root's frame [m]."""
         ankle_m = self.posed.origin_m(self.legs.left[-1])
         return float(ankle_m[2]) + self._feet[0].sole_height_m
 
@@ -142,7 +142,7 @@ class _Adapter:
 
     @cached_property
     def _bones_m(self) -> tuple[float, float, float]:
-        """Thigh and shin, seen from the side, and the ankle above the sole."""
+        """Lengths of thigh and shin from the side, height of ankle above sole [m]."""
         pitch, knee, ankle = (
             self.posed.origin_m(self.posed.moving[self._columns[0][k]])
             for k in (ROLES.index("pitch"), KNEE, ANKLE)

@@ -7,7 +7,7 @@ from robots.description import Foot
 from robots.posed_tree import PosedTree
 
 SOLE_PART, HIP_PART, HIPS_AHEAD_M = 0.43, 0.927, 0.010
-"""Of the NAO in Walk2014's gait: where over the sole its centre of mass is, as a part
+"""Walk2014's gait on the NAO: where over the sole its centre of mass is, as a part
 of the way from heel to toe; the height of its hips, as a part of that with straight
 legs; and the way from ankles to hips."""
 

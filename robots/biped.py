@@ -1,4 +1,4 @@
-"""A description as a walk engine sees it; joint roles follow from the kinematics."""
+"""Finds a robot's legs, arms and joint roles, for a walk engine, in its description."""
 
 import math
 
@@ -98,7 +98,7 @@ def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
 
 
 def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
-    """Whether the legs are as `LegGeometry` has them: see there."""
+    """Whether hip axes meet in one point and ankle axes in another (`LegGeometry`)."""
     one, other = ([description.links[joint] for joint in leg] for leg in (left, right))
     axes = np.array([joint.axis for joint in one])
     expected = np.array([axes[0], *np.eye(3)[[0, 1, 1, 1, 0]]])

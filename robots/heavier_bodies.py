@@ -1,4 +1,4 @@
-"""Bodies of a compiled MuJoCo model made heavier, as if its file had said so."""
+"""Makes bodies of a compiled MuJoCo model heavier, with consistent inertias."""
 
 from collections.abc import Sequence
 from typing import Any

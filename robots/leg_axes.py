@@ -1,4 +1,4 @@
-"""Which joint of a leg does what, by the axes alone."""
+"""Finds the role of each joint of a leg (yaw, roll, pitch ...) from the axes alone."""
 
 import itertools
 
@@ -13,7 +13,7 @@ _CLEAR = 0.9
 
 
 def roles(axes: FloatArray) -> tuple[int, ...]:
-    """Where in a leg's chain each of `ROLES` is.
+    """Places of `ROLES` in a leg's chain of joints.
 
     At the hip, yaw, roll and pitch are the joints whose axes come closest to z, x and
     y, all three together: on the NAO yaw leans by 45 degrees. The same holds for
@@ -33,7 +33,7 @@ def roles(axes: FloatArray) -> tuple[int, ...]:
 
 
 def _closest(axes: FloatArray, wanted: tuple[int, ...]) -> tuple[int, ...]:
-    """The order of some axes in which they are closest to those that are wanted."""
+    """The order of axes in which they come closest to the wanted axes."""
     return max(
         itertools.permutations(range(len(axes))),
         key=lambda order: float(np.abs(axes[list(order), list(wanted)]).sum()),

@@ -38,7 +38,7 @@ class Legs(NamedTuple):
 def find_legs(
     tree: UrdfTree, placed: Mapping[str, Placement], adaptation: Adaptation
 ) -> Legs:
-    """The legs, by kinematics unless the adaptation names them.
+    """Find the legs from the kinematics, unless the adaptation names them.
 
     Args:
       tree: the robot, z up.

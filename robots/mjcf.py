@@ -1,4 +1,4 @@
-"""The MuJoCo model of a robot, made from its description.
+"""Makes the MuJoCo model of a robot from its description.
 
 The ground is not part of the model: a world adds it. Nothing of the robot touches
 anything but the soles' rims: small spheres around each sole, which meet planes

@@ -1,4 +1,4 @@
-"""A compiled MuJoCo model as a URDF that PyBullet and MuJoCo read alike.
+"""Writes a compiled MuJoCo model as a URDF that PyBullet and MuJoCo read alike.
 
 Only moving bodies become links: MuJoCo has merged or placed everything that is fixed,
 and PyBullet would give a massless link a kilogram.

@@ -1,4 +1,4 @@
-"""Where a frame is in another one."""
+"""Placement of one frame in another one."""
 
 from dataclasses import dataclass
 

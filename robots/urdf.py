@@ -1,4 +1,4 @@
-"""The URDF of a robot, made from its description.
+"""Makes the URDF of a robot from its description.
 
 Nothing touches anything but the small spheres around the soles, as in the MuJoCo
 model. There are no massless links: PyBullet would give each of them a kilogram.

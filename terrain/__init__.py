@@ -2,6 +2,12 @@
 
 Knows nothing of robots and physics engines. A terrain has a name, parameters and a
 seed; `make` turns them into a `Heightfield`, always into the same one.
+
+Example:
+  >>> import terrain
+  >>> ground = terrain.make("lumps", 7, amplitude_m=0.012)
+  >>> ground.heights_m.shape
+  (161, 241)
 """
 
 from terrain.bumps import Bumps

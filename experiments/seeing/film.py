@@ -56,7 +56,7 @@ class Film:
 
     @cached_property
     def cameras(self) -> list[SceneCamera]:
-        """One a scene, each robot in its colour."""
+        """One camera for each scene, each robot in a colour of its own."""
         return [
             SceneCamera(scene, accent(index), self.size_px, self.with_balance)
             for index, scene in enumerate(self.scenes)
@@ -227,7 +227,7 @@ def _ffmpeg() -> str:
 
 
 def _mp4(frames: Sequence[Image], rate_hz: float) -> bytes:
-    """H.264, as every browser plays it; its sides are even."""
+    """A film [bytes] in H.264, which every browser plays; its sides must be even."""
     height, width, _ = frames[0].shape
     even = [frame[: height // 2 * 2, : width // 2 * 2] for frame in frames]
     height, width, _ = even[0].shape

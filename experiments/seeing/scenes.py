@@ -1,4 +1,4 @@
-"""Recordings as scenes: with the robot and the ground that they name."""
+"""Makes scenes of recordings, with the robot and the ground that they name."""
 
 import dataclasses
 import re

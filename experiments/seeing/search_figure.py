@@ -1,4 +1,4 @@
-"""A picture of a search: rewards and falls, generation by generation."""
+"""Draws a search: rewards and falls, generation by generation."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -81,7 +81,7 @@ def _draw_rewards(axes: "Axes", history: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _draw_tried(axes: "Axes", generation: int, rewards: Sequence[float]) -> None:
-    """Every gait that was tried, a little apart from the next one."""
+    """Draw every gait that was tried, each a little apart from the next one."""
     count = len(rewards)
     aside = WIDTH * ((np.arange(count) + 0.5) / count - 0.5)
     label = "gaits that were tried" if generation == 0 else None

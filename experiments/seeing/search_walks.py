@@ -1,4 +1,4 @@
-"""The best gaits of a search walk once more, for somebody to look at them."""
+"""Lets the best gaits of a search walk once more, so that they can be shown."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A robot as a few lines: where its limbs, its torso and its head are."""
+"""Reduces a robot to a few lines: its limbs, its torso and its head."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A run's search in Rerun, along the timeline `generation`: the best gaits walk."""
+"""Writes a run's search for Rerun, with walks of each generation's best gait."""
 
 import hashlib
 import json
@@ -24,7 +24,7 @@ Entries = Sequence[Mapping[str, Any]]
 
 
 def visualize_search(folder: RunFolder) -> Path | None:
-    """Write a run's search for Rerun, and let its best gaits walk for that.
+    """Write a run's search for Rerun; its best gaits walk once more for this.
 
     Runs of earlier versions did not note the best gaits. Where these cannot walk any
     more, the page of each generation says why.
@@ -54,7 +54,7 @@ def visualize_search(folder: RunFolder) -> Path | None:
 def _with_walks(
     folder: RunFolder, history: SearchHistory, entries: Entries
 ) -> SearchHistory:
-    """With the walk of each generation's best gait, or why there is none."""
+    """Add the walk of each generation's best gait, or the reason why there is none."""
     if not all(entry.get("best_gait") for entry in entries):
         return history
     try:
@@ -70,7 +70,7 @@ def _with_walks(
 
 
 def read_history(entries: Entries) -> SearchHistory:
-    """What `optimize-gait` notes, generation by generation, as columns.
+    """Read the notes of `optimize-gait` on each generation, as columns.
 
     Entries of earlier versions have no `best_gait`; parameters that were not noted are
     left out.

@@ -43,7 +43,7 @@ def draw_walk(recordings: Mapping[str, Recording], path: Path) -> None:
 
 
 def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "Figure":
-    """A panel for each walk, all of one scale.
+    """Draw a panel for each walk, all at one scale.
 
     Faint figures follow every 0.12 s; wherever there is room for it, one is
     clear and has its time above. Thin lines are the ways of the ankles. The ground is
@@ -112,7 +112,7 @@ def _draw_strip(axes: "Axes", strip: WalkStrip, height_m: float) -> None:
 
 
 def _draw_figures(axes: "Axes", strip: WalkStrip) -> None:
-    """The robot at all stills, its right side nearest."""
+    """Draw the robot at all stills, its right side nearest."""
     from matplotlib.collections import LineCollection
 
     body = strip.figure
@@ -136,7 +136,7 @@ def _draw_figures(axes: "Axes", strip: WalkStrip) -> None:
 
 
 def _draw_head(axes: "Axes", strip: WalkStrip, still: int) -> None:
-    """A clear still's head, with the time above."""
+    """Draw a clear still's head, with the time above."""
     from matplotlib.patches import Circle
 
     x_m, _, z_m = strip.figure.torso[still, -1]

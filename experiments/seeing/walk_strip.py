@@ -53,7 +53,7 @@ class WalkStrip:
 
     @property
     def z_range_m(self) -> tuple[float, float]:
-        """From the lowest ground, 0 where it is not known, to the highest head."""
+        """Lowest and highest z to show [m]: from the ground (or 0) to the heads."""
         head_m = self.figure.torso[self.ticks, -1, 2] + self.figure.head_radius_m
         lowest_m = min((line[:, 1].min() for line in self.ground_m.values()), default=0)
         return float(lowest_m), float(np.nanmax(head_m))
@@ -112,7 +112,7 @@ def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
 
 
 def _x_range(x_m: FloatArray) -> tuple[float, float]:
-    """(2,) x range to show, around the places of the base [m]."""
+    """First and last x to show [m], around the places of the base."""
     middle_m = (x_m.min() + x_m.max()) / 2
     return float(middle_m - WIDTH_M / 2), float(middle_m + WIDTH_M / 2)
 
