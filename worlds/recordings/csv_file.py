@@ -10,8 +10,8 @@ import pyarrow.csv
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
-from worlds.recordings.arrow import from_table, to_table
 from worlds.recordings.columns import check_names
+from worlds.recordings.parquet_file import from_table, to_table
 from worlds.recordings.values import bad_value
 
 _OTHER_SEPARATORS = (";", "\t", "|")

@@ -8,7 +8,6 @@ import pyarrow.parquet as pq
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
-from worlds.recordings.arrow import from_table, to_table
 from worlds.recordings.columns import check_names
 
 _KEY = b"groundwalk"
@@ -52,6 +51,24 @@ def parquet_bytes(columns: Mapping[str, FloatArray], metadata: str) -> bytes:
     pq.write_table(table, sink, compression="zstd", write_page_checksum=True)
     content: bytes = sink.getvalue().to_pybytes()
     return content
+
+
+def to_table(columns: Mapping[str, FloatArray]) -> pa.Table:
+    """The columns as an Arrow table; a NaN becomes a null."""
+    return pa.table(
+        {name: pa.array(values, from_pandas=True) for name, values in columns.items()}
+    )
+
+
+def from_table(table: pa.Table) -> dict[str, FloatArray]:
+    """The columns of a table of numbers of any kind; a null becomes a NaN.
+
+    Integers that no float equals are rounded.
+    """
+    return {
+        name: values.cast(pa.float64(), safe=False).to_numpy()
+        for name, values in zip(table.column_names, table.columns, strict=True)
+    }
 
 
 def _check_schema(schema: pa.Schema) -> None:

@@ -144,17 +144,6 @@ class Recording:
         """
         return self._of_joints("command", joints)
 
-    def command_torques(self, joints: Sequence[str]) -> FloatArray:
-        """Torque targets [N m; N if sliding], shape (ticks, joints).
-
-        Args:
-          joints: names of joints, in the order of the result's columns.
-
-        Raises:
-          UnknownNameError: a joint has no column "command_torque.<joint>".
-        """
-        return self._of_joints("command_torque", joints)
-
     def torques(self, joints: Sequence[str]) -> FloatArray:
         """Measured torques [N m; N if sliding], shape (ticks, joints).
 

@@ -45,9 +45,6 @@ def test_values_come_in_the_order_that_is_asked_for(recording):
         recording.velocities(["hip"]), [[0.1], [0.2], [0.3], [0.4]]
     )
     np.testing.assert_array_equal(
-        recording.command_torques(["knee"]), [[17], [18], [19], [20]]
-    )
-    np.testing.assert_array_equal(
         recording.torques(["knee"]), [[21], [22], [23], [np.nan]]
     )
 
