@@ -82,7 +82,7 @@ def test_a_file_of_ours_is_renewed(recording, capsys):
 def test_a_file_of_somebody_else_is_not(recording):
     other = recording.with_suffix(".rrd")
     other.write_bytes(b"RRF2 of another application")
-    with pytest.raises(BadValueError, match=r"is no file of groundwalk: choose another --out"):
+    with pytest.raises(BadValueError, match=r"is no file of groundwalk"):
         main(Visualize((recording,)))
     assert other.read_bytes() == b"RRF2 of another application"
 
