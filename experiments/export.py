@@ -11,8 +11,8 @@ import robots
 from experiments.command_line import run_verb
 from experiments.runs.folder import check_new
 from groundwalk.files import write_text
-from robots.mjcf import mujoco_spec
-from robots.urdf import urdf
+from robots.engine_models.mjcf import mujoco_spec
+from robots.engine_models.urdf import urdf
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from groundwalk.errors import BadModelError, UnknownNameError
-from robots.adaptation import Adaptation, read_adaptation
-from robots.adapter import adapted
 from robots.description import Description
+from robots.from_urdf.adaptation import Adaptation, read_adaptation
+from robots.from_urdf.adapter import adapted
 from robots.read_description import read_description
 
 _FOLDER = Path(__file__).parent

@@ -20,8 +20,8 @@ from groundwalk.errors import BadModelError, BadRecordingError, UnknownNameError
 from robots import Description
 from robots import get as robot
 from robots import names as robot_names
-from robots.mjcf import quiet_mujoco
-from robots.package_paths import example_robots
+from robots.engine_models.mjcf import quiet_mujoco
+from robots.from_urdf.package_paths import example_robots
 from worlds.recordings.columns import nearest
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def _read(
 
 
 def _described_spec(description: Description) -> "mujoco.MjSpec":
-    from robots.mjcf import mujoco_spec
+    from robots.engine_models.mjcf import mujoco_spec
 
     spec = mujoco_spec(description)
     spec.worldbody.bodies[0].pos = [0, 0, _HELD_AT_M]

@@ -8,7 +8,7 @@ import pytest
 from experiments.command_line import run_verb
 from experiments.export import Export, main
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.mjcf import mujoco_spec
+from robots.engine_models.mjcf import mujoco_spec
 
 MASS_KG = 5.3053540
 """All of the maker's masses, added by hand."""

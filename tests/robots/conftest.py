@@ -3,8 +3,8 @@
 import pybullet
 import pytest
 
-from robots.mjcf import mujoco_spec
-from robots.urdf import urdf
+from robots.engine_models.mjcf import mujoco_spec
+from robots.engine_models.urdf import urdf
 
 
 @pytest.fixture(scope="session")

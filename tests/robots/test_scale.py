@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError
-from robots.mjcf import mujoco_spec
+from robots.engine_models.mjcf import mujoco_spec
+from robots.from_urdf.servo_size import FREE, IN_STANCE, Pendulum, servo
 from robots.scale import NAO_CENTRE_M, NAO_HIP_M, NAO_KG, NAO_SIZE, Scale
-from robots.servo_size import FREE, IN_STANCE, Pendulum, servo
 
 
 def test_the_nao_is_its_own_size(nao, model):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from groundwalk.errors import UnknownNameError
-from robots.mjcf import quiet_mujoco
+from robots.engine_models.mjcf import quiet_mujoco
 from terrain import Heightfield
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.plant import HiddenPlant

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.model_urdf import model_urdf
+from robots.engine_models.model_urdf import model_urdf
 from terrain import Heightfield
 from worlds.hidden.effects.placed import Hidden
 from worlds.hidden.engine import BodySense, HiddenEngine, check_engine

@@ -8,7 +8,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
-from robots.urdf import urdf
+from robots.engine_models.urdf import urdf
 from terrain import Heightfield
 from worlds.real.body import BodySetup, BulletBody
 from worlds.real.servo_twin import ServoTwin

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.errors import BadModelError
 from robots.description import Capsule, Link, VisualMesh
-from robots.mesh_files import joined, read_mesh
+from robots.from_urdf.mesh_files import joined, read_mesh
 from worlds.scenes.colours import Colour
 from worlds.scenes.shapes import Mesh, capsules
 

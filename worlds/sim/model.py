@@ -7,7 +7,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from robots.description import Description
-from robots.mjcf import ROOT_JOINT, mujoco_spec, quiet_mujoco
+from robots.engine_models.mjcf import ROOT_JOINT, mujoco_spec, quiet_mujoco
 from robots.sole import contact_shares
 from terrain import Heightfield
 from worlds.soft_ground import FootSpring, soften_mujoco

@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.heavier_bodies import scale_mass
-from robots.mjcf import quiet_mujoco
+from robots.engine_models.heavier_bodies import scale_mass
+from robots.engine_models.mjcf import quiet_mujoco
 from sgat.gym.grounded_env import GroundedEnv, RewardOf
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.transformer import Transformer

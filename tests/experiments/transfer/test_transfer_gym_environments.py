@@ -12,7 +12,7 @@ from experiments.transfer.gym_studies.environments import (
     NOISY_REAL,
     NOISY_SIM,
 )
-from robots.mjcf import quiet_mujoco
+from robots.engine_models.mjcf import quiet_mujoco
 
 ASSETS = Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets"
 DOMAINS = pytest.mark.parametrize("domain", [INVERTED_PENDULUM, HALF_CHEETAH])

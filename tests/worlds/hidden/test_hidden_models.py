@@ -6,7 +6,7 @@ import pytest
 
 import robots
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.model_urdf import model_urdf
+from robots.engine_models.model_urdf import model_urdf
 from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden, surroundings
 from worlds.hidden.model import hidden_model

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import robots
-from robots.mjcf import mujoco_spec
+from robots.engine_models.mjcf import mujoco_spec
 from worlds.scenes.forward_kinematics import LinkPoses, link_poses
 
 NAO = robots.get("nao")

@@ -4,7 +4,7 @@ import pytest
 from rrd_files import NAO, SENSORS, TICKS, scene, walk_columns
 
 from groundwalk.gravity import GRAVITY_M_S2
-from robots.mjcf import mujoco_spec
+from robots.engine_models.mjcf import mujoco_spec
 from worlds.recordings.metadata import RecordingMetadata
 from worlds.recordings.recording import Recording
 from worlds.scenes.balance import balance, loaded_feet

@@ -17,19 +17,19 @@ from scipy.spatial.transform import Rotation
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError, BadValueError
-from robots.adaptation import Adaptation, urdf_path
-from robots.balance import HIP_PART, ankles_ahead_m, crouch_rad
 from robots.description import Description, Foot, Imu, Joint, Link, Motor, VisualMesh
-from robots.foot_shapes import foot
+from robots.from_urdf.adaptation import Adaptation, urdf_path
+from robots.from_urdf.balance import HIP_PART, ankles_ahead_m, crouch_rad
+from robots.from_urdf.foot_shapes import foot
+from robots.from_urdf.leg_roles import Legs, find_legs
+from robots.from_urdf.package_paths import mesh_path
+from robots.from_urdf.posed_tree import PosedTree
+from robots.from_urdf.round_shapes import round_shapes
+from robots.from_urdf.servo_size import Pendulum, servo
+from robots.from_urdf.shoulders import find_shoulders, hanging_rad
+from robots.from_urdf.urdf_tree import UrdfShape, UrdfTree, read_urdf
 from robots.leg_axes import ANKLE, KNEE, ROLES, roles
-from robots.leg_roles import Legs, find_legs
-from robots.package_paths import mesh_path
-from robots.posed_tree import PosedTree
-from robots.round_shapes import round_shapes
 from robots.scale import Scale
-from robots.servo_size import Pendulum, servo
-from robots.shoulders import find_shoulders, hanging_rad
-from robots.urdf_tree import UrdfShape, UrdfTree, read_urdf
 
 
 def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:

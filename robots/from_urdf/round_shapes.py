@@ -6,7 +6,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from robots.description import Capsule
-from robots.posed_tree import PosedTree
+from robots.from_urdf.posed_tree import PosedTree
 
 DENSITY_KG_M3 = 1000.0
 """Assumed mean density [kg/m^3]: that of water, and about that of robots."""

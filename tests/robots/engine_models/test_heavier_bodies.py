@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.heavier_bodies import scale_mass
-from robots.mjcf import quiet_mujoco
+from robots.engine_models.heavier_bodies import scale_mass
+from robots.engine_models.mjcf import quiet_mujoco
 
 ARM = """
 <mujoco>

@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError
-from robots.placement import Placement
+from robots.from_urdf.placement import Placement
 from robots.rigid_body import Inertial, inertia_matrix
 
 Element = ElementTree.Element

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
+from robots.from_urdf.package_paths import example_robots
 from robots.leg_axes import ROLES
-from robots.package_paths import example_robots
 
 FORWARD = ("x", "-x", "y", "-y")
 

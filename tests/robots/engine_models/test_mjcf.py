@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots.mjcf import mujoco_spec
+from robots.engine_models.mjcf import mujoco_spec
 from robots.sole import CONTACT_RADIUS_M, contact_points
 
 

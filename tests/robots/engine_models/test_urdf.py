@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from robots.engine_models.urdf import urdf
 from robots.sole import CONTACT_RADIUS_M, contact_points
-from robots.urdf import urdf
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,12 @@ from scipy.spatial import ConvexHull, QhullError
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError
-from robots.adaptation import SoleBox
 from robots.description import Foot
-from robots.mesh_files import read_mesh
-from robots.package_paths import mesh_path
-from robots.posed_tree import PosedTree
-from robots.urdf_tree import UrdfShape
+from robots.from_urdf.adaptation import SoleBox
+from robots.from_urdf.mesh_files import read_mesh
+from robots.from_urdf.package_paths import mesh_path
+from robots.from_urdf.posed_tree import PosedTree
+from robots.from_urdf.urdf_tree import UrdfShape
 
 THICKNESS_M = 0.005
 """Points less than this above the lowest one belong to the sole [m]."""

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from robots.leg_roles import Legs
-from robots.placement import Placement
-from robots.posed_tree import PosedTree
-from robots.urdf_tree import UrdfTree
+from robots.from_urdf.leg_roles import Legs
+from robots.from_urdf.placement import Placement
+from robots.from_urdf.posed_tree import PosedTree
+from robots.from_urdf.urdf_tree import UrdfTree
 
 _ACROSS = math.cos(math.radians(45))
 _ASIDE = 0.1

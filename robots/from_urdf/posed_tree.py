@@ -8,9 +8,9 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError
-from robots.placement import Placement
+from robots.from_urdf.placement import Placement
+from robots.from_urdf.urdf_tree import UrdfLink, UrdfTree
 from robots.rigid_body import Inertial, combined
-from robots.urdf_tree import UrdfLink, UrdfTree
 
 _NOISE = 12
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadModelError
-from robots.mesh_files import read_mesh
+from robots.from_urdf.mesh_files import read_mesh
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 3]])
 TEXT_STL = """solid made by hand

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 
 from robots.description import Foot
-from robots.posed_tree import PosedTree
+from robots.from_urdf.posed_tree import PosedTree
 
 SOLE_PART, HIP_PART, HIPS_AHEAD_M = 0.43, 0.927, 0.010
 """Walk2014's gait on the NAO: where over the sole its centre of mass is, as a part

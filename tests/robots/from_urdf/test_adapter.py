@@ -11,8 +11,8 @@ from made_up_urdf import ANKLE_M, HIP_Y_M, SHIN_M, THIGH_M, two_legged
 import robots
 from groundwalk.errors import BadModelError, GroundwalkError, UnknownNameError
 from robots import biped
-from robots.adaptation import Adaptation
-from robots.adapter import adapted
+from robots.from_urdf.adaptation import Adaptation
+from robots.from_urdf.adapter import adapted
 from robots.scale import NAO_CENTRE_M, NAO_HIP_M, NAO_KG, Scale
 
 HUMANOIDS = ("g1", "icub", "romeo", "simple_humanoid", "talos")
