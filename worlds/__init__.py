@@ -1,7 +1,8 @@
-"""Robots on terrain under physics: sim (MuJoCo), real (PyBullet), and recordings.
+"""Simulated robots on terrain: worlds that step them, and recordings of their walks.
 
-Both worlds have one interface, `World`: n robots that are stepped together by joint
-commands. See docs/python.md for whole programs.
+There are two worlds, "sim" (MuJoCo) and "real" (PyBullet). Both have the interface
+`World`: n robots are stepped together by joint commands. Whole programs are in
+docs/python.md.
 
 Example:
   >>> import numpy as np, robots, terrain, worlds

@@ -1,4 +1,4 @@
-"""The two worlds by name, and their default options."""
+"""The worlds "sim" and "real" by name, and their default options."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,8 @@ from worlds.sim.world import SimWorld
 from worlds.world import World, WorldOptions
 
 REAL_LATENCY_S = 0.036
-"""From command to measured motion on the NAO: three frames of 12 ms (B-Human)."""
+"""Time from a command to the measured motion on a real NAO [s]: three cycles of 12 ms,
+as the RoboCup team B-Human reports."""
 
 
 @dataclass(frozen=True)
@@ -23,11 +24,11 @@ class WorldKind:
     """A world's class and its defaults; see `kind` for an example.
 
     Attributes:
-      world: the class.
-      options: how it computes by default.
-      terrain: name of the terrain that its robots stand on by default.
-      seed_key: what an evaluation's seed is combined with, so that worlds draw
-        different random numbers. It is the world's own and never changes.
+      world: the class, such as `SimWorld`.
+      options: the default settings.
+      terrain: name of the terrain on which its robots stand by default.
+      seed_key: number combined with a seed, so that sim and real draw different random
+        numbers from the same seed. It never changes, so that results can be repeated.
     """
 
     world: type[RolloutWorld]
@@ -45,12 +46,12 @@ WORLDS = {
         seed_key=0,
     ),
 }
-"""The worlds by name. Real differs from sim by its engine and, by default, by its
-latency, its noise and its ground."""
+"""The worlds by name. "real" differs from "sim" by its physics engine and, by default,
+by its latency, its sensor noise and its ground."""
 
 
 def kind(name: str) -> WorldKind:
-    """The class and the defaults of a world.
+    """Look up the class and the defaults of a world.
 
     Args:
       name: "sim" or "real".
@@ -74,14 +75,14 @@ def make(
     seeds: Sequence[np.random.SeedSequence],
     options: WorldOptions | None = None,
 ) -> World:
-    """A world with one robot on each ground.
+    """Make a world with one robot on each ground.
 
     Args:
       name: "sim" or "real".
       description: the robot.
       grounds: one per robot; give one object n times to share it.
       seeds: one per robot, for its sensor noise.
-      options: the world's own default where None.
+      options: the world's settings; None for the defaults of this world.
 
     Raises:
       GroundwalkError: the world is unknown, or its options do not fit the robot.

@@ -1,4 +1,4 @@
-"""When a rollout is over: the robot fell, diverged or left its ground."""
+"""Decides when a rollout is over: the robot fell, diverged or left its ground."""
 
 import math
 from collections import defaultdict
@@ -12,37 +12,37 @@ from worlds.observation import Truth
 from worlds.world import End
 
 FALL_TILT_RAD = math.radians(60)
-"""A torso whose up axis is farther than this from the vertical has fallen."""
+"""A robot has fallen when its torso's up axis is more than 60 degrees from vertical."""
 FALL_HEIGHT_RATIO = 0.5
-"""A torso that is below this share of its start height over the ground has fallen."""
+"""A robot has fallen when its torso is below this share of its start height."""
 DIVERGED_SPEED_M_S = 50.0
-"""A torso this fast is not walking: the integration has gone wrong. Walks stay below
-1 m/s and falls below 5 m/s."""
+"""Torso speed along one axis [m/s] from which the physics counts as diverged. Walks
+stay below 1 m/s and falls below 5 m/s."""
 
 
 def fallen(
     up_z: FloatArray, height_m: FloatArray, start_height_m: float | FloatArray
 ) -> BoolArray:
-    """(n,) whether torsos have fallen: the one rule of all worlds.
+    """(n,) whether robots have fallen, by the rule that all worlds share.
 
     Args:
       up_z: (n,) cosine of the angle between the torso's up axis and the vertical.
       height_m: (n,) height of the torso above the ground below it.
-      start_height_m: that height at the start, one number or (n,).
+      start_height_m: the same height at the start of the rollout; a number or (n,).
     """
     low = height_m < FALL_HEIGHT_RATIO * start_height_m
     return np.asarray((up_z < math.cos(FALL_TILT_RAD)) | low)
 
 
 class EndRule:
-    """Decides for n robots whether their rollouts are over."""
+    """Decides at each tick whose rollouts are over; call it with the robots' truth."""
 
     def __init__(self, grounds: Sequence[Heightfield], start: Truth) -> None:
-        """Remember how high every torso starts.
+        """Remember how high every torso starts, to compare later heights with it.
 
         Args:
           grounds: one per robot; robots may share one object.
-          start: where the robots start.
+          start: true poses of the n robots at the start.
         """
         robots = defaultdict(list)
         for i, ground in enumerate(grounds):
@@ -53,14 +53,15 @@ class EndRule:
         self._start_height_m, _ = self._above_ground(start)
 
     def __call__(self, truth: Truth, sound: BoolArray) -> Mapping[End, BoolArray]:
-        """Which rollouts end now, and why.
+        """Tell which rollouts end now, and why.
 
         Args:
-          truth: where the robots are; rows that are not sound may hold anything.
-          sound: (n,) whether a robot's physics gave finite numbers.
+          truth: poses and velocities of the n robots; a row where `sound` is False may
+            hold any numbers.
+          sound: (n,) whether all states and measurements of a robot are finite.
 
         Returns:
-          (n,) mask for each reason; no robot is in two of them.
+          A mask (n,) for each reason; no robot is True in two of them.
         """
         with np.errstate(invalid="ignore", over="ignore"):
             height_m, on_ground = self._above_ground(truth)
@@ -74,7 +75,10 @@ class EndRule:
         }
 
     def _above_ground(self, truth: Truth) -> tuple[FloatArray, BoolArray]:
-        """(n,) height of each torso over the ground below, and whether there is any."""
+        """(n,) height of each torso over its ground [m], and (n,) whether one is there.
+
+        A torso may be beyond the edge of its ground; then its height means nothing.
+        """
         x, y, z = truth.base_position_m.T
         height_m, on_ground = z.copy(), np.ones(len(z), bool)
         for ground, rows in self._shared_by:

@@ -1,4 +1,4 @@
-"""A delay between giving a command and its effect."""
+"""A queue that delays commands, to model the latency of a robot's motors."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -7,32 +7,33 @@ from groundwalk.arrays import FloatArray
 
 
 class DelayLine:
-    """Delays commands by a number of physics steps, which need not be whole ticks."""
+    """Delays commands by a number of physics steps, not necessarily whole ticks."""
 
     def __init__(self, latency_steps: int, steps_per_tick: int) -> None:
-        """An empty line; `reset` fills it.
+        """Make an empty delay line; call `reset` before the first tick.
 
         Args:
           latency_steps: physics steps between giving a command and its effect.
-          steps_per_tick: physics steps for which a command holds.
+          steps_per_tick: physics steps in a control tick, for which a command holds.
         """
         self._steps_per_tick = steps_per_tick
         self._ticks, self._late_steps = divmod(latency_steps, steps_per_tick)
         self._commands: deque[FloatArray] = deque(maxlen=self._ticks + 2)
 
     def reset(self, command: FloatArray) -> None:
-        """Begin as if this command had always been given.
+        """Start as if the same command had been given at all earlier ticks.
 
         Args:
-          command: any array, for example (n, joints) targets.
+          command: joint position targets [rad], (n, joints).
         """
         self._commands.extend([command] * (self._ticks + 2))
 
     def tick(self, command: FloatArray) -> Iterator[tuple[FloatArray, int]]:
-        """Give one tick's command.
+        """Take the command of one tick, and give the delayed ones that act in it.
 
         Yields:
-          Each command that acts during this tick, and for how many physics steps.
+          One or two commands in the order in which they act, each with the number of
+          physics steps for which it acts.
         """
         self._commands.append(command)
         older, newer = self._commands[0], self._commands[1]

@@ -1,4 +1,4 @@
-"""Measurements of robots (`Observation`), and their true motion (`Truth`)."""
+"""Arrays for n robots: measurements (`Observation`) and true motion (`Truth`)."""
 
 from dataclasses import dataclass, fields
 from typing import Self
@@ -10,14 +10,14 @@ from groundwalk.arrays import BoolArray, FloatArray
 
 @dataclass(frozen=True, eq=False)
 class _PerRobot:
-    """Base of dataclasses of arrays whose first axis counts the robots."""
+    """Base of dataclasses whose fields are arrays with one row for each robot."""
 
     def where(self, mask: BoolArray, other: Self) -> Self:
-        """Rows of this object where a mask is set, and of another one elsewhere.
+        """Merge by robot: rows of this object where the mask is True, else of `other`.
 
         Args:
-          mask: (n,) robots.
-          other: of the same class and shape.
+          mask: (n,), one value for each robot.
+          other: an object of the same class and array shapes.
         """
         if mask.all():
             return self
@@ -29,7 +29,7 @@ class _PerRobot:
         return type(self)(**merged)
 
     def finite(self) -> BoolArray:
-        """(n,) whether every number of a robot's rows is finite."""
+        """(n,) whether all values of a robot, in all fields, are finite."""
         rows = [getattr(self, field.name) for field in fields(self)]
         finite = [np.isfinite(row).reshape(len(row), -1).all(axis=1) for row in rows]
         return np.asarray(np.logical_and.reduce(finite))
@@ -40,12 +40,12 @@ class Observation(_PerRobot):
     """Measurements of n robots at a tick; `World.reset` and `World.step` return them.
 
     Attributes:
-      time_s: (n,) since the start of the rollout.
+      time_s: (n,) time since the start of the rollout.
       position_rad, velocity_rad_s: (n, joints) in the description's order.
       gyroscope_rad_s: (n, 3) torso frame.
       accelerometer_m_s2: (n, 3) torso frame; +9.81 upward when at rest.
-      foot_force_n: (n, 8) front left, front right, rear left, rear right sensor of
-        the left foot, then of the right.
+      foot_force_n: (n, 8) force on the front left, front right, rear left and rear
+        right sensor of the left foot, then the same of the right foot.
 
     Example:
       See the beginning of the package `worlds`.
@@ -66,7 +66,7 @@ class Truth(_PerRobot):
     A gait never sees it: a real robot could not measure it.
 
     Attributes:
-      base_position_m: (n, 3) of the torso frame, in the world.
+      base_position_m: (n, 3) position of the torso frame in the world frame.
       base_orientation: (n, 4) unit quaternion w, x, y, z from torso to world.
       base_linear_velocity_m_s: (n, 3) world frame.
       base_angular_velocity_rad_s: (n, 3) torso frame.

@@ -1,4 +1,4 @@
-"""The base class of both worlds: everything but the physics."""
+"""Base class of the sim and real worlds: latency, noise and ends, but no physics."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -16,23 +16,24 @@ from worlds.sensor_noise import NoisySensors
 from worlds.world import TICK_S, End, WorldOptions
 
 Schedule = list[tuple[FloatArray, int]]
-"""Targets (n, joints) [rad] of one tick, and for how many physics steps each acts."""
+"""Joint position targets (n, joints) [rad] that act one after the other during a tick,
+each with the number of physics steps for which it acts."""
 
 MOST_RAD = 1e6
-"""A joint position beyond this [rad] is an error: no joint turns a million radians."""
+"""Largest accepted joint position or target [rad]; more can only be an error."""
 
 
 class RolloutWorld(ABC):
-    """n rollouts side by side; see `World` for the interface.
+    """A `World` of n robots without the physics, which a subclass computes.
 
-    It remembers which rollouts go on, delays commands by the latency and adds the
-    sensors' noise. A subclass computes the physics.
+    This class keeps track of the rollouts that go on, delays commands by the latency
+    and adds the sensors' noise.
 
     Attributes:
       description: the robot.
-      options: how the world computes.
-      active: (n,) robots whose rollout goes on.
-      ended: why each robot's rollout ended.
+      options: the world's settings.
+      active: (n,) True for robots whose rollout goes on.
+      ended: why each robot's rollout ended; `End.NONE` while it goes on.
     """
 
     def __init__(
@@ -48,10 +49,10 @@ class RolloutWorld(ABC):
           description: the robot.
           grounds: one per robot; give one object n times to share it.
           seeds: one per robot, for its sensor noise.
-          options: how the world computes.
+          options: the world's settings.
 
         Raises:
-          BadValueError: there is not one ground and one seed for each robot.
+          BadValueError: the numbers of grounds and seeds differ or are 0.
         """
         if not grounds or len(grounds) != len(seeds):
             raise BadValueError(
@@ -68,11 +69,11 @@ class RolloutWorld(ABC):
 
     @property
     def n(self) -> int:
-        """How many robots there are."""
+        """Number of robots."""
         return len(self._grounds)
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground; see `World.reset`."""
+        """Start n rollouts: put every robot on its ground; see `World.reset`."""
         targets = self._targets(pose_rad)
         if not _are_positions(targets).all():
             raise BadValueError(
@@ -91,7 +92,7 @@ class RolloutWorld(ABC):
         return self._as_measured()
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance the active robots by one tick; see `World.step`."""
+        """Advance the active robots by one tick of 10 ms; see `World.step`."""
         targets = self._targets(command_rad)
         # MuJoCo would take NaN for zero.
         self._end(End.DIVERGED, ~_are_positions(targets))
@@ -103,33 +104,33 @@ class RolloutWorld(ABC):
         return self._as_measured()
 
     def stop(self, robots: BoolArray) -> None:
-        """End the rollouts of robots (n,); see `World.stop`."""
+        """End the rollouts of the robots that are True in the mask (n,)."""
         self.active = self.active & ~robots
 
     def truth(self) -> Truth:
-        """True poses and velocities of the robots; see `World.truth`."""
+        """True poses and velocities of the robots, without noise."""
         return self._truth
 
     @abstractmethod
     def close(self) -> None:
-        """End processes and free memory."""
+        """End processes and free memory; the world cannot be used afterwards."""
 
     @abstractmethod
     def _start(self, pose_rad: FloatArray) -> None:
-        """Put every robot on its ground, upright and at rest, holding its pose."""
+        """Put every robot on its ground, upright, at rest, with joints (n, joints)."""
 
     @abstractmethod
     def _advance(self, schedule: Schedule) -> None:
-        """Compute one tick of the active robots."""
+        """Compute the physics of the active robots over one tick."""
 
     @abstractmethod
     def _read(self) -> tuple[Truth, Observation]:
-        """Truth and noiseless observation of now; NaN for robots that blew up."""
+        """Current truth and noiseless observation; NaN where the physics diverged."""
 
     def _take_stock(self) -> None:
-        """Read all states, and end the rollouts that are over.
+        """Read all states after a tick, and end the rollouts that are over.
 
-        Robots that are not active keep their last state.
+        The stored state of a robot that is inactive or not finite stays as it was.
         """
         truth, observation = self._read()
         sound = truth.finite() & observation.finite()
@@ -140,13 +141,13 @@ class RolloutWorld(ABC):
         self._clean = observation.where(keep, self._clean)
 
     def _end(self, end: End, robots: BoolArray) -> None:
-        """End the rollouts of those robots (n,) that are active, for a reason."""
+        """End, for the reason `end`, the active rollouts in the mask `robots` (n,)."""
         for i in np.flatnonzero(robots & self.active):
             self.ended[i] = end
         self.active = self.active & ~robots
 
     def _targets(self, command_rad: FloatArray) -> FloatArray:
-        """Commands (n, joints) as motor targets.
+        """Copy commands (n, joints) [rad], with equal targets for coupled joints.
 
         Two joints that share a motor get the mean of their commands.
         """
@@ -163,5 +164,5 @@ class RolloutWorld(ABC):
 
 
 def _are_positions(joints_rad: FloatArray) -> BoolArray:
-    """(n,) whether all of a robot's numbers can be joint positions; NaN cannot."""
+    """(n,) whether all joints of a robot are within +-`MOST_RAD`; NaN is not."""
     return np.asarray(np.all(np.abs(joints_rad) < MOST_RAD, axis=1))

@@ -1,4 +1,4 @@
-"""Noise and resolution of a robot's sensors."""
+"""Noise and resolution of a robot's sensors, and how they act on observations."""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,18 +12,19 @@ from worlds.observation import Observation
 
 @dataclass(frozen=True)
 class SensorNoise:
-    """Standard deviations and quanta of a NAO's sensors.
+    """Noise of a robot's sensors; the defaults are those of a NAO.
 
-    Sources: gyroscope and accelerometer: HULKs' simulator of the NAO (2025); gyroscope
-    bias: rUNSWift's per-robot configurations, up to 0.023 rad/s; joint quantum: 12
-    bit per turn (NAO datasheet); foot force: sensitivity 40 g (NAO datasheet).
+    Sources: gyroscope and accelerometer: the NAO simulator of the RoboCup team HULKs
+    (2025); gyroscope bias: the team rUNSWift's configurations of single robots, up to
+    0.023 rad/s; joints: 12 bit per turn (NAO datasheet); feet: 40 g (NAO datasheet).
 
     Attributes:
-      gyroscope_rad_s: white noise per axis.
-      gyroscope_bias_rad_s: standard deviation of a constant offset per rollout.
-      accelerometer_m_s2: white noise per axis.
-      joint_quantum_rad: resolution of the joint encoders.
-      foot_force_n: white noise of each foot sensor.
+      gyroscope_rad_s: standard deviation of white noise about x, y, z.
+      gyroscope_bias_rad_s: standard deviation of an offset that is constant in a
+        rollout.
+      accelerometer_m_s2: standard deviation of white noise along x, y, z.
+      joint_quantum_rad: resolution of the joint encoders; 0 for no rounding.
+      foot_force_n: standard deviation of white noise of each foot sensor.
 
     Example:
       >>> SensorNoise(gyroscope_bias_rad_s=0.0).joint_quantum_rad
@@ -37,23 +38,23 @@ class SensorNoise:
     foot_force_n: float = 0.4
 
     def __post_init__(self) -> None:
-        """Refuse negative spreads."""
+        """Refuse negative and infinite values."""
         for name, value in vars(self).items():
             if not np.all(np.isfinite(value)) or np.any(np.asarray(value) < 0):
                 raise BadValueError(f"{name} is {value}; it must not be negative")
 
 
 class NoisySensors:
-    """Noise of n robots, each with its own random numbers.
+    """Adds sensor noise to the observations of n robots.
 
-    A robot's noise depends on its own seed alone, not on its neighbours.
+    Each robot's noise depends on its own seed only, not on the other robots.
     """
 
     def __init__(self, noise: SensorNoise, seeds: list[np.random.SeedSequence]) -> None:
-        """Draw the biases, which stay constant through a rollout.
+        """Draw the gyroscopes' biases, which stay constant through a rollout.
 
         Args:
-          noise: how strong the noise is.
+          noise: strength of the noise.
           seeds: one per robot.
         """
         self._noise = noise
@@ -65,14 +66,14 @@ class NoisySensors:
         return np.stack([g.standard_normal(columns) for g in self._generators])
 
     def __call__(self, clean: Observation, tick_s: float) -> Observation:
-        """The observation as the sensors report it.
+        """Return an observation as the noisy sensors report it.
 
         Joint velocities are differences of quantised positions over one tick, as a
         robot's electronics compute them.
 
         Args:
           clean: the noiseless observation.
-          tick_s: time since the last call.
+          tick_s: time since the call before.
         """
         noise = self._noise
         draws = self._draw(14)

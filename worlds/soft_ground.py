@@ -19,25 +19,27 @@ if TYPE_CHECKING:
     import mujoco
 
 DAMPING_RATIO = 0.1
-"""Damping as a share of the critical damping of the whole robot on one foot: a landing
-foot rebounds once or twice. Insensitive within a factor of two."""
+"""Damping of soft ground as a share of the critical damping of the whole robot on one
+foot: a landing foot rebounds once or twice. A factor of two changes little."""
 
 _ADDED_MASS = 0.25
-"""Share by which a foot's effective inverse mass in MuJoCo's contacts exceeds its own;
-measured: with this value a standing robot sinks in as deep as the spring says."""
+"""Extra share of a foot's inverse mass in MuJoCo's soft contacts. Measured: with
+this value a standing robot sinks in as deep as the ground's stiffness predicts."""
 
 _IMPEDANCE_RATIO = 100.0
-"""Ratio of friction's impedance to that of the normal force. A sticking foot creeps at
-tangential force / B; with this ratio only at a hundredth of that speed."""
+"""MuJoCo's `impratio`, the impedance of friction over that of the normal force. At 1 a
+sticking foot creeps at tangential force / damping; at 100 a hundredth as fast."""
 
 
 @dataclass(frozen=True)
 class FootSpring:
-    """Stiffness and damping of the ground under one whole foot.
+    """Stiffness and damping of soft ground under one whole foot.
+
+    A flat foot that has sunk in by r feels the normal force K r + B r'.
 
     Attributes:
-      stiffness_n_m: K in the force K r + B r' of a foot that has sunk in by r.
-      damping_n_s_m: B.
+      stiffness_n_m: K [N/m].
+      damping_n_s_m: B [N s/m].
     """
 
     stiffness_n_m: float
@@ -45,11 +47,11 @@ class FootSpring:
 
     @classmethod
     def sinking(cls, description: Description, sinkage_m: float) -> "FootSpring":
-        """The ground into which a robot sinks by a given depth on one foot.
+        """Ground into which a robot at rest on one foot sinks by a given depth.
 
         Args:
-          description: the robot.
-          sinkage_m: the depth, above 0.
+          description: the robot, for its mass.
+          sinkage_m: the depth; above 0.
         """
         mass_kg = description.mass_kg
         stiffness_n_m = mass_kg * GRAVITY_M_S2 / sinkage_m
@@ -60,7 +62,7 @@ class FootSpring:
 def soften_mujoco(
     model: "mujoco.MjModel", description: Description, spring: FootSpring
 ) -> None:
-    """Make the soles of a compiled model meet soft ground.
+    """Give the soles of a compiled MuJoCo model soft contacts; changes the model.
 
     A contact with solref (-k, -b) and constant impedance d solves
     a + b r' / d + k r / d + R f = 0, with R = A (1 - d) / d and A the foot's inverse
@@ -92,15 +94,15 @@ def soften_bullet(
     description: Description,
     spring: FootSpring,
 ) -> None:
-    """Make the soles of a loaded robot meet soft ground.
+    """Give the soles of a robot in PyBullet soft contacts.
 
     Args:
-      bullet: the module.
-      client: names the physics client.
-      body: the robot's number.
-      links: numbers of the joints' links, in the description's order.
+      bullet: the module `pybullet`.
+      client: the keyword argument `physicsClientId` of its functions, as a dict.
+      body: PyBullet's id of the robot.
+      links: PyBullet's link indices, in the order of the description's joints.
       description: the robot.
-      spring: of a whole foot.
+      spring: the ground under a whole foot; its contact points share it evenly.
     """
     for foot in description.feet:
         points = len(contact_points(foot))

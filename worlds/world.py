@@ -1,4 +1,4 @@
-"""The one interface of both worlds, and their options."""
+"""`World`, the interface of the sim (MuJoCo) and real (PyBullet) worlds; options."""
 
 import enum
 import math
@@ -14,11 +14,11 @@ from worlds.observation import Observation, Truth
 from worlds.sensor_noise import SensorNoise
 
 TICK_S = 0.01
-"""One control tick: a command holds for this long."""
+"""Length of a control tick [s]: a command (joint position targets) holds this long."""
 
 
 class End(enum.StrEnum):
-    """Why a rollout ended; NONE while it goes on.
+    """Why one robot's rollout ended; NONE while it goes on.
 
     Example:
       >>> End.FALL in FALLS
@@ -32,7 +32,7 @@ class End(enum.StrEnum):
 
 
 FALLS = (End.FALL, End.DIVERGED)
-"""Ends that are falls: physics that blew up counts as one."""
+"""Reasons of `End` that count as falls; diverged physics is one of them."""
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,16 @@ class WorldOptions:
     """Settings of a world: physics step, latency, noise, ground contact, effects.
 
     Attributes:
-      timestep_s: physics step; a whole number of them makes a tick of 10 ms.
-      latency_s: time until a command takes effect, a whole number of steps.
-      noise: of the sensors; None for perfect sensors.
+      timestep_s: physics step; the control tick of 10 ms must be a multiple of it.
+      latency_s: time until a command takes effect; a multiple of `timestep_s`.
+      noise: noise of the sensors; None for perfect sensors.
       friction: coefficient between sole and ground.
-      sinkage_m: how deep the robot sinks in, standing on one foot; 0 for hard ground.
-      fixed_base: hold the torso in the air where it started.
-      hidden: physics that the real world has and the sim's model lacks.
-      threads: of the sim, or processes of the real world; 0 for one per core.
+      sinkage_m: how deep the ground gives way under the robot at rest on one foot; 0
+        for hard ground.
+      fixed_base: whether the torso is held in the air where it started.
+      hidden: effects (such as backlash) that only the real world has: the sim refuses
+        them.
+      threads: threads of the sim, or processes of the real world; 0 for one per core.
 
     Example:
       >>> WorldOptions(latency_s=0.036).latency_steps
@@ -64,7 +66,7 @@ class WorldOptions:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse steps that do not fit into ticks, and values that cannot be."""
+        """Refuse steps that do not divide a tick of 10 ms, and impossible values."""
         for name in ("timestep_s", "latency_s", "friction", "sinkage_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 0):
@@ -108,33 +110,35 @@ class World(Protocol):
 
     @property
     def description(self) -> Description:
-        """The robot; all n are alike."""
+        """Links, joints, motors and sensors of the robot; all n robots are alike."""
 
     @property
     def n(self) -> int:
-        """How many robots there are."""
+        """Number of robots, those whose rollout has ended included."""
 
     @property
     def options(self) -> WorldOptions:
-        """How this world computes."""
+        """The settings with which this world was made."""
 
     @property
     def ended(self) -> list[End]:
-        """Why each robot's rollout ended."""
+        """Why each robot's rollout ended; `End.NONE` while it goes on."""
 
     @property
     def active(self) -> BoolArray:
-        """(n,) robots whose rollout goes on."""
+        """(n,) True for robots whose rollout goes on."""
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Put every robot on its ground, at the origin, upright and at rest.
+        """Put every robot upright and at rest at the origin of its ground.
+
+        The torso is so high that the lower sole just touches the ground.
 
         Args:
-          pose_rad: (n, joints) joint positions; the lower sole touches the ground.
+          pose_rad: (n, joints) joint positions, held until the first command.
         """
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance the active robots by one tick; the others stay as they are.
+        """Advance the active robots by one tick (10 ms); the others keep their state.
 
         Args:
           command_rad: (n, joints) joint position targets for this tick. Two joints
@@ -142,7 +146,7 @@ class World(Protocol):
         """
 
     def stop(self, robots: BoolArray) -> None:
-        """End the rollouts of robots, given as a mask (n,)."""
+        """End the rollouts of the robots that are True in the mask (n,)."""
 
     def truth(self) -> Truth:
         """True poses and velocities of the robots, without noise."""

@@ -1,4 +1,4 @@
-"""The uneven world: PyBullet, robots spread over processes.
+"""The world "real": PyBullet computes the robots, spread over several processes.
 
 Example:
   `worlds.make("real", ...)` makes a `RealWorld`; see the beginning of `worlds`.

@@ -18,14 +18,14 @@ from worlds.real.ground import load_ground
 from worlds.soft_ground import FootSpring, soften_bullet
 
 _GEAR_NM, _GEAR_ERP = 1e3, 0.2
-"""Largest torque of the gear between two joints of one motor, and the part of their
-error that Bullet corrects in a step: stiff enough that the joints stay together, soft
-enough for Bullet's solver."""
+"""Largest torque [N m] of PyBullet's gear between two joints of one motor, and the
+part of their angle error that it corrects in a physics step: stiff enough to keep the
+joints together, soft enough for PyBullet's solver."""
 
 
 @contextlib.contextmanager
 def silent() -> Iterator[None]:
-    """Drop what C code writes to standard output and standard error."""
+    """Discard all output to stdout and stderr meanwhile, that of C code included."""
     kept = [os.dup(1), os.dup(2)]
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 1)
@@ -39,7 +39,7 @@ def silent() -> Iterator[None]:
 
 
 def import_bullet() -> Any:
-    """The module PyBullet, without the greeting that it prints from C."""
+    """Import the module `pybullet` without the banner that it prints from C."""
     with silent():
         import pybullet
     return pybullet
@@ -47,18 +47,19 @@ def import_bullet() -> Any:
 
 @dataclass(frozen=True, eq=False)
 class BodySetup:
-    """A robot, its ground and the physics of a PyBullet client.
+    """Everything that a PyBullet client needs to load one robot and its ground.
 
     Attributes:
-      urdf: text of the robot's model; a link for each joint and no others.
-      joints: names in the order of all arrays.
-      floating: whether the base is free.
+      urdf: text of the robot's URDF; besides the base, a link for each joint.
+      joints: names of the joints, in the order of all arrays.
+      floating: whether the base can move.
       step_s: physics step.
-      gravity_m_s2: (3,) in the frame of the ground or mount.
+      gravity_m_s2: (3,) gravity in the world frame, which may be tilted.
       friction: coefficient between soles and ground.
-      description: feet, and joints that share a motor; None for a robot without.
-      springs: softness of the ground under each foot; the last one counts.
-      ground: under a floating robot.
+      description: gives the feet, the inertial sensor and the joints that share a
+        motor; None for a robot without them, such as an arm.
+      springs: soft ground under each whole foot; the last one applies, none is hard.
+      ground: the ground under a floating robot; None for no ground.
     """
 
     urdf: str
@@ -73,17 +74,17 @@ class BodySetup:
 
 
 class BulletBody:
-    """A robot in a PyBullet client of its own.
+    """One robot and its ground in a PyBullet client of its own, moved by joint torques.
 
     Attributes:
       setup: the robot and ground that were loaded.
-      client: the keyword that names the client in PyBullet's functions.
-      number: Bullet's number of the robot.
-      position_rad, velocity_rad_s: (j,) of the joints, after the last step.
+      client: the keyword argument `physicsClientId` of PyBullet's functions, as a dict.
+      number: PyBullet's id of the robot.
+      position_rad, velocity_rad_s: (joints,) state of the joints after the last step.
     """
 
     def __init__(self, setup: BodySetup) -> None:
-        """Connect a client, and load robot and ground."""
+        """Connect a PyBullet client, and load the robot and its ground into it."""
         self._bullet = bullet = import_bullet()
         self.setup = setup
         self.client = {"physicsClientId": bullet.connect(bullet.DIRECT)}
@@ -121,7 +122,7 @@ class BulletBody:
             )
 
     def _name_parts(self) -> None:
-        """Bullet's numbers of joints and bodies; the base is -1."""
+        """Look up PyBullet's indices of joints and links by name; the base's is -1."""
         bullet, client = self._bullet, self.client
         count = bullet.getNumJoints(self.number, **client)
         rows = [bullet.getJointInfo(self.number, i, **client) for i in range(count)]
@@ -132,7 +133,7 @@ class BulletBody:
         self._link_of[base] = -1
 
     def _make_passive(self) -> None:
-        """Switch off the damping and the motors that Bullet adds by itself."""
+        """Switch off PyBullet's default damping and joint motors; set the friction."""
         bullet, client = self._bullet, self.client
         for link in (-1, *self._links):
             bullet.changeDynamics(
@@ -154,7 +155,7 @@ class BulletBody:
         )
 
     def _couple(self) -> None:
-        """Hold joints that share a motor at the same angle, with a gear."""
+        """Keep joints that share a motor at the same angle, with a PyBullet gear."""
         description = self.setup.description
         for first, second in description.coupled if description else ():
             gear = self._bullet.createConstraint(
@@ -173,11 +174,11 @@ class BulletBody:
             )
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
-        """Put the robot at rest; a floating base upright above the origin.
+        """Put the robot at rest, a floating base upright above the world's origin.
 
         Args:
-          pose_rad: (j,) joint positions.
-          height_m: of a floating torso.
+          pose_rad: (joints,) joint positions.
+          height_m: height of the torso frame above the origin; unused on a fixed base.
         """
         if self.setup.floating:
             place = self._com_m + np.array([0, 0, height_m])
@@ -190,7 +191,7 @@ class BulletBody:
         self._read()
 
     def step(self, torque_nm: FloatArray) -> None:
-        """One physics step under (j,) joint torques and the pushes since the last."""
+        """Advance one physics step under torques (joints,) and the preceding pushes."""
         bullet, client = self._bullet, self.client
         bullet.setJointMotorControlArray(
             self.number,
@@ -208,7 +209,10 @@ class BulletBody:
         self.velocity_rad_s = np.array([state[1] for state in states])
 
     def push(self, body: str, force_n: FloatArray) -> None:
-        """Let a force (3,) act at a body's centre of mass over the next step."""
+        """Let a force (3,) [N] in the world frame act over the next physics step.
+
+        It acts at the centre of mass of the link named `body`.
+        """
         link = self._link_of[body]
         bullet, client = self._bullet, self.client
         if link < 0:
@@ -220,7 +224,7 @@ class BulletBody:
         )
 
     def body_velocity(self, body: str) -> FloatArray:
-        """(3,) velocity of a body's centre of mass [m/s]."""
+        """(3,) velocity of a link's centre of mass in the world frame [m/s]."""
         link = self._link_of[body]
         if link < 0:
             return np.array(self._bullet.getBaseVelocity(self.number, **self.client)[0])
@@ -238,11 +242,12 @@ class BulletBody:
     def base_motion(self) -> tuple[FloatArray, FloatArray]:
         """Pose (7,) and velocity (6,) of the torso frame.
 
-        Bullet's own base is the torso's centre of mass, with principal axes.
+        PyBullet gives those of the torso's centre of mass and principal axes instead;
+        they are converted here.
 
         Returns:
-          Position [m] and quaternion w, x, y, z; linear velocity [m/s] in the world's
-          frame and angular velocity [rad/s] in the torso's.
+          Position [m] and quaternion w, x, y, z; linear velocity [m/s] in the world
+          frame and angular velocity [rad/s] in the torso frame.
         """
         bullet, client = self._bullet, self.client
         place, turn = bullet.getBasePositionAndOrientation(self.number, **client)
@@ -258,13 +263,13 @@ class BulletBody:
     def specific_force(
         self, pose: FloatArray, before: FloatArray, now: FloatArray, seconds: float
     ) -> FloatArray:
-        """(3,) reading of the accelerometer in the torso frame [m/s^2].
+        """(3,) noiseless reading of the accelerometer in the torso frame [m/s^2].
 
         Args:
-          pose: (7,) of the torso, now.
+          pose: (7,) current pose of the torso, as `base_motion` gives it.
           before: (6,) velocity of the torso, some steps ago.
-          now: (6,) velocity of the torso.
-          seconds: time between both.
+          now: (6,) current velocity of the torso.
+          seconds: time between both velocities.
         """
         description = self.setup.description
         lever = np.zeros(3)
@@ -277,7 +282,10 @@ class BulletBody:
         return np.asarray(linear + turning)
 
     def foot_forces(self) -> FloatArray:
-        """(8,) forces on the foot sensors over the last step [N]; may be negative."""
+        """(8,) forces on the foot sensors in the last step [N], left foot first.
+
+        A contact beyond the sensors of a foot can make a force negative.
+        """
         forces = np.zeros((2, 4))
         description = self.setup.description
         for side, foot in enumerate(description.feet if description else ()):
@@ -299,7 +307,7 @@ class BulletBody:
         return np.array(flat).reshape(3, 3)
 
     def close(self) -> None:
-        """Disconnect the client."""
+        """Disconnect the PyBullet client; the robot cannot be used afterwards."""
         self._bullet.disconnect(**self.client)
 
 

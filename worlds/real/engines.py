@@ -1,4 +1,4 @@
-"""The engines of robots with hidden physics: MuJoCo, and a body in PyBullet."""
+"""The physics engines for robots with hidden effects: MuJoCo and PyBullet."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -26,17 +26,18 @@ def hidden_engine(
     step_s: float,
     ground: Heightfield | None,
 ) -> HiddenEngine:
-    """An engine with the robot in it.
+    """Make a physics engine and load a robot with hidden effects into it.
 
     Args:
-      name: "bullet" or "mujoco".
-      plant: the nominal robot.
-      effects: the hidden effects.
-      step_s: fine step.
-      ground: under a floating robot; None for a fixed base.
+      name: "bullet" (PyBullet) or "mujoco".
+      plant: the robot without the effects.
+      effects: the physics to hide, with places and parameters.
+      step_s: physics step.
+      ground: the ground under a floating robot; None for a fixed base.
 
     Raises:
-      GroundwalkError: the engine lacks an effect, or a place is unknown.
+      GroundwalkError: the engine cannot compute an effect, or the robot does not have
+        an effect's place.
     """
     check_engine(name, effects)
     model = hidden_model(plant, effects, step_s, ground)
@@ -46,10 +47,10 @@ def hidden_engine(
 
 
 class HiddenBullet(BulletBody):
-    """A robot with hidden physics in PyBullet; see `HiddenEngine`.
+    """A robot with hidden effects in PyBullet, with the methods of `HiddenEngine`.
 
-    It is made from the MuJoCo model, so that both engines compute the same bodies under
-    the same gravity.
+    It is made from a MuJoCo model that has the effects on masses and gravity, so that
+    both engines compute the same bodies under the same gravity.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class HiddenBullet(BulletBody):
         effects: Sequence[Hidden],
         ground: Heightfield | None,
     ) -> None:
-        """Load robot and ground; soft ground is set here, all else is in the model."""
+        """Load robot and ground from the model; soft ground comes from the effects."""
         soles = np.flatnonzero(model.geom_contype == 1)
         description = plant.description
         springs = []
@@ -87,7 +88,7 @@ class HiddenBullet(BulletBody):
         self._earlier: FloatArray | None = None
 
     def watch(self) -> None:
-        """Add the sensors' values of this step; see `HiddenEngine.watch`."""
+        """Add this step's foot forces to the mean that `sense` will return."""
         if not self.setup.floating:
             return
         if self._earlier is None:
@@ -96,7 +97,7 @@ class HiddenBullet(BulletBody):
         self._feet += self.foot_forces()
 
     def sense(self) -> BodySense:
-        """Readings of the sensors; see `HiddenEngine.sense`."""
+        """Read the sensors, averaged over the watched steps; forget those steps."""
         if not self.setup.floating:
             zero, up = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
             felt = -self.setup.gravity_m_s2 if self.setup.description else zero

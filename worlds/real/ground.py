@@ -1,4 +1,4 @@
-"""Ground in a PyBullet client."""
+"""Loads a heightfield as ground into a PyBullet client."""
 
 import math
 
@@ -11,22 +11,21 @@ QUARTER_TURN = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
 
 
 def load_ground(client_id: int, field: Heightfield) -> int:
-    """Load ground as a static body, as a plane if it is flat.
+    """Load ground into PyBullet as a static body, a plane if it is flat.
 
-    Bullet cuts its cells along the diagonal from [row, column + 1] to
-    [row + 1, column], MuJoCo and `Heightfield` along the other one. A quarter
-    turn maps one onto the other: the samples are turned by -90 degrees and the
-    body by +90, so that heights stay in place and diagonals change. Bullet counts
-    samples along its x as "rows" and puts the middle between the lowest and the
-    highest sample at the body's origin. Ray casts agree with `field.height_at`
-    to 1e-8 m.
+    PyBullet cuts a cell of a heightfield into triangles along the diagonal from
+    [row, column + 1] to [row + 1, column], MuJoCo and `Heightfield` along the other
+    one. So the samples are turned by -90 degrees and the body by +90: heights stay in
+    place, diagonals change. PyBullet counts samples along its x axis as "rows" and puts
+    the middle between the lowest and the highest sample at the body's origin. Ray casts
+    agree with `field.height_at` to 1e-8 m.
 
     Args:
-      client_id: the physics client.
+      client_id: PyBullet's `physicsClientId`.
       field: heights in the world frame.
 
     Returns:
-      The body's unique id.
+      PyBullet's id of the body.
     """
     import pybullet
 

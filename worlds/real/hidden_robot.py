@@ -1,4 +1,4 @@
-"""One robot of the real world with hidden physics."""
+"""One robot of the world "real" (PyBullet) with hidden effects."""
 
 from collections.abc import Sequence
 from math import ceil
@@ -19,20 +19,21 @@ from worlds.real.robot import OUT_OF_REACH_M, BulletState
 from worlds.world import WorldOptions
 
 FINE_STEP_S = 0.0005
-"""Longest physics step [s]: the servo law of hidden physics is explicit, and unstable
-at steps some times as long."""
+"""Longest physics step [s] of robots with hidden effects. Their servo torque is that at
+the start of a step, which is unstable at steps a few times as long."""
 
 
 class HiddenRobot:
-    """A robot on its ground, with the same methods as `BulletRobot`."""
+    """A robot with hidden effects on its ground, with the methods of `BulletRobot`."""
 
     def __init__(
         self, description: Description, ground: Heightfield, options: WorldOptions
     ) -> None:
-        """Connect a client of its own and load robot and ground.
+        """Connect a PyBullet client of its own, and load robot and ground into it.
 
         Raises:
-          GroundwalkError: the robot has no such place, or the engine no such effect.
+          GroundwalkError: the robot does not have a hidden effect's place, or PyBullet
+            cannot compute an effect.
         """
         self._plant = described_hidden_plant(description, not options.fixed_base)
         self._fine = ceil(options.timestep_s / FINE_STEP_S - 1e-9)
@@ -45,7 +46,7 @@ class HiddenRobot:
         self._bias_rad_s = surroundings(options.hidden).gyroscope_bias_rad_s
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:
-        """Put the robot upright at the origin, its torso at a height, at rest."""
+        """Put the robot at rest and upright at the origin, its torso at a height."""
         # One step out of reach first: contacts of the last rollout would linger.
         self._world.reset(pose_rad, height_m + OUT_OF_REACH_M)
         self._world.step(np.zeros(len(pose_rad)))
@@ -56,7 +57,15 @@ class HiddenRobot:
         return self._state(self._world.sense())
 
     def step(self, schedule: Sequence[tuple[FloatArray, int]]) -> BulletState | None:
-        """Advance by one tick; see `BulletRobot.step`."""
+        """Advance by one tick.
+
+        Args:
+          schedule: commands (joints,) [rad], each with the number of physics steps of
+            `WorldOptions.timestep_s` for which it acts.
+
+        Returns:
+          The state after the tick; None if the physics diverged.
+        """
         for command, steps in schedule:
             self._drive.send(command)
             self._drive.advance(steps * self._fine)
@@ -65,7 +74,7 @@ class HiddenRobot:
         return self._state(self._world.sense())
 
     def close(self) -> None:
-        """Disconnect the client."""
+        """Disconnect the PyBullet client; the robot cannot be used afterwards."""
         self._world.close()
 
     def _state(self, sense: BodySense) -> BulletState:
@@ -81,10 +90,11 @@ class HiddenRobot:
 
 
 def check_hidden(description: Description, options: WorldOptions) -> None:
-    """Refuse hidden physics that the robot cannot have, before processes start.
+    """Refuse hidden effects that a robot cannot have, before any process starts.
 
     Raises:
-      GroundwalkError: it has no such place, or the engine no such effect.
+      GroundwalkError: the robot does not have an effect's place, or PyBullet cannot
+        compute an effect.
     """
     if not options.hidden:
         return
@@ -95,6 +105,6 @@ def check_hidden(description: Description, options: WorldOptions) -> None:
 
 
 def _effects(options: WorldOptions) -> tuple[Hidden, ...]:
-    """The options' own friction, then the hidden effects, which may override it."""
+    """`options.friction` as an effect, then the hidden ones, which may replace it."""
     sole = Hidden("contact_friction", "feet", {"coefficient": options.friction})
     return (sole, *options.hidden)

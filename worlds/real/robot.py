@@ -1,4 +1,4 @@
-"""One robot of the real world: a body in PyBullet with the sim's servos."""
+"""One robot of the world "real": a body in PyBullet with the motors of the sim."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,20 +16,21 @@ from worlds.soft_ground import FootSpring
 from worlds.world import WorldOptions
 
 OUT_OF_REACH_M = 100.0
-"""Height above the ground at which nothing touches it."""
+"""Height above the start height [m] at which nothing can touch the ground."""
 
 
 @dataclass(frozen=True, eq=False)
 class BulletState:
-    """A robot after a tick.
+    """State of one robot in PyBullet, and its noiseless sensors, after a tick.
 
     Attributes:
       base_pose: (7,) torso position [m] and quaternion w, x, y, z.
       base_velocity: (6,) linear [m/s] in the world, angular [rad/s] in the torso frame.
-      position_rad, velocity_rad_s: (joints,).
+      position_rad, velocity_rad_s: (joints,) state of the joints.
       gyroscope_rad_s: (3,) torso frame.
-      accelerometer_m_s2: (3,) torso frame, over the last physics step.
-      foot_force_n: (8,) over the last physics step.
+      accelerometer_m_s2: (3,) torso frame, mean over the last physics step.
+      foot_force_n: (8,) force on each foot sensor in the last physics step, left foot
+        first.
     """
 
     base_pose: FloatArray
@@ -42,7 +43,7 @@ class BulletState:
 
 
 class BulletRobot:
-    """A robot on its ground, with the sim's motors (`ServoTwin`).
+    """A robot on its ground in PyBullet, with the motors of the sim (`ServoTwin`).
 
     Attributes:
       body: the robot in its PyBullet client.
@@ -51,7 +52,7 @@ class BulletRobot:
     def __init__(
         self, description: Description, ground: Heightfield, options: WorldOptions
     ) -> None:
-        """Connect a client of its own and load robot and ground."""
+        """Connect a PyBullet client of its own, and load robot and ground into it."""
         springs = []
         if options.sinkage_m:
             springs = [FootSpring.sinking(description, options.sinkage_m)]
@@ -72,11 +73,11 @@ class BulletRobot:
         self._servo = ServoTwin(description, options)
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:
-        """Put the robot upright at the origin, its torso at a height, at rest.
+        """Put the robot at rest and upright above the world's origin.
 
         Args:
           pose_rad: (joints,) joint positions.
-          height_m: of the torso above the origin.
+          height_m: height of the torso frame above the origin.
         """
         # One step out of reach first: contacts of the last rollout would linger.
         self.body.reset(pose_rad, height_m + OUT_OF_REACH_M)
@@ -90,10 +91,11 @@ class BulletRobot:
         """Advance by one tick.
 
         Args:
-          schedule: command [rad] (joints,) and for how many physics steps it acts.
+          schedule: commands (joints,) [rad], each with the number of physics steps for
+            which it acts.
 
         Returns:
-          The state after the tick, or None if the physics has blown up.
+          The state after the tick; None if the physics diverged.
         """
         body = self.body
         pose, velocity = body.base_motion()
@@ -111,13 +113,13 @@ class BulletRobot:
         return self._state(pose, velocity, before)
 
     def close(self) -> None:
-        """Disconnect the client."""
+        """Disconnect the PyBullet client; the robot cannot be used afterwards."""
         self.body.close()
 
     def _state(
         self, pose: FloatArray, velocity: FloatArray, before: FloatArray
     ) -> BulletState:
-        """All that is measured, from the torso's motion now and a step before."""
+        """The state, from the torso's pose and its velocities now and a step before."""
         body = self.body
         return BulletState(
             base_pose=pose,

@@ -1,17 +1,16 @@
-"""The servo law of the sim's motors, for an engine that only takes joint torques.
+"""Computes the torque of the sim's MuJoCo motors for a robot that PyBullet steps.
 
-Both worlds must run one servo law, or "nothing is missing" has no meaning. Bullet's
-own position motors are no PD servos, and a PD torque computed at the start of a step
-explodes on light links. The torque here is implicit in velocity, as a stable PD
-(Tan, Liu, Turk 2011, "Stable Proportional-Derivative Controllers"): a MuJoCo model of
-the same robot without contacts takes the same step, and what its motors gave over
-that step, force at the start plus damping times the change of velocity, is the torque.
-So there is one implementation of the motor, MuJoCo's.
+The sim and the real world must have the same motors, or a comparison would find a
+difference where no physics is missing. PyBullet's own position motors are no PD servos,
+and a PD torque computed at the start of a step is unstable on light links. The torque
+here is implicit in velocity (Tan, Liu, Turk 2011, "Stable Proportional-Derivative
+Controllers"): a twin, a MuJoCo model of the same robot without contacts, takes the same
+step, and the torque of its motors over that step is applied in PyBullet: the torque at
+the start minus damping times the change of velocity.
 
-A twin without contacts would compute that a standing leg flies up, and damp that
-motion. Therefore it gets the generalised contact force of the step before, which
-follows from the difference of the robot's and the twin's velocities:
-f = M (v - v_twin) / dt.
+Without contacts the legs of a standing twin would fly up, and its motors would damp
+that motion. Therefore the twin feels the generalised contact force of the step before,
+which follows from the velocities of robot and twin: f = M (v - v_twin) / dt.
 """
 
 import numpy as np
@@ -23,14 +22,17 @@ from worlds.world import WorldOptions
 
 
 class ServoTwin:
-    """The motors of one robot in an engine that only takes joint torques."""
+    """Computes the joint torques of one robot's motors with a MuJoCo twin of the robot.
+
+    The twin is a model without contacts that takes each physics step beforehand.
+    """
 
     def __init__(self, description: Description, options: WorldOptions) -> None:
-        """Make the model without ground.
+        """Compile the twin: a MuJoCo model of the robot without ground.
 
         Args:
           description: the robot.
-          options: time step and whether the base is fixed.
+          options: their time step and fixed base are used.
         """
         import mujoco
 
@@ -44,13 +46,13 @@ class ServoTwin:
         motors = [link.motor for link in description.links]
         self._stall = np.array([motor.stall_torque_nm for motor in motors])
         self._stiffness = np.array([motor.kp_nm_rad for motor in motors])
-        # -dtau/dv of the motor as long as its drive is not saturated, and beyond
+        # -d(torque)/d(velocity) of a motor, without and with a saturated drive
         self._damping = np.array([motor.kd_nm_s_rad for motor in motors])
         self._back_emf = np.array([motor.back_emf_nm_s_rad for motor in motors])
         self._twin_velocity: FloatArray | None = None
 
     def reset(self) -> None:
-        """Forget the last rollout and its contact force: the next step is the first."""
+        """Forget the last rollout: the next step starts without a contact force."""
         self._mujoco.mj_resetData(self._model, self._data)
         self._twin_velocity = None
 
@@ -62,14 +64,15 @@ class ServoTwin:
         velocity_rad_s: FloatArray,
         command_rad: FloatArray,
     ) -> FloatArray:
-        """Joint torques [N m] to hold over the next physics step.
+        """(joints,) torques [N m] to apply over the next physics step.
 
         Args:
-          base_pose: (7,) position [m] and quaternion w, x, y, z; unused if fixed.
-          base_velocity: (6,) linear [m/s] in the world, angular [rad/s] in the torso
-            frame; unused if fixed.
-          position_rad: (joints,) where the joints are.
-          velocity_rad_s: (joints,) how fast they move.
+          base_pose: (7,) torso position [m] and quaternion w, x, y, z; unused with a
+            fixed base.
+          base_velocity: (6,) linear [m/s] in the world frame, angular [rad/s] in the
+            torso frame; unused with a fixed base.
+          position_rad: (joints,) joint positions.
+          velocity_rad_s: (joints,) joint velocities.
           command_rad: (joints,) position targets.
         """
         data, model = self._data, self._model

@@ -1,4 +1,4 @@
-"""The process that computes some robots of the real world."""
+"""Worker process that computes some robots of the world "real" in PyBullet."""
 
 import contextlib
 import os
@@ -21,11 +21,12 @@ STATE_FIELDS = (
     ("position_rad", None),
     ("velocity_rad_s", None),
 )
-"""Columns of a worker's answer and their widths; None stands for one column a joint."""
+"""Fields of `BulletState` in the array that a worker sends back, in order, with their
+numbers of columns; None stands for one column per joint."""
 
 
 def state_columns(joints: int) -> dict[str, slice]:
-    """Columns of each field of `BulletState` in a worker's answer, by name."""
+    """Columns of each field of `BulletState` in the array that a worker sends back."""
     columns, start = {}, 0
     for name, width in STATE_FIELDS:
         end = start + (joints if width is None else width)
@@ -35,17 +36,17 @@ def state_columns(joints: int) -> dict[str, slice]:
 
 
 def serve(connection: Connection) -> None:
-    """Compute robots until told to stop, or until the world's process has ended.
+    """Run a worker process: compute robots until a stop message or a lost connection.
 
     The first message is (description, grounds, options) and has no answer. Then come
     ("start", poses, heights), ("step", active, schedule) or ("stop",). The answer to
-    "start" and "step" is an array (robots, numbers) with the columns of `STATE_FIELDS`;
-    NaN for a robot whose physics has blown up, the old row for one that is not active.
+    "start" and "step" is an array (robots, columns) with the fields of `STATE_FIELDS`:
+    NaN for a robot whose physics diverged, the old row for one that is not active.
 
     Args:
-      connection: to the process of the world.
+      connection: pipe to the process that owns the world.
     """
-    # Ctrl-C reaches all processes; the world's own process ends this one.
+    # Ctrl-C reaches all processes; the process of the world ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # Standard output is for results; Bullet prints to it from C at any time.
     with open(os.devnull, "w") as nowhere:
@@ -56,7 +57,7 @@ def serve(connection: Connection) -> None:
 
 
 def _answer(connection: Connection) -> None:
-    """Make the robots, and answer messages until one says stop; see `serve`."""
+    """Make the robots, and answer messages until "stop"; see `serve`."""
     description, grounds, options = connection.recv()
     kind = HiddenRobot if options.hidden else BulletRobot
     robots = [kind(description, ground, options) for ground in grounds]

@@ -1,4 +1,4 @@
-"""The "real" world: PyBullet on uneven ground, in several processes."""
+"""The world "real": PyBullet computes the robots, in several processes."""
 
 import contextlib
 import multiprocessing
@@ -19,17 +19,18 @@ from worlds.sim.start_height import StartHeight
 from worlds.world import TICK_S, WorldOptions
 
 _PATIENCE_S = 5.0
-"""Time that a process gets to end by itself; it needs some milliseconds."""
+"""How long a worker process may take to end [s] before it is killed; it needs some
+milliseconds."""
 
 
 class RealWorld(RolloutWorld):
-    """n robots in PyBullet, each with a client of its own, spread over processes.
+    """The world "real": n robots, each in a PyBullet client, spread over processes.
 
-    The motors are the sim's (`ServoTwin`), unless the options hide physics. Robot i's
-    rollout has the same bits whatever n is and however many processes run.
+    The motors are the sim's (`ServoTwin`), unless the options have hidden effects.
+    Robot i's rollout has the same bits whatever n is and however many processes run.
 
     Attributes:
-      processes: that compute the robots; none once the world is closed.
+      processes: the worker processes; empty once the world is closed.
 
     Example:
       `worlds.make("real", ...)` makes one; see the beginning of `worlds`.
@@ -42,7 +43,12 @@ class RealWorld(RolloutWorld):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Start the processes and load every robot's ground."""
+        """Start the worker processes and send them their robots and grounds.
+
+        Raises:
+          GroundwalkError: the robot cannot have a hidden effect, the numbers of
+            grounds and seeds differ or are 0, or a process ended.
+        """
         check_hidden(description, options)
         super().__init__(description, grounds, seeds, options)
         workers = min(options.threads or os.cpu_count() or 1, self.n)
@@ -69,7 +75,7 @@ class RealWorld(RolloutWorld):
         self._start_height = StartHeight(description)
 
     def close(self) -> None:
-        """End the processes."""
+        """End the worker processes; the world cannot be used afterwards."""
         for connection in self._connections:
             with contextlib.suppress(OSError):
                 connection.send(("stop",))
@@ -99,7 +105,7 @@ class RealWorld(RolloutWorld):
         )
 
     def _exchange(self, messages: list[tuple[object, ...]]) -> None:
-        """Send each process its message, and keep the rows of their answers."""
+        """Send each worker its message, and store the rows of states they answer."""
         self._send(messages)
         with self._closed_if_one_ended():
             self._rows = np.concatenate([c.recv() for c in self._connections])

@@ -1,4 +1,4 @@
-"""The deterministic world: MuJoCo, many robots in one batch.
+"""The deterministic world "sim": MuJoCo computes many robots in one batch.
 
 Example:
   `worlds.make("sim", ...)` makes a `SimWorld`; see the beginning of `worlds`.

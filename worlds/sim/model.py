@@ -17,21 +17,22 @@ if TYPE_CHECKING:
     import mujoco
 
 ROOT_QPOS, ROOT_QVEL = 7, 6
-"""Numbers of a floating base in MuJoCo's position and velocity vectors."""
+"""How many entries of MuJoCo's `qpos` (x, y, z, quaternion) and `qvel` (linear, angular
+velocity) belong to a floating base; those of the joints follow."""
 _BASE_THICKNESS_M = 1.0
-"""Thickness of a heightfield below its lowest point: thick enough that no foot gets
-through in one step."""
+"""Thickness of a heightfield below its lowest point [m], so that no foot can pass
+through it in one physics step."""
 
 
 def mujoco_model(
     description: Description, options: WorldOptions, ground: Heightfield | None
 ) -> "mujoco.MjModel":
-    """The robot on a ground, or without any.
+    """Compile a MuJoCo model of a robot, with or without ground.
 
     Args:
       description: the robot.
-      options: time step, friction, softness, fixed base.
-      ground: under the robot; None for no ground.
+      options: their time step, friction, sinkage and fixed base are used.
+      ground: the ground under the robot; None for no ground.
     """
     grounds = [] if ground is None else [ground]
     model = world_spec(description, options, grounds).compile()
@@ -44,16 +45,16 @@ def mujoco_model(
 def world_spec(
     description: Description, options: WorldOptions, grounds: Sequence[Heightfield]
 ) -> "mujoco.MjSpec":
-    """The robot on several grounds at once, as a specification that can be edited.
+    """Make a MuJoCo specification, not yet compiled, of a robot and any grounds.
 
     Args:
       description: the robot.
-      options: time step, friction, fixed base.
-      grounds: under the robot; their geoms are named by `ground_name`.
+      options: their time step, friction and fixed base are used.
+      grounds: all become geoms in the one world, named by `ground_name`.
     """
     import mujoco
 
-    quiet_mujoco()  # worlds report a blow-up themselves
+    quiet_mujoco()  # a world reports itself that its physics diverged
     spec = mujoco_spec(description)
     spec.option.timestep = options.timestep_s
     # A diverged robot must show its NaN instead of starting again unnoticed.
@@ -71,17 +72,17 @@ def world_spec(
 
 
 def ground_name(number: int) -> str:
-    """Name of the geom of a ground, given by its number from 0."""
+    """Name of the MuJoCo geom of the ground with this number, counted from 0."""
     return f"ground_{number}" if number else "ground"
 
 
 def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
-    """Add ground to a specification: a plane if it is flat, else a heightfield.
+    """Add ground to a MuJoCo specification: a plane if it is flat, else a heightfield.
 
     Args:
       spec: a `mujoco.MjSpec`; changed.
       ground: heights in the world frame.
-      name: of the geom.
+      name: name of the new geom.
     """
     import mujoco
 
@@ -116,7 +117,11 @@ def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
 
 
 def touch_shares(description: Description) -> FloatArray:
-    """(touch sensors, 8) shares of each contact point's force in each foot sensor."""
+    """(touch sensors, 8) share of each touch sensor's force in each foot sensor.
+
+    The model has a touch sensor at each contact point of a sole; a robot has four force
+    sensors in each foot, the left foot's first.
+    """
     left, right = (contact_shares(foot) for foot in description.feet)
     shares = np.zeros((len(left) + len(right), 8))
     shares[: len(left), :4], shares[len(left) :, 4:] = left, right

@@ -1,4 +1,4 @@
-"""The height of the torso at which a robot stands on its ground."""
+"""Computes the torso height at which a robot in a given pose stands on its ground."""
 
 from collections.abc import Sequence
 
@@ -13,10 +13,10 @@ from worlds.world import WorldOptions
 
 
 class StartHeight:
-    """Finds the height at which an upright robot's lower sole just touches."""
+    """Finds the torso height at which an upright robot's lower sole just touches."""
 
     def __init__(self, description: Description) -> None:
-        """Compile the robot without any ground."""
+        """Compile a MuJoCo model of the robot for forward kinematics."""
         import mujoco
 
         self._mujoco = mujoco
@@ -33,7 +33,7 @@ class StartHeight:
     def heights_m(
         self, pose_rad: FloatArray, grounds: Sequence[Heightfield]
     ) -> FloatArray:
-        """(n,) height of each torso above the world's origin.
+        """(n,) height of each torso above the world's origin [m].
 
         Args:
           pose_rad: (n, joints) joint positions.

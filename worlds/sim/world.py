@@ -1,4 +1,4 @@
-"""The deterministic world: MuJoCo, many robots in one batch."""
+"""The deterministic world "sim": MuJoCo computes many robots in one batch."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -25,12 +25,13 @@ if TYPE_CHECKING:
 
 
 class SimWorld(RolloutWorld):
-    """n robots in `mujoco.batch.Batch`, each on its own ground.
+    """The world "sim": n robots in one `mujoco.batch.Batch`, each on its own ground.
 
     Robot i's rollout has the same bits whatever n is and however many threads run.
 
     Attributes:
-      qvel: (n, v) velocities of all degrees of freedom, a live view of the batch.
+      qvel: (n, v) velocities of all v degrees of freedom [rad/s; m/s]; a live view of
+        MuJoCo's data.
 
     Example:
       `worlds.make("sim", ...)` makes one; see the beginning of `worlds`.
@@ -43,7 +44,12 @@ class SimWorld(RolloutWorld):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Compile a model for each distinct ground, and make the batch."""
+        """Compile a model for each distinct ground, and make the batch of n robots.
+
+        Raises:
+          BadValueError: the options have hidden effects, or the numbers of grounds and
+            seeds differ or are 0.
+        """
         if options.hidden:
             raise BadValueError("a sim has no hidden physics; only the real world can")
         super().__init__(description, grounds, seeds, options)
@@ -58,10 +64,10 @@ class SimWorld(RolloutWorld):
         self._start_height = StartHeight(description)
 
     def close(self) -> None:
-        """Nothing has to be freed."""
+        """Do nothing: a batch has no process to end, and Python frees its memory."""
 
     def _made_batch(self) -> "Batch":
-        """One simulation per robot, each with the robot's own ground."""
+        """Make a batch with a simulation for each robot on its own ground."""
         from mujoco.batch import Batch
 
         models = {
@@ -93,7 +99,7 @@ class SimWorld(RolloutWorld):
             self._run(steps)
 
     def _run(self, steps: int) -> None:
-        """Compute physics steps of the active robots; those that blow up become NaN."""
+        """Advance the active robots by physics steps; NaN marks those that diverge."""
         from mujoco.batch import SimulationError
 
         try:
@@ -102,7 +108,7 @@ class SimWorld(RolloutWorld):
             self._qpos[error.ids] = np.nan
 
     def _read(self) -> tuple[Truth, Observation]:
-        """Positions and velocities of now; forces and acceleration of the last step."""
+        """Current positions and velocities; forces, acceleration of the last step."""
         touch = len(self._shares)
         truth = self._read_truth()
         observation = Observation(
@@ -130,7 +136,10 @@ class SimWorld(RolloutWorld):
         )
 
     def _foot_forces(self) -> FloatArray:
-        """(n, 8) shares of the touch forces, summed in one order for every n."""
+        """(n, 8) force on each foot sensor [N].
+
+        A loop sums in the same order for every n, so that rounding is the same, too.
+        """
         touch = self._sensors[:, : len(self._shares)]
         forces = np.zeros((self.n, self._shares.shape[1]))
         for k, shares in enumerate(self._shares):
