@@ -1,1 +1,1 @@
-"""Benchmarks of speed, as ratios of times, which hardly depend on the machine."""
+"""Speed benchmarks; their results are ratios of times, which suit any machine."""

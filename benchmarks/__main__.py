@@ -1,4 +1,4 @@
-"""`make bench`: runs every benchmark; the exit status is 0 if all pass, else 1."""
+"""Runs all benchmarks (`make bench`); the exit status is 0 if all pass, else 1."""
 
 import sys
 

@@ -1,10 +1,10 @@
-"""Benchmark: time to fit one candidate effect, the diagnosis against mujoco.sysid.
+"""Benchmark: time to fit the friction of a joint, diagnosis against mujoco.sysid.
 
-Both fit viscous and dry friction of one joint of the NAO at a time to the same
-recording. The diagnosis fits the candidates of all joints side by side: each replay and
-each finite difference is a row of one batch. mujoco.sysid fits one candidate after the
-other with its own finite differences, on as many threads. Both run until they converge;
-the benchmark checks that both find the hidden friction.
+A candidate is viscous and dry friction of one joint of the NAO; both programs fit each
+candidate to the same recording. The diagnosis fits the candidates of all joints side by
+side: each replay and each finite difference is a row of one batch. mujoco.sysid fits
+one candidate after the other with its own finite differences, on as many threads. Both
+run until they converge; the benchmark checks that both find the hidden friction.
 """
 
 import contextlib
@@ -32,20 +32,20 @@ JOINTS = ("LKneePitch", "LHipRoll", "LAnklePitch", "LShoulderRoll",
           "RKneePitch", "RHipRoll", "RAnklePitch", "RShoulderRoll")  # fmt: skip
 EFFECTS = ("viscous_friction", "coulomb_friction")
 HIDDEN_VALUE = 0.2
-"""Hidden viscous friction [N m s/rad]."""
+"""Viscous friction [N m s/rad] that the recorded joint has and the model lacks."""
 
 HIDDEN = (f"viscous_friction@LKneePitch:coefficient={HIDDEN_VALUE}",)
 DURATION_S, ROUNDS = 4.0, 3
 MOST = 1.0
-"""Largest ratio of times that passes."""
+"""Largest ratio of times, diagnosis to mujoco.sysid, that passes the benchmark."""
 
 ALIKE = 0.5
-"""Tolerance as a share of the hidden value. It is wide because mujoco.sysid's models
-keep the error of the integrator."""
+"""Largest relative error of a fitted friction that counts as found. It is large because
+mujoco.sysid's models keep the error of the integrator."""
 
 
 def measure() -> list[float]:
-    """Time of one candidate's fit divided by mujoco.sysid's, for each round."""
+    """Time of the diagnosis divided by that of mujoco.sysid, per fit, in each round."""
     plant, traces = _recording()
     predictor = Predictor(plant, traces, shared_channels(plant, traces), threads=1)
     predictor.calibrate()
@@ -62,7 +62,7 @@ def measure() -> list[float]:
 
 
 def report(ratios: list[float]) -> tuple[str, bool]:
-    """The report's text, and whether the median ratio passes."""
+    """Text that reports the ratios of times, and whether their median passes."""
     line, passes = judged("time against mujoco.sysid's fit", ratios, "at most", MOST)
     return (
         f"fit of a candidate, {len(EFFECTS)} parameters, {DURATION_S:g} s of the NAO, "
@@ -96,7 +96,7 @@ def _of(free: list[FreeParameter], joint: str) -> list[FreeParameter]:
 
 
 def _check_found(predictor: Predictor, model: Model, free: list[FreeParameter]) -> None:
-    """Check that both fits find the hidden friction, that is, do the same work."""
+    """Check that both programs find the hidden viscous friction."""
     fit = fit_all(predictor, [model])[0]
     ours = next(p.values[0] for p in fit.model if p.name == EFFECTS[0])
     counts, _ = fitted(predictor.plant, predictor.traces, free)

@@ -1,9 +1,9 @@
-"""Benchmark: time of the control loop compared with the bare physics.
+"""Benchmark: speed of the control loop compared with the bare physics.
 
-The same 150 walks are computed in three ways, in turn, several times:
-- loop: `walk_trials`, that is walk engine and sim, as the search uses them;
-- bare: only `Batch.step` of the same model, which replays the loop's commands;
-- single: `mj_step` of one robot after the other, for a few of the robots.
+The same 150 walks are computed in three ways, in turn, in several rounds:
+- loop: `walk_trials`, that is walk engine and sim, as the gait search uses them;
+- bare: only `Batch.step` of MuJoCo with the same model and the loop's commands;
+- single: `mj_step` of MuJoCo for one robot after the other, for a few of the robots.
 """
 
 import statistics
@@ -33,19 +33,20 @@ TICKS = 200
 ROUNDS = 9
 SINGLES = 6
 PASS = 0.85
-"""Smallest throughput of the loop, as a share of the bare physics', that passes."""
+"""Smallest speed of the control loop, as a share of the bare physics' speed, with which
+the benchmark passes."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """Times of one round [s].
+    """Times [s] that one round of the benchmark took.
 
     Attributes:
-      loop: the control loop: engine, physics and everything between.
-      engine: time within the loop spent in `WalkEngine.step`.
-      physics: time within the loop spent in `Batch.step`.
-      bare: the replay of the same commands by `Batch.step` alone.
-      single: the same number of steps, one robot at a time.
+      loop: the whole control loop: walk engine, physics and everything between.
+      engine: part of `loop` spent in `WalkEngine.step`.
+      physics: part of `loop` spent in MuJoCo's `Batch.step`.
+      bare: replay of the loop's commands by `Batch.step` alone.
+      single: replay of the loop's commands by `mj_step`, one robot at a time.
     """
 
     loop: float
@@ -56,7 +57,7 @@ class Timing:
 
 
 class _Stopwatch:
-    """Adds up the time spent in a method, while the block runs."""
+    """Context manager that adds up the time spent in a method of a class [s]."""
 
     def __init__(self, owner: Any, name: str) -> None:
         self.seconds = 0.0
@@ -80,7 +81,7 @@ class _Stopwatch:
 
 
 def measure() -> list[Timing]:
-    """Time all three ways in turn, `ROUNDS` times after one round of warming up."""
+    """Time the loop and both replays in `ROUNDS` rounds, after a round to warm up."""
     description = robots.get("nao")
     ground = terrain.make("flat", 0)
     seeds = [np.random.SeedSequence(0)] * ROBOTS
@@ -108,7 +109,7 @@ def measure() -> list[Timing]:
 
 
 def report(rounds: list[Timing]) -> tuple[str, bool]:
-    """The report's text, and whether the loop is fast enough."""
+    """Text that reports the times, and whether the control loop is fast enough."""
     ratios = [t.bare / t.loop for t in rounds]
     line, passes = judged(
         "throughput against bare Batch.step", ratios, "at least", PASS
@@ -130,7 +131,7 @@ def report(rounds: list[Timing]) -> tuple[str, bool]:
 
 
 def _walks() -> FloatArray:
-    """Vectors (150, 16) of gaits near the start gait, which walk without falling."""
+    """Vectors (150, 16) of gaits near the gait "start", which walk without falling."""
     unit = to_unit(gaits.get("start").to_vector())
     noise = np.random.default_rng(0).normal(0, 0.01, (ROBOTS, len(PARAMETERS)))
     return from_unit(np.clip(unit + noise, 0, 1))
@@ -141,7 +142,7 @@ def _rules() -> TrialRules:
 
 
 def _commands(world: SimWorld, walks: FloatArray) -> list[FloatArray]:
-    """The loop's commands (n, joints) [rad] of every tick; no robot may fall."""
+    """Commands (n, joints) [rad] of every tick of the walks; no robot may fall."""
     engine = WalkEngine(robots.biped(world.description), walks)
     seen = world.reset(engine.start_pose())
     commands = []
@@ -156,7 +157,7 @@ def _commands(world: SimWorld, walks: FloatArray) -> list[FloatArray]:
 
 
 def _started(world: SimWorld, walks: FloatArray, model: mujoco.MjModel) -> Batch:
-    """A new batch in the state in which the trials begin."""
+    """Make a MuJoCo batch of all robots in the state in which the walks begin."""
     pose_rad = WalkEngine(robots.biped(world.description), walks).start_pose()
     world.reset(pose_rad)
     batch = Batch(model, ROBOTS, world.options.threads)

@@ -1,9 +1,10 @@
 """Benchmark: time of the control loop with and without an action transformer.
 
-The same 150 walks are computed in the plain sim, and in the sim behind SGAT with blocks
-of residuals, in turn. The transformer computes everything, but with a smoothing of 0 it
-returns the gait's own commands, so that both loops do the same physics. Its models have
-their usual size; that they are fitted to few walks does not change their cost.
+The same 150 walks are computed in turn in the plain sim and in the sim whose commands
+pass through an SGAT transformer with block noise. The transformer computes everything,
+but with a smoothing of 0 it returns the gait's own commands, so that both loops do the
+same physics. Its models have their usual size and are fitted to few walks, which does
+not change the time that they take.
 """
 
 import dataclasses
@@ -34,11 +35,11 @@ TICKS = 200
 ROUNDS = 7
 BLOCK_TICKS, MEMBERS = 50, 4
 MOST = 1.15
-"""Largest ratio of times that passes."""
+"""Largest ratio of times, with transformer to without, that passes the benchmark."""
 
 
 def measure() -> list[float]:
-    """Time with grounding divided by time without, for each round."""
+    """Time with action transformer divided by the time without, in each round."""
     description = robots.get("nao")
     seeds = np.random.SeedSequence(1).spawn(ROBOTS)
     grounds = [terrain.make("flat", 0)] * ROBOTS
@@ -57,7 +58,7 @@ def measure() -> list[float]:
 
 
 def report(ratios: list[float]) -> tuple[str, bool]:
-    """The report's text, and whether the median ratio passes."""
+    """Text that reports the ratios of times, and whether their median passes."""
     line, passes = judged("time against the ungrounded one", ratios, "at most", MOST)
     return (
         f"grounded control loop of {ROBOTS} robots, {TICKS} ticks, {ROUNDS} rounds\n"
@@ -66,7 +67,7 @@ def report(ratios: list[float]) -> tuple[str, bool]:
 
 
 def _transformer() -> ActionTransformer:
-    """An SGAT transformer with an ensemble and blocks of noise, as the NAO study's."""
+    """Fit an SGAT transformer like that of the NAO study: ensemble and block noise."""
     description = robots.get("nao")
     senses = leg_senses(description)
     vectors = GaitCloud().draw(gaits.get("start"), 8, np.random.SeedSequence(2))

@@ -22,9 +22,9 @@ def judged(
     """Compare the median of ratios with a bound.
 
     Args:
-      name: name of the ratio.
-      ratios: its value in each round.
-      side: the side of the bound on which the median must be.
+      name: name of the ratio in the report.
+      ratios: the ratio in each round.
+      side: whether the median must be "at least" or "at most" the bound.
       bound: the bound.
 
     Returns:

@@ -1,10 +1,10 @@
-"""Draws the rooms of the project as its import contracts have them.
+"""Draws the project's packages ("rooms") and subpackages ("shelves") as a picture.
 
     python docs/draw_rooms.py docs/architecture.png
 
-A room stands above those that it may import; in a large room so do its shelves. Both
-come from the contracts in pyproject.toml, which `make lint` checks, so that the picture
-cannot say what the code does not do.
+A package is drawn above the packages that it may import; inside a large package the
+same holds for its subpackages. The order comes from the import-linter contracts in
+pyproject.toml, which `make lint` checks, so that the picture agrees with the code.
 """
 
 import ast
@@ -24,22 +24,23 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).resolve().parents[1]
 
 WIDTH, LINE, TITLE, GAP = 12.0, 0.3, 0.42, 0.22
-"""Width of the picture, heights of a row of shelves and of a room's name, and the space
-between rooms, all in inches."""
+"""Width of the picture, height of a row of subpackages, height of a package's name, and
+space between packages, all in inches."""
 MOST_SAID = 70
-"""Characters of a room's purpose that fit beside its name."""
+"""Longest description of a package, in characters, that fits beside its name."""
 ROOM, SHELF = "#dce6f2", "#ffffff"
 
 Floors = list[list[str]]
-"""From the top down; what stands on one floor does not import its neighbours."""
+"""Names of packages or subpackages in rows from the top down: each may import those of
+lower rows, but not those of its own row."""
 
 
 def floors(layers: Sequence[str]) -> Floors:
-    """The layers of a contract: names on each floor.
+    """Split the layers of an import-linter contract into rows of package names.
 
     Args:
-      layers: as import-linter has them, such as "sgat | diagnosis"; a layer that may be
-        missing stands in brackets.
+      layers: layers from the top down, such as "sgat | diagnosis"; brackets mark a
+        package that may be missing.
     """
     return [
         [name.strip(" ()") for name in layer.replace(":", "|").split("|")]
@@ -48,7 +49,7 @@ def floors(layers: Sequence[str]) -> Floors:
 
 
 def read_contracts() -> tuple[Floors, dict[str, Floors]]:
-    """The floors of the house, and of each room that has a contract of its own."""
+    """Read pyproject.toml: rows of packages, and rows of each package's subpackages."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())
     house: Floors = []
     shelves: dict[str, Floors] = {}
@@ -67,7 +68,7 @@ def read_contracts() -> tuple[Floors, dict[str, Floors]]:
 
 
 def shelves_of(rows: Floors) -> Floors:
-    """The shelves of a room, from a contract that names modules: each shelf once."""
+    """Rows of subpackage names, each name once, from rows of dotted module names."""
     seen: set[str] = set()
     found: Floors = []
     for row in rows:
@@ -78,23 +79,23 @@ def shelves_of(rows: Floors) -> Floors:
 
 
 def says(room: str) -> str:
-    """What a room is for: the part of its docstring's first line before a colon."""
+    """Purpose of a package: first line of its docstring, up to a colon if too long."""
     docstring = ast.get_docstring(ast.parse((ROOT / room / "__init__.py").read_text()))
     first = (docstring or "").splitlines()[0].rstrip(".")
     return first if len(first) < MOST_SAID else first.partition(":")[0]
 
 
 def height(room: str, shelves: dict[str, Floors]) -> float:
-    """Of a room's box [in]."""
+    """Height of a package's box in the picture [in]."""
     return TITLE + LINE * len(shelves.get(room, ())) + 0.08
 
 
 def draw(house: Floors, shelves: dict[str, Floors], path: Path) -> None:
-    """Write the picture.
+    """Write the picture of the packages.
 
     Args:
-      house: rooms, floor by floor.
-      shelves: of the rooms that have any.
+      house: rows of packages, from the top down.
+      shelves: rows of subpackages, by the name of their package.
       path: PNG file.
     """
     heights = [max(height(room, shelves) for room in floor) for floor in house]
@@ -122,7 +123,14 @@ def draw(house: Floors, shelves: dict[str, Floors], path: Path) -> None:
 def _draw_shelves(
     axes: "Axes", rows: Floors, corner: tuple[float, float], wide: float
 ) -> None:
-    """Each row of shelves below the room's name, from the upper left corner [in]."""
+    """Draw the rows of subpackages of one package.
+
+    Args:
+      axes: the picture.
+      rows: rows of subpackages, from the top down.
+      corner: upper left corner of the first row [in].
+      wide: width of the package's box [in].
+    """
     left, top = corner
     for k, row in enumerate(rows):
         each = (wide - 0.2) / len(row)

@@ -2,8 +2,8 @@
 
     python examples/custom_effect.py --folder runs/water
 
-A pendulum swings in water, which brakes with the square of the speed. No effect of the
-library does that; the class below describes it.
+A pendulum swings in water, whose drag grows with the square of the speed. None of the
+built-in effects does; the class `WaterDrag` describes it.
 """
 
 from pathlib import Path
@@ -29,25 +29,31 @@ PENDULUM = """<mujoco><option timestep="0.001"/><worldbody><body name="rod">
 
 
 class WaterDrag(Effect):
-    """A torque -c v|v| at a joint, as water brakes a paddle."""
+    """Drag of water on a joint of speed v [rad/s]: a torque -c v|v| [N m]."""
 
     name, place_kind, native = "water_drag", "joint", True
 
     def places(self, plant, traces):
-        """Any joint."""
+        """Places where the effect may be: every joint of the robot."""
         return plant.joints
 
     def parameters(self, plant, place):
-        """The coefficient c: its bounds, its value for no effect, a first guess."""
+        """The coefficient c of the drag: unit, bounds, no-drag value, first guess."""
         return (Parameter("coefficient", "N m s^2/rad^2", 0.0, 5.0, 0.0, 0.1),)
 
     def apply(self, variants, row, place, values):
-        """Set the second coefficient of MuJoCo's joint damping."""
+        """Add the drag to a row of the batch: MuJoCo's second damping coefficient."""
         variants.field("dof_dampingpoly")[row, variants.dof(place), 0] += values[0]
 
 
 def swing(path: Path, duration: float, seed: int) -> None:
-    """Record a pendulum that follows random commands in water."""
+    """Record a pendulum in water that follows random commands.
+
+    Args:
+      path: file of the recording.
+      duration: length of the recording [s].
+      seed: seed of the commands and of the sensor noise.
+    """
     model = mujoco.MjModel.from_xml_string(PENDULUM.format(water=0.3))
     data, rng, rows = mujoco.MjData(model), np.random.default_rng(seed), []
     pace = rng.uniform(3, 9, 3)

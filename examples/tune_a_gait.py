@@ -1,4 +1,4 @@
-"""Tune a gait in the sim, and see at once how it walks in both worlds.
+"""Tune a gait in the sim (MuJoCo), then try it there and in PyBullet.
 
 python examples/tune_a_gait.py --out runs/tuned --population 150 --generations 15
 """
@@ -12,10 +12,10 @@ from walk_engine import Gait
 def main(
     out: Path, population: int = 24, generations: int = 5, trials: int = 3
 ) -> Gait:
-    """Tune a gait. The results are in the run's folder: open report.html first.
+    """Tune a gait. The results are in the folder `out`: open report.html first.
 
     Args:
-      out: folder of the run, a new one.
+      out: new folder for the results.
       population: gaits tried in each generation.
       generations: number of generations.
       trials: trials of the start gait and of the tuned one, in each world.

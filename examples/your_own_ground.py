@@ -19,7 +19,7 @@ from walk_engine import gaits
 def main(
     image: Path | None = None, height_m: float = 0.01, limit_s: float = 10.0
 ) -> Trials:
-    """Walk from the middle of the left edge to the right, in the real world.
+    """Walk in the real world (PyBullet) from the picture's left edge to the right.
 
     Args:
       image: a PNG file; without one, the ground has small waves.

@@ -1,10 +1,10 @@
-"""Diagnose recordings: find the physics that they show and the model lacks.
+"""Diagnose recordings: find physics that they show and the robot's model lacks.
 
     python examples/your_own_recording.py --folder runs/dirt
 
 This example makes its own recordings: a pendulum in PyBullet with dirt in its hinge.
-Your own are files in the format of docs/recordings.md, which `worlds.write_recording`
-writes from NumPy arrays.
+Recordings of your own robot are files in the format of docs/recordings.md, which
+`worlds.write_recording` writes from NumPy arrays.
 """
 
 from pathlib import Path

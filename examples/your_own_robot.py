@@ -17,7 +17,7 @@ from walk_engine import gaits
 
 
 def main(robot: Path | None = None, limit_s: float = 7.5) -> Trials:
-    """Walk straight ahead on flat ground in the sim.
+    """Walk straight ahead on flat ground in the sim (MuJoCo).
 
     Args:
       robot: the robot's file; without one, a NAO whose torso has twice the mass.

@@ -1,6 +1,7 @@
 """The ground floor: small modules that every other package may import.
 
-Errors, array types, JSON of dataclasses, atomic files, gravity and BLAS threads.
+Errors, NumPy array types, JSON of dataclasses, atomic file writing, gravity, limits on
+BLAS threads, and packages that import their modules lazily.
 """
 
 __version__ = "0.1.0"

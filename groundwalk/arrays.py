@@ -1,4 +1,4 @@
-"""NumPy array types for signatures: floats, indices and flags."""
+"""NumPy array types for signatures: float64 numbers, indices and booleans."""
 
 import numpy as np
 import numpy.typing as npt

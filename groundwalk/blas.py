@@ -11,17 +11,11 @@ Result = TypeVar("Result")
 
 
 def one_blas_thread(function: Callable[Given, Result]) -> Callable[Given, Result]:
-    """Make a function whose result does not depend on the number of cores.
+    """Decorator: run a function with BLAS on one thread, whatever the number of cores.
 
-    Several BLAS threads add numbers in another order, so that a fit or a search may end
-    at other values. The limit applies to libraries that are loaded when the function
-    is called.
-
-    Args:
-      function: any function.
-
-    Returns:
-      A function with the same arguments and result.
+    The order in which BLAS adds numbers depends on its number of threads, and with it
+    the last bits of a sum, so that a fit or a search may end at other values. The limit
+    applies to BLAS libraries that are already loaded when the function is called.
     """
 
     @wraps(function)

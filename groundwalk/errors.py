@@ -1,4 +1,4 @@
-"""Errors that a user can cause: one base class, and a common wording.
+"""Errors that a user can cause: one base class, and messages of one form.
 
 A message says in one line what was wrong, what would be right and, where a name
 was misspelt, the nearest one that exists. The command line turns every
@@ -9,8 +9,8 @@ import difflib
 from collections.abc import Iterable
 
 _LEAST_LIKENESS = 0.5
-"""Share of equal letters (`difflib`'s ratio) from which on a name is suggested. Typing
-errors give more than 0.8; insensitive between 0.4 and 0.6."""
+"""Smallest similarity, `difflib.SequenceMatcher.ratio` from 0 to 1, at which a known
+name is suggested. Typing errors give more than 0.8; any value from 0.4 to 0.6 works."""
 
 
 class GroundwalkError(Exception):
@@ -18,14 +18,14 @@ class GroundwalkError(Exception):
 
 
 class UnknownNameError(GroundwalkError):
-    """A name is not one of those that are known; the message suggests the nearest."""
+    """A name is unknown; the message lists the known ones and suggests the nearest."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
-        """Word the message.
+        """Compose the message.
 
         Args:
-          kind: what the name should stand for, for example "robot".
-          name: the name that was given.
+          kind: the kind of thing that the name should stand for, for example "robot".
+          name: the unknown name.
           known: every name that would have been right.
         """
         names = sorted(known)
@@ -39,13 +39,10 @@ class UnknownNameError(GroundwalkError):
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The known name that resembles a name most; None if none is like it.
+    """Find the known name most similar to a given one; None if none is similar.
 
-    Capital letters do not count, unless two names resemble it alike.
-
-    Args:
-      name: as it was given.
-      known: names that exist.
+    Upper and lower case count only to choose between two names that are equally similar
+    without them.
 
     Example:
       >>> nearest_name("LKnePitch", ["RKneePitch", "LKneePitch"])
@@ -72,8 +69,8 @@ class BadRecordingError(GroundwalkError):
 
 
 class BadModelError(GroundwalkError):
-    """A file holds no model, or another kind of model than was asked for."""
+    """A file holds no robot model, or another kind of model than the caller needs."""
 
 
 class RunFolderError(GroundwalkError):
-    """A run folder exists already, is missing, or is not of the expected kind."""
+    """The folder of a run exists already, is missing or belongs to another command."""

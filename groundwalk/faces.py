@@ -8,11 +8,13 @@ from typing import Any
 def lazy_face(
     package: str, modules: Mapping[str, Iterable[str]]
 ) -> Callable[[str], Any]:
-    """Make the `__getattr__` of a package (PEP 562), so that importing it stays quick.
+    """Make a package's `__getattr__` (PEP 562) that imports public names on first use.
+
+    Importing the package itself then stays quick.
 
     Args:
       package: the package's `__name__`.
-      modules: public names, by the module within the package that defines them.
+      modules: for each module, its path relative to the package and its public names.
 
     Example:
       >>> __getattr__ = lazy_face(__name__, {"traces.trace": ["Trace"]})

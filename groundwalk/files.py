@@ -7,9 +7,7 @@ from pathlib import Path
 def write_bytes(path: Path, content: bytes) -> None:
     """Write a file atomically: to a temporary file beside it, which is then renamed.
 
-    Args:
-      path: the file; its folder is made if it does not exist.
-      content: all bytes of the file.
+    The file's folder is made if it does not exist.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.name}.partial")
@@ -21,10 +19,8 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def write_text(path: Path, content: str) -> None:
-    """Write a text file in UTF-8 atomically, as `write_bytes` does.
+    """Write a UTF-8 text file atomically: to a temporary file, which is then renamed.
 
-    Args:
-      path: the file; its folder is made if it does not exist.
-      content: the whole text.
+    The file's folder is made if it does not exist.
     """
     write_bytes(path, content.encode())

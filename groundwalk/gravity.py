@@ -1,4 +1,4 @@
-"""Gravity, as both simulated worlds have it."""
+"""The gravity of both simulated worlds, MuJoCo and PyBullet."""
 
 GRAVITY_M_S2 = 9.81
-"""Standard gravity, rounded to two digits as MuJoCo and PyBullet users do."""
+"""Acceleration of gravity [m/s^2]: standard gravity 9.80665, rounded as MuJoCo does."""

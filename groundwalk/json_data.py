@@ -1,8 +1,8 @@
-"""Frozen dataclasses as JSON and back, with unknown, missing and wrong parts refused.
+"""Converts frozen dataclasses to JSON and back, checking every key and value.
 
 The fields of such a dataclass may be numbers, text, true or false, paths, tuples,
-mappings with text as keys, words out of a `Literal`, other dataclasses, or any of
-these or None. Whatever is wrong in a file is told in one line that names the key.
+mappings with text as keys, words of a `Literal`, other dataclasses, or any of
+these or None. An error message says in one line what is wrong and names the key.
 
 Example:
   >>> from dataclasses import dataclass
@@ -30,14 +30,14 @@ from groundwalk.json_kinds import WrongPartError, converter, is_number
 Kind = TypeVar("Kind")
 
 NOT_IN_JSON: Mapping[str, bool] = {"json": False}
-"""Metadata of a dataclass field with a default that JSON does not hold."""
+"""`metadata` for a dataclass field that is left out of JSON; it needs a default."""
 
 
 def to_plain(value: Any) -> Any:
     """Turn a dataclass into dictionaries, lists, numbers and text, field by field.
 
-    Numbers of fields declared as `float` become floats, NumPy's among them; paths
-    become text.
+    A number in a field declared as `float` becomes a Python float, even if it is an int
+    or a NumPy number; paths become text.
     """
     return converter(True).unstructure(value)
 
@@ -45,17 +45,17 @@ def to_plain(value: Any) -> Any:
 def from_plain(
     kind: type[Kind], value: object, where: str, complete: bool = True
 ) -> Kind:
-    """Make a dataclass of plain values; undoes `to_plain`.
+    """Make a dataclass from dictionaries, lists, numbers and text; undoes `to_plain`.
 
     Args:
       kind: a dataclass, or any type that a field of one may have.
-      value: plain values as `json.loads` gives them.
-      where: how a message names the value, such as "verdict".
-      complete: refuse keys that are missing even if their field has a default.
+      value: the value as `json.loads` returns it.
+      where: name of the value in error messages, such as "verdict".
+      complete: refuse a missing key even if its field has a default.
 
     Raises:
       BadValueError: a key is unknown or missing, or a value is of the wrong kind.
-      GroundwalkError: whatever the dataclass itself raises for a value it refuses.
+      GroundwalkError: the dataclass itself refuses a value.
     """
     try:
         return converter(complete).structure(value, kind)
@@ -64,14 +64,14 @@ def from_plain(
 
 
 def parse_json(text: str | bytes, where: str) -> Any:
-    """Read JSON text, without NaN and infinities.
+    """Read JSON text.
 
     Args:
       text: the text.
-      where: how a message names it, such as "oracle".
+      where: name of the text in error messages, such as "oracle".
 
     Raises:
-      BadValueError: it is no JSON.
+      BadValueError: the text is not JSON, or it contains NaN or an infinity.
     """
     try:
         return json.loads(text, parse_constant=_refuse_constant)
@@ -83,15 +83,16 @@ def parse_object(text: str | bytes, where: str, version: int) -> dict[str, objec
     """Read JSON text that holds one object with a "format" key.
 
     Args:
-      text: JSON without NaN and infinities.
-      where: how a message names the text, such as "metadata".
-      version: the only number that "format" may be.
+      text: the text.
+      where: name of the text in error messages, such as "metadata".
+      version: the only format number that is accepted.
 
     Returns:
-      The object without its "format".
+      The object without its "format" key.
 
     Raises:
-      BadValueError: it is no JSON, no object, or of another format.
+      BadValueError: the text is not JSON, contains NaN or an infinity, is no object, or
+        its "format" is missing or another number.
     """
     plain = parse_json(text, where)
     if not isinstance(plain, dict):
@@ -108,8 +109,8 @@ def check_number(name: str, value: float, low: float, high: float = math.inf) ->
     """Refuse a value that is no finite number between two inclusive bounds.
 
     Args:
-      name: how the message names the value.
-      value: the number.
+      name: name of the value in the error message.
+      value: the value to be checked.
       low: the smallest number allowed.
       high: the largest number allowed.
 
@@ -127,7 +128,13 @@ def _refuse_constant(constant: str) -> NoReturn:
 
 
 def _one_line(error: BaseException, where: str) -> GroundwalkError:
-    """The first error of a group, with the way to the key where it happened."""
+    """Make one error with a one-line message from the first of cattrs' nested errors.
+
+    Args:
+      error: an error, or a cattrs group of errors whose notes name keys and indices.
+      where: name of the outermost value; the message continues it to the key at which
+        the error happened, such as "verdict.effects[2].place".
+    """
     while isinstance(error, BaseValidationError):
         error = error.exceptions[0]
         for note in getattr(error, "__notes__", []):

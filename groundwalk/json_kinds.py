@@ -1,7 +1,7 @@
-"""The kinds of values that `groundwalk.json_data` reads and writes, as cattrs hooks.
+"""cattrs hooks for the kinds of values that `groundwalk.json_data` reads and writes.
 
-cattrs converts between dataclasses and plain values, but takes wrong kinds as far as
-they can be coerced. The hooks here check each value first.
+cattrs converts between dataclasses and plain values, but silently coerces values of a
+wrong kind, such as the text "2" to a number. The hooks here check each value first.
 """
 
 import math
@@ -29,15 +29,18 @@ from cattrs.gen import (
 from groundwalk.errors import BadValueError, UnknownNameError
 
 Hook = Callable[[Any, Any], Any]
-"""Function of a plain value and a type that returns a value of the type."""
+"""Type of a cattrs hook: takes a plain JSON value and a type, returns a value of it."""
 
 
 class WrongPartError(BadValueError):
-    """A message that still lacks its subject: the key at which it happened."""
+    """A part of a JSON value is wrong; the message lacks the name of its key.
+
+    The message is, for example, "must be text, not 3"; `json_data` puts the key first.
+    """
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a finite real number, and not true or false."""
+    """Whether a value is a finite real number; True and False do not count as one."""
     try:
         is_real = isinstance(value, Real) and not isinstance(value, bool)
         return is_real and math.isfinite(value)
@@ -56,15 +59,16 @@ _SCALARS: Mapping[type, tuple[str, Callable[[Any], bool]]] = {
     bool: ("true or false", lambda value: isinstance(value, bool)),
     Path: ("text", lambda value: isinstance(value, str)),
 }
-"""What messages call each kind of single value, and how it is recognised."""
+"""For each type of a single value: its name in error messages, and the test whether a
+plain JSON value may become one."""
 
 
 @cache
 def converter(complete: bool) -> Converter:
-    """Make the cattrs converter whose hooks check kinds and keys.
+    """Make the cattrs converter whose hooks check the kinds of values and the keys.
 
     Args:
-      complete: refuse keys that are missing even if their field has a default.
+      complete: refuse a missing key even if its field has a default.
     """
     made = Converter(unstruct_collection_overrides={tuple: list})
     made.register_unstructure_hook(float, float)
@@ -87,7 +91,7 @@ def converter(complete: bool) -> Converter:
 def _is_choice(kind: Any) -> bool:
     """Whether a type is `object`, or a union of several types besides None.
 
-    The dataclass checks such a value by itself: it is passed on as it is.
+    A value of such a type is not converted: the dataclass that holds it checks it.
     """
     parts = set(get_args(kind)) - {type(None)}
     return kind is object or (get_origin(kind) in (Union, UnionType) and len(parts) > 1)
@@ -149,7 +153,7 @@ def _dataclass_hook(complete: bool, kind: Any, converter: Converter) -> Hook:
 
 
 def _left_out(kind: Any) -> dict[str, Any]:
-    """What cattrs is told about the fields of a dataclass that JSON does not hold."""
+    """Arguments for cattrs that leave out a dataclass' fields marked `NOT_IN_JSON`."""
     some = (field for field in fields(kind) if not field.metadata.get("json", True))
     return {field.name: override(omit=True) for field in some}
 

@@ -1,7 +1,7 @@
 """Ground as data: families of terrain, and the heightfields that they make.
 
-Knows nothing of robots and physics engines. A terrain has a name, parameters and a
-seed; `make` turns them into a `Heightfield`, always into the same one.
+This package knows no robots and no physics engines. A terrain has a name, parameters
+and a seed; `make` turns the same three always into the same `Heightfield`.
 
 Example:
   >>> import terrain

@@ -1,4 +1,4 @@
-"""Parameters of terrains, with bounds that are checked."""
+"""Declares and checks the bounded parameters of terrains."""
 
 import dataclasses
 import numbers
@@ -13,14 +13,14 @@ T = TypeVar("T", float, int, tuple[float, float])
 def bounded(default: T, low: float, high: float) -> T:
     """Declare a dataclass field with a default and inclusive bounds.
 
-    The default's type decides what the field takes: a whole number, any number, or
-    a pair of numbers in increasing order.
+    The default's type decides which values `checked` accepts for the field: a whole
+    number (int), any number (float), or two increasing numbers (tuple).
     """
     return dataclasses.field(default=default, metadata={"bounds": (low, high)})
 
 
 def checked(field: dataclasses.Field[Any], value: object) -> Parameter:
-    """Return a value as the plain type of the field that `bounded` declared.
+    """Convert a value to the Python type of a dataclass field declared with `bounded`.
 
     Raises:
       BadValueError: the value has another type, or lies outside of the bounds.
@@ -42,7 +42,7 @@ def checked(field: dataclasses.Field[Any], value: object) -> Parameter:
 
 
 def _increase(low: float, pair: tuple[Any, ...], high: float) -> bool:
-    """Whether these are exactly two numbers within bounds, the second the larger."""
+    """Whether a pair is exactly two numbers within bounds, the second one larger."""
     return (
         len(pair) == 2 and all(map(_is_real, pair)) and low <= pair[0] < pair[1] <= high
     )

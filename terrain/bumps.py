@@ -1,4 +1,4 @@
-"""Round bumps strewn over flat ground."""
+"""Terrain: round bumps at random places of flat ground."""
 
 import math
 from collections.abc import Mapping
@@ -16,17 +16,21 @@ from terrain.ladder import Ladder
 
 @dataclass(frozen=True, kw_only=True)
 class Bumps(Ground):
-    """Round bumps at random places, of random height, with flat ground between.
+    """Terrain of round bumps at random places, with flat ground between them.
 
-    Centres are a Poisson process over the ground. A bump of height h is
+    The centres are a Poisson process over the ground. A bump of height h is
     h (1 - (r / radius_m)^2)^2 at distance r from its centre: level at its top and
     at its foot. Where bumps overlap the higher one counts: no point is lower
     than 0 or higher than `height_m`.
 
     Attributes:
-      height_m: heights of bumps are drawn evenly from 0 to this [m].
-      radius_m: radius of every bump [m]; at least 2 spacings.
+      height_m: largest height of a bump [m]; heights are uniform from 0 to this.
+      radius_m: radius of every bump [m]; at least 2 grid spacings.
       density_per_m2: mean number of bumps on a square metre.
+
+    Example:
+      >>> Bumps(height_m=0.03).make(seed=1).heights_m.max() <= 0.03
+      True
     """
 
     ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
@@ -50,14 +54,20 @@ class Bumps(Ground):
     density_per_m2: float = bounded(40.0, 0.0, 1000.0)
 
     def __post_init__(self) -> None:
-        """Check that no bump can hide between samples."""
+        """Check that a bump is wide enough to show on the grid of samples."""
         super().__post_init__()
         self._require_spacings("radius_m", 2)
 
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Random bumps; see `Ground.heights`."""
+        """Heights [m] of random bumps, shape (rows, columns), flat around the origin.
+
+        Args:
+          x_m: world x of the grid's columns [m], shape (1, columns).
+          y_m: world y of the grid's rows [m], shape (rows, 1).
+          generator: source of all randomness.
+        """
         columns_m, rows_m = x_m[0], y_m[:, 0]
         area_m2 = float(np.ptp(columns_m) * np.ptp(rows_m))
         count = generator.poisson(self.density_per_m2 * area_m2)
@@ -74,7 +84,12 @@ class Bumps(Ground):
         return self.past_start(np.hypot(x_m, y_m)) * heights_m
 
     def _near(self, samples_m: FloatArray, centre_m: float) -> slice:
-        """Samples that a bump can reach."""
+        """Indices of the samples along one axis that a bump can raise.
+
+        Args:
+          samples_m: the samples' coordinates along the axis [m].
+          centre_m: the bump's centre on the axis [m].
+        """
         reach = math.ceil(self.radius_m / self.spacing_m)
         middle = round((centre_m - float(samples_m[0])) / self.spacing_m)
         return slice(max(middle - reach, 0), middle + reach + 1)

@@ -1,4 +1,4 @@
-"""The families of terrain by name."""
+"""Finds families of terrain (flat, lumps, bumps, slope, stairs, waves) by name."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -25,20 +25,25 @@ FAMILIES: Mapping[str, type[Ground]] = MappingProxyType(
         "waves": Waves,
     }
 )
-"""Every family by name, in the order in which stress tests list them. A new family is
-a file with its class, and its import and its line here."""
+"""Every family of terrain by name, in the order in which terrain-stress lists them. To
+add a family, write its class in a file of its own and add it here."""
 
 
 def names() -> tuple[str, ...]:
-    """Names of all families, in alphabetical order."""
+    """List the names of all families of terrain, in alphabetical order.
+
+    Example:
+      >>> terrain.names()
+      ('bumps', 'flat', 'lumps', 'slope', 'stairs', 'waves')
+    """
     return tuple(sorted(FAMILIES))
 
 
 def configuration(name: str, /, **parameters: object) -> Ground:
-    """Configure a family of terrain.
+    """Choose a family of terrain and its parameters, without making heights yet.
 
     Args:
-      name: one of `names()`.
+      name: one of `terrain.names()`.
       **parameters: fields of the family's dataclass; others keep their defaults.
 
     Returns:
@@ -47,6 +52,10 @@ def configuration(name: str, /, **parameters: object) -> Ground:
     Raises:
       UnknownNameError: there is no such family, or it has no such parameter.
       BadValueError: a parameter has a value that it cannot take.
+
+    Example:
+      >>> terrain.configuration("stairs", steps=3).steps
+      3
     """
     if name not in FAMILIES:
         raise UnknownNameError("terrain", name, FAMILIES)
@@ -59,11 +68,19 @@ def configuration(name: str, /, **parameters: object) -> Ground:
 
 
 def make(name: str, /, seed: Seed, **parameters: object) -> Heightfield:
-    """Make the ground of a family that belongs to a seed.
+    """Make the ground of a family of terrain; the same seed makes the same ground.
 
     Args:
-      name: one of `names()`.
-      seed: a whole number of 0 or more, or a seed sequence.
-      **parameters: see `configuration`, also for the errors.
+      name: one of `terrain.names()`.
+      seed: a whole number of 0 or more, or a NumPy `SeedSequence`.
+      **parameters: fields of the family's dataclass; others keep their defaults.
+
+    Raises:
+      UnknownNameError: there is no such family, or it has no such parameter.
+      BadValueError: a parameter or the seed has a value that it cannot take.
+
+    Example:
+      >>> terrain.make("lumps", 7, amplitude_m=0.012).heights_m.shape
+      (161, 241)
     """
     return configuration(name, **parameters).make(seed)

@@ -1,4 +1,4 @@
-"""Flat ground."""
+"""Terrain: flat ground."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,15 @@ from terrain.ground import Ground
 
 @dataclass(frozen=True, kw_only=True)
 class Flat(Ground):
-    """Level ground of height 0; no seed makes a difference."""
+    """Terrain of level ground at height 0, the same for every seed.
+
+    Example:
+      >>> Flat(x_range_m=(-1.0, 9.0)).make(seed=0).is_flat
+      True
+    """
 
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Zeros; see `Ground.heights`."""
+        """Zeros (rows, columns): heights [m] on the grid of columns x and rows y."""
         return np.zeros((y_m.size, x_m.size))

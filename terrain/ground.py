@@ -1,4 +1,4 @@
-"""The base of all terrains: the place of the ground, and its flat start."""
+"""Base class of all families of terrain: the ground's extent and its flat start."""
 
 import dataclasses
 import math
@@ -18,28 +18,33 @@ from terrain.ladder import Ladder
 from terrain.seeds import Seed, generator_of
 
 MOST_SAMPLES = 1_000_000
-"""Most samples of one ground: PyBullet 3.2.7 silently loads nothing from 2^21 on."""
+"""Largest number of height samples of one ground. PyBullet 3.2.7 silently loads nothing
+from 2^21 samples on; half of that keeps a safe distance."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ground(ABC):
-    """A rectangle of ground in the world, flat where the robot starts.
+    """Base of all families of terrain: a rectangle of ground, flat where robots start.
 
-    Around the world's origin the height is 0 up to `start_radius_m`; over the
+    Up to `start_radius_m` from the world's origin the height is 0; over the
     next `blend_m` the terrain fades in without a kink.
 
     Attributes:
-      x_range_m: lowest and highest x [m]; the grid reaches at least as far.
-      y_range_m: lowest and highest y [m]; the grid reaches at least as far.
-      spacing_m: distance between samples [m].
+      x_range_m: lowest and highest world x [m]; the grid reaches at least as far.
+      y_range_m: lowest and highest world y [m]; the grid reaches at least as far.
+      spacing_m: distance between the grid's samples [m].
       start_radius_m: radius of the flat start area [m].
       blend_m: width of the transition from flat ground to the terrain [m].
-      ladders: of the class: how stress tests make this ground harder, by the name of
-        each way; none for ground that is not stress-tested.
+      ladders: (class attribute) for the terrain-stress command: ways to make this
+        ground harder step by step, by name; empty for ground that it does not use.
 
     Raises:
       BadValueError: a parameter is no number or out of its bounds, the origin is
         not on the ground, or there would be more than a million samples.
+
+    Example:
+      >>> Waves(amplitude_m=0.02).make(seed=0).x_range_m
+      (-1.0, 5.0)
     """
 
     ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType({})
@@ -72,19 +77,19 @@ class Ground(ABC):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights on a grid [m], shape (rows, columns), the flat start included.
+        """Heights on a grid [m], shape (rows, columns), flat where robots start.
 
         Args:
-          x_m: world x of the columns [m], shape (1, columns).
-          y_m: world y of the rows [m], shape (rows, 1).
+          x_m: world x of the grid's columns [m], shape (1, columns).
+          y_m: world y of the grid's rows [m], shape (rows, 1).
           generator: source of all randomness.
         """
 
     def make(self, seed: Seed) -> Heightfield:
-        """Make the ground that belongs to a seed: the same bits every time.
+        """Make the heightfield; the same seed makes the same bits every time.
 
         Args:
-          seed: a whole number of 0 or more, or a seed sequence.
+          seed: a whole number of 0 or more, or a NumPy `SeedSequence`.
 
         Raises:
           BadValueError: the seed is neither.
@@ -95,20 +100,25 @@ class Ground(ABC):
         return Heightfield(heights_m, origin_m, self.spacing_m)
 
     def past_start(self, distance_m: FloatArray) -> FloatArray:
-        """Share of the terrain that shows at a distance from the start.
+        """Factor from 0 to 1 for the terrain's heights that leaves the start area flat.
 
         Args:
-          distance_m: distance from the origin [m], any shape.
+          distance_m: distance from the world's origin [m], any shape.
 
         Returns:
-          0 within `start_radius_m`, 1 from `blend_m` further on, and between them
-          the cubic t^2 (3 - 2 t), which is level at both ends.
+          Same shape: 0 up to `start_radius_m`, 1 from `blend_m` further on, between
+          them the cubic t^2 (3 - 2 t), t = 0 to 1, whose slope is 0 at both ends.
         """
         t = np.clip((distance_m - self.start_radius_m) / self.blend_m, 0.0, 1.0)
         return t * t * (3.0 - 2.0 * t)
 
     def _require_spacings(self, name: str, least: int) -> None:
-        """Refuse a length for which the grid is too coarse."""
+        """Refuse a length parameter of fewer than `least` grid spacings.
+
+        Args:
+          name: name of the parameter, an attribute in metres.
+          least: smallest length in grid spacings.
+        """
         length_m, least_m = getattr(self, name), least * self.spacing_m
         if length_m < least_m:
             raise BadValueError(
@@ -117,12 +127,12 @@ class Ground(ABC):
             )
 
     def _line(self, range_m: tuple[float, float]) -> FloatArray:
-        """Coordinates of the samples that cover a range [m]."""
+        """Coordinates [m] of the grid's samples that cover a range along one axis."""
         return range_m[0] + self.spacing_m * np.arange(
             self._samples(range_m), dtype=np.float64
         )
 
     def _samples(self, range_m: tuple[float, float]) -> int:
-        """Number of samples that cover a range, whatever the rounding of its ends."""
+        """Number of grid samples, 2 or more, that cover a range [m] along one axis."""
         cells = math.ceil((range_m[1] - range_m[0]) / self.spacing_m - 1e-6)
         return max(cells, 1) + 1

@@ -1,4 +1,4 @@
-"""The shape of a piece of ground as numbers: heights on a square grid."""
+"""The shape of a piece of ground: heights on a grid with square cells."""
 
 from dataclasses import dataclass
 
@@ -11,10 +11,10 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True, eq=False)
 class Heightfield:
-    """Heights on a square grid in the world frame, and the surface through them.
+    """Ground heights on a grid with square cells, and the surface through them.
 
     The world's x points forward (the walking direction), y to the left, z up.
-    Between the samples the ground is made of flat triangles, two a cell: the
+    Between the samples the ground is made of flat triangles, two in each cell: the
     diagonal joins `heights_m[row, column]` with `heights_m[row + 1, column + 1]`,
     so that it runs in the direction (+x, +y). MuJoCo cuts its cells in this way
     (ray casts of version 4.0.0 agree to 1e-8 m), Bullet along the other diagonal,
@@ -27,7 +27,12 @@ class Heightfield:
       spacing_m: distance between neighbouring samples, along x and y [m].
 
     Raises:
-      BadValueError: fewer than 2 x 2 samples, or a number that is not finite.
+      BadValueError: there are fewer than 2 x 2 samples, a number is not finite, or the
+        spacing is not positive.
+
+    Example:
+      >>> Heightfield(np.eye(2), (0.0, 0.0), 0.1).height_at(0.05, 0.0)
+      array(0.5)
     """
 
     heights_m: FloatArray
@@ -35,7 +40,7 @@ class Heightfield:
     spacing_m: float
 
     def __post_init__(self) -> None:
-        """Check the numbers, and lock the heights."""
+        """Check the numbers, and replace the heights by a read-only copy."""
         heights_m = np.array(self.heights_m, dtype=np.float64, order="C")
         if heights_m.ndim != 2 or min(heights_m.shape) < 2:
             raise BadValueError(
@@ -54,24 +59,24 @@ class Heightfield:
 
     @property
     def is_flat(self) -> bool:
-        """Whether all samples are equal."""
+        """Whether all heights are equal."""
         return bool((self.heights_m == self.heights_m[0, 0]).all())
 
     @property
     def x_range_m(self) -> tuple[float, float]:
-        """World x of the first and the last column [m]."""
+        """World x of the grid's first and last column [m]."""
         columns = self.heights_m.shape[1]
         return self.origin_m[0], self.origin_m[0] + (columns - 1) * self.spacing_m
 
     @property
     def y_range_m(self) -> tuple[float, float]:
-        """World y of the first and the last row [m]."""
+        """World y of the grid's first and last row [m]."""
         rows = self.heights_m.shape[0]
         return self.origin_m[1], self.origin_m[1] + (rows - 1) * self.spacing_m
 
     @property
     def vertices_m(self) -> FloatArray:
-        """World positions of all samples [m], shape (rows * columns, 3), row by row."""
+        """World positions of the samples [m], shape (rows * columns, 3), row by row."""
         rows, columns = self.heights_m.shape
         x_m = self.origin_m[0] + self.spacing_m * np.arange(columns)
         y_m = self.origin_m[1] + self.spacing_m * np.arange(rows)
@@ -80,9 +85,10 @@ class Heightfield:
 
     @property
     def triangles(self) -> IntArray:
-        """Rows of `vertices_m` that make up each triangle, shape (triangles, 3).
+        """Corners of all triangles as rows of `vertices_m`, shape (triangles, 3).
 
-        Counter-clockwise seen from above, two a cell, cut as the class says.
+        The corners run counter-clockwise seen from above. Each cell has two triangles,
+        divided by the diagonal from its lowest x and y to its highest x and y.
         """
         rows, columns = self.heights_m.shape
         index = np.arange(rows * columns).reshape(rows, columns)
@@ -92,11 +98,11 @@ class Heightfield:
         return corners.reshape(-1, 3)
 
     def contains(self, x_m: npt.ArrayLike, y_m: npt.ArrayLike) -> BoolArray:
-        """Tell whether points lie on the ground, its edge included.
+        """Tell whether points lie within the grid, its edge included.
 
         Args:
           x_m: world x [m], any shape.
-          y_m: world y [m], a shape that broadcasts with it.
+          y_m: world y [m], a shape that broadcasts with that of `x_m`.
         """
         x_m, y_m = np.asarray(x_m, np.float64), np.asarray(y_m, np.float64)
         (x_low, x_high), (y_low, y_high) = self.x_range_m, self.y_range_m
@@ -105,11 +111,11 @@ class Heightfield:
         )
 
     def height_at(self, x_m: npt.ArrayLike, y_m: npt.ArrayLike) -> FloatArray:
-        """Height of the triangles at points [m].
+        """Height of the ground's surface at points [m].
 
         Args:
           x_m: world x [m], any shape.
-          y_m: world y [m], a shape that broadcasts with it.
+          y_m: world y [m], a shape that broadcasts with that of `x_m`.
 
         Returns:
           Heights in the broadcast shape; outside of the grid the height of the
@@ -129,7 +135,17 @@ class Heightfield:
     def _cell(
         self, position_m: npt.ArrayLike, origin_m: float, samples: int
     ) -> tuple[IntArray, FloatArray]:
-        """Cell that holds a coordinate, and how far across it, from 0 to 1."""
+        """Index of the grid cell that holds a coordinate, and the position in the cell.
+
+        Args:
+          position_m: world x or y [m], any shape.
+          origin_m: coordinate of the grid's first sample [m].
+          samples: number of samples along this axis.
+
+        Returns:
+          Cell indices, and positions in the cell from 0 to 1, both in the shape of
+          `position_m`; outside of the grid those of its nearest edge.
+        """
         position_m = np.asarray(position_m, np.float64)
         cells = np.clip((position_m - origin_m) / self.spacing_m, 0.0, samples - 1)
         index = np.minimum(np.nan_to_num(cells).astype(np.intp), samples - 2)

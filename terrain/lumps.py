@@ -1,4 +1,4 @@
-"""Smooth random lumps, as of foam under artificial turf."""
+"""Terrain: smooth random lumps, like foam under artificial turf."""
 
 import math
 from collections.abc import Mapping
@@ -13,31 +13,31 @@ from terrain.bounds import bounded
 from terrain.ground import Ground
 from terrain.ladder import Ladder
 
-WAVES = 256  # enough that heights are Gaussian: excess kurtosis -1.5 / 256
-DEVIATIONS_WITHIN_99_PERCENT = 2.5758293035489004  # of a normal distribution
+WAVES = 256  # plane waves in the sum; heights are then Gaussian: kurtosis -1.5 / 256
+DEVIATIONS_WITHIN_99_PERCENT = 2.5758293035489004  # +- these hold 99 % of a Gaussian
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lumps(Ground):
-    """An isotropic Gaussian random field whose wavelengths span one octave.
+    """Terrain of smooth lumps: a Gaussian random field of wavelengths in one octave.
 
-    The sum of 256 plane waves of equal amplitude with random directions, phases
-    and wave numbers (the spectral representation of a random field: Shinozuka
-    and Jan, Journal of Sound and Vibration 25, 1972). The sum is a function of x
-    and y, not of the grid: a seed gives the same lumps at any extent and spacing.
-    Nothing is higher than sqrt(2 * 256) rms = 9 amplitudes; in practice 2.
+    The field is isotropic: the sum of 256 plane waves of equal amplitude with random
+    directions, phases and wave numbers (the spectral representation of a random field:
+    Shinozuka and Jan, Journal of Sound and Vibration 25, 1972). The sum is a function
+    of x and y, not of the grid: a seed gives the same lumps at any extent and spacing.
+    No lump can be higher than sqrt(2 * 256) rms = 9 amplitudes; in practice 2.
 
     The defaults are as hard as the foam under turf of the SGAT paper (section on the
-    NAO: 14.66 cm/s, always falls): Walk2014's gait is about as slow and mostly falls
-    on the course of 3 m (docs/results/walk), while a gait that lifts its feet higher
-    and listens more to its gyroscope can walk there.
+    NAO: 14.66 cm/s, always falls): the gait of the rUNSWift 2014 release (Walk2014) is
+    about as slow on them and mostly falls on a course of 3 m (docs/results/walk), while
+    a gait with higher steps and more gyroscope feedback can walk there.
 
     Attributes:
       amplitude_m: 99 % of the ground lies within plus or minus this height [m];
         the rms height is amplitude_m / 2.576.
       wavelength_m: the middle of the octave [m]: wavelengths reach from
-        wavelength_m / sqrt(2) to wavelength_m * sqrt(2), evenly in their
-        logarithm. At least 4 spacings.
+        wavelength_m / sqrt(2) to wavelength_m * sqrt(2), uniform in their
+        logarithm. At least 4 grid spacings.
     """
 
     ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
@@ -59,19 +59,25 @@ class Lumps(Ground):
     wavelength_m: float = bounded(0.2, 0.01, 100.0)
 
     def __post_init__(self) -> None:
-        """Check that the grid can carry the shortest waves."""
+        """Check that the grid is fine enough for the shortest waves."""
         super().__post_init__()
         self._require_spacings("wavelength_m", 4)
 
     @property
     def rms_m(self) -> float:
-        """Root mean square of the heights away from the start [m]."""
+        """Root mean square of the heights [m] outside of the flat start area."""
         return self.amplitude_m / DEVIATIONS_WITHIN_99_PERCENT
 
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Random lumps; see `Ground.heights`."""
+        """Heights [m] of random lumps, shape (rows, columns), flat around the origin.
+
+        Args:
+          x_m: world x of the grid's columns [m], shape (1, columns).
+          y_m: world y of the grid's rows [m], shape (rows, 1).
+          generator: source of all randomness.
+        """
         octave = generator.uniform(-0.5, 0.5, WAVES)
         direction_rad = generator.uniform(0.0, 2.0 * math.pi, WAVES)
         phase_rad = generator.uniform(0.0, 2.0 * math.pi, WAVES)
@@ -79,8 +85,8 @@ class Lumps(Ground):
         along_x = np.outer(wave_number * np.cos(direction_rad), x_m)
         along_y = np.outer(wave_number * np.sin(direction_rad), y_m)
         along_y += phase_rad[:, np.newaxis]
-        # cos(a + b) = cos a cos b - sin a sin b saves a cosine a wave and sample;
-        # einsum, because the bits of a BLAS product may depend on its threads.
+        # cos(a + b) = cos a cos b - sin a sin b saves one cosine per wave and sample;
+        # einsum, because the bits of a BLAS product may depend on the threads of BLAS.
         waves: FloatArray = np.einsum("ky,kx->yx", np.cos(along_y), np.cos(along_x))
         waves -= np.einsum("ky,kx->yx", np.sin(along_y), np.sin(along_x))
         shown = self.past_start(np.hypot(x_m, y_m))

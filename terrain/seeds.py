@@ -1,4 +1,4 @@
-"""From a seed to randomness."""
+"""Makes random generators from seeds."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ Seed = int | np.random.SeedSequence
 
 
 def generator_of(seed: Seed) -> np.random.Generator:
-    """Make the generator that belongs to a seed: PCG64, the same numbers every time.
+    """Make a PCG64 generator from a seed; the same seed gives the same numbers.
 
     Args:
-      seed: a whole number of 0 or more, or a seed sequence, which stays as it is.
+      seed: a whole number of 0 or more, or a NumPy `SeedSequence`; it is not changed.
 
     Raises:
       BadValueError: the seed is neither.
@@ -22,7 +22,7 @@ def generator_of(seed: Seed) -> np.random.Generator:
 
 
 def checked_seed(seed: object) -> int:
-    """Return a seed as a plain whole number.
+    """Convert a seed to a Python int.
 
     Raises:
       BadValueError: the seed is no whole number of 0 or more.

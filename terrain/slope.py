@@ -1,4 +1,4 @@
-"""A tilted plane, uphill, downhill or across."""
+"""Terrain: a tilted plane, uphill, downhill or across the walking direction."""
 
 import math
 from collections.abc import Mapping
@@ -15,7 +15,11 @@ from terrain.ladder import Ladder
 
 
 def _ladder(heading_rad: float) -> Ladder:
-    """Slopes of 1.7 to 14 degrees that climb in one direction."""
+    """Ladder of slopes of 1.7 to 14 degrees that climb in one direction.
+
+    Args:
+      heading_rad: direction of the climb, from world x to the left [rad].
+    """
     return Ladder(
         "angle",
         "rad",
@@ -27,16 +31,20 @@ def _ladder(heading_rad: float) -> Ladder:
 
 @dataclass(frozen=True, kw_only=True)
 class Slope(Ground):
-    """A plane that begins in front of the robot, where x is `start_radius_m`.
+    """Terrain of a tilted plane that begins in front of the robot's start area.
 
-    With c and s the cosine and sine of the heading, r the start radius and b the
-    blend, the height from x = r + b on is tan(angle) (c (x - r - b / 2) + s y).
-    Up to x = r the ground is flat; between them the gradient grows without a jump.
+    With c and s the cosine and sine of `heading_rad`, r = `start_radius_m` and
+    b = `blend_m`, the height from x = r + b on is tan(angle) (c (x - r - b / 2) + s y).
+    Up to x = r the ground is flat; from there to r + b the gradient grows continuously.
 
     Attributes:
       angle_rad: steepness [rad].
       heading_rad: direction in which the ground climbs, seen from above, from +x
         to the left [rad]: 0 is uphill, pi downhill, pi / 2 climbs to the left.
+
+    Example:
+      >>> Slope(angle_rad=0.1, heading_rad=math.pi).make(seed=0).height_at(5, 0) < 0
+      True
     """
 
     ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
@@ -53,7 +61,13 @@ class Slope(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """A plane behind a rounded edge; see `Ground.heights`."""
+        """Heights [m] of the plane, shape (rows, columns), behind a rounded lower edge.
+
+        Args:
+          x_m: world x of the grid's columns [m], shape (1, columns).
+          y_m: world y of the grid's rows [m], shape (rows, 1).
+          generator: not used; the ground is not random.
+        """
         beyond_m = x_m - self.start_radius_m
         within_m = np.clip(beyond_m, 0.0, self.blend_m)
         # The integral of a gradient that grows linearly over the blend.

@@ -1,4 +1,4 @@
-"""Stairs across the way."""
+"""Terrain: stairs across the walking direction."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,15 +15,19 @@ from terrain.ladder import Ladder
 
 @dataclass(frozen=True, kw_only=True)
 class Stairs(Ground):
-    """Equal steps along x that begin at x = `start_radius_m`; no blend.
+    """Terrain of equal steps along x, the first at x = `start_radius_m`.
 
-    A riser takes up the one cell behind each edge, because the samples are
-    joined by triangles. After the last step the ground stays level.
+    Each step rises within one grid cell, because the surface joins the samples by
+    triangles. After the last step the ground stays level. `blend_m` has no effect.
 
     Attributes:
       step_m: height of a step [m]; below 0 the stairs lead down.
-      tread_m: distance from one riser to the next [m]; at least 2 spacings.
+      tread_m: distance from one riser to the next [m]; at least 2 grid spacings.
       steps: number of steps.
+
+    Example:
+      >>> Stairs(step_m=0.02, steps=3).make(seed=0).height_at(4.0, 0.0)
+      array(0.06)
     """
 
     ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
@@ -50,7 +54,13 @@ class Stairs(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Steps, the same for all y; see `Ground.heights`."""
+        """Heights [m] of the steps, shape (rows, columns), the same in every row.
+
+        Args:
+          x_m: world x of the grid's columns [m], shape (1, columns).
+          y_m: world y of the grid's rows [m], shape (rows, 1).
+          generator: not used; the ground is not random.
+        """
         treads = (x_m - self.start_radius_m) / self.tread_m
         # A sample on an edge belongs to the lower tread, whatever its rounding.
         climbed = np.clip(np.ceil(treads - 1e-9), 0, self.steps)

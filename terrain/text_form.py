@@ -1,4 +1,4 @@
-"""Terrain as one word on a command line."""
+"""Reads a terrain that is written as one word on a command line."""
 
 from groundwalk.errors import BadValueError
 from terrain.bounds import Parameter
@@ -13,12 +13,15 @@ def parse(text: str) -> tuple[str, dict[str, Parameter]]:
         ends of a range are separated by a colon.
 
     Returns:
-      The name and the parameters that were given, for `terrain.make` and
-      `TerrainSpec`.
+      The name and the parameters in the text, for `terrain.make` and `TerrainSpec`.
 
     Raises:
       UnknownNameError: there is no such terrain, or it has no such parameter.
       BadValueError: the text has another form, or holds an impossible value.
+
+    Example:
+      >>> terrain.parse("stairs:steps=3")
+      ('stairs', {'steps': 3})
     """
     name, colon, rest = text.partition(":")
     parameters: dict[str, Parameter] = {}
@@ -34,7 +37,7 @@ def parse(text: str) -> tuple[str, dict[str, Parameter]]:
 
 
 def _value(parameter: str, text: str) -> Parameter:
-    """Read a whole number, a number, or a range."""
+    """Read a parameter's value: a whole number, a number, or a range low:high."""
     try:
         if ":" in text:
             low, high = text.split(":")
