@@ -1,7 +1,7 @@
-"""Studies and the command line: the only room in which all others are combined.
+"""Studies and the command line: the only package that may import all the others.
 
-The names below are for use from Python; docs/python.md shows how. Their modules are
-imported when a name is first used, so that each verb loads no more than it needs.
+The names in `__all__` are for use from Python (see docs/python.md). A name's module is
+imported when the name is first used, so that each verb loads no more than it needs.
 """
 
 from typing import TYPE_CHECKING

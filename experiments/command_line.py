@@ -1,4 +1,4 @@
-"""The command `groundwalk`: its verbs, the reading of their options, their errors."""
+"""The command `groundwalk`: its verbs, parsing of their options, error messages."""
 
 import contextlib
 import functools
@@ -12,12 +12,12 @@ from groundwalk.errors import GroundwalkError, UnknownNameError
 
 
 class Verb(NamedTuple):
-    """A verb of the command line: its code, and a summary of it.
+    """Where the code of a verb of the command line is, and a summary of the verb.
 
     Attributes:
-      module: name of its module in experiments.
-      config: name, in this module, of the dataclass of its options or of a table of its
-        own verbs.
+      module: name of the verb's module in the package experiments.
+      config: name of an object in that module: the dataclass of the verb's options, or
+        a table (dict of `Verb`) of the verb's own verbs.
       summary: a few words for the list of verbs.
     """
 
@@ -64,7 +64,7 @@ VERBS = {
 }
 
 BAD_INPUT = 2
-"""Exit status after an error that the user can mend."""
+"""Exit status after an error that the user can correct; argparse uses 2, too."""
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as in shells: 128 + SIGINT."""
@@ -81,13 +81,13 @@ def choose(
     arguments: Sequence[str],
     kind: str = "verb",
 ) -> None:
-    """Run the verb that the first argument names; import no code but its own.
+    """Run the verb that the first argument names; only its module is imported.
 
     Args:
       verbs: the verbs by name; a verb may have verbs of its own, called studies.
-      program: the command so far, for the help.
-      arguments: the words that follow it.
-      kind: "verb" or "study".
+      program: the command up to here, such as "groundwalk concealed", for the help.
+      arguments: the words that follow `program` on the command line.
+      kind: what the help calls a verb: "verb" or "study".
     """
     name, *options = arguments or ["--help"]
     if name in ("-h", "--help"):
@@ -114,11 +114,11 @@ def run_verb(
     """Parse a verb's options, do its work, and exit.
 
     Args:
-      config_type: dataclass of the verb's options; it checks them itself. Its text
-        `if_interrupted`, if it has one, tells how to continue after Ctrl-C.
+      config_type: dataclass of the verb's options, which checks their values. After
+        Ctrl-C its text `if_interrupted`, if any, is printed: how to continue.
       verb: does the work; an integer that it returns is the exit status.
-      program: name of the command in its help; by default the script's.
-      arguments: by default those of the process.
+      program: name of the command in its help; by default the script's name.
+      arguments: the words to parse; by default those of the process.
     """
     config = _parse(config_type, program, arguments)
     hint = getattr(config_type, "if_interrupted", "")
@@ -127,9 +127,9 @@ def run_verb(
 
 
 def run_script(main: Callable[..., object]) -> None:
-    """Run a function as a script of one's own, with its arguments as options.
+    """Run a function as a script whose command-line options are its arguments.
 
-    Errors that the user can mend become one line and exit status 2, as in verbs.
+    Errors that the user can correct are printed as one line, with exit status 2.
 
     Args:
       main: a function whose arguments have types and are described in its docstring.
@@ -144,7 +144,7 @@ def run_script(main: Callable[..., object]) -> None:
 
 
 def one_line(report: str) -> str:
-    """Turn the boxed report of the option parser into one line without hints."""
+    """Turn an error report of tyro, the option parser, into one line without hints."""
     lines = []
     for line in report.splitlines():
         text = line.strip("│╭╮╰╯─ ")
@@ -187,7 +187,7 @@ def _guarded(
     tell: Callable[[str], object] = _tell,
     if_interrupted: str = "",
 ) -> Any:
-    """Do some work; errors that a user can mend become one line and exit status 2."""
+    """Call `work`; for an error that the user can correct print a line and exit."""
     try:
         return work()
     except (GroundwalkError, OSError) as error:

@@ -1,4 +1,4 @@
-"""`groundwalk diagnose`: what physics does the sim lack that recordings show?"""
+"""`groundwalk diagnose`: find the physics that recordings show and the sim lacks."""
 
 import shutil
 import sys
@@ -52,7 +52,7 @@ VERDICT, REPORT, OVERLAY, AUDIT = (
     "diagnosis.json", "report.html", "overlay.rrd", "audit.json",
 )  # fmt: skip
 STAGES = "stages"
-"""Folder of a run's checkpoint; it is deleted when the run is complete."""
+"""Name of a run's folder of intermediate results, deleted when the run is complete."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,11 @@ class Diagnose(RunOptions):
     """Find out what physics a sim lacks, from recordings of the robot.
 
     Attributes:
-      recordings: files of format 1, Parquet or CSV, or folders of them; at least one.
+      recordings: Parquet or CSV files (docs/recordings.md), or folders of them.
       reference: recordings of the same robot while it was healthy. What they show is
         taken as given; the question is then what has changed since.
-      robot: its name, a model file (.xml or .urdf), or a robot of example-robot-data.
+      robot: name of a robot, a model file (.xml or .urdf), or a robot of
+        example-robot-data.
       kp: stiffness of all servos [N m/rad], for recordings that do not state it.
       kd: damping of all servos [N m s/rad], for recordings that do not state it.
       max_torque: torque limit of all servos [N m], for recordings that do not state it;
@@ -73,7 +74,7 @@ class Diagnose(RunOptions):
       least_share: smallest share of the sim's squared error that an effect must explain
         to be reported, from 0 to below 1.
       threads: processor threads of the replays.
-      audit_only: only check the recordings: print what limits them, and stop.
+      audit_only: only check the recordings, print their limits, and stop.
     """
 
     recordings: Annotated[
@@ -90,7 +91,7 @@ class Diagnose(RunOptions):
     audit_only: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse options that no diagnosis can work with.
+        """Refuse invalid options.
 
         Raises:
           BadValueError: there is no recording or no robot, or a number is out of range.
@@ -114,7 +115,7 @@ class Diagnose(RunOptions):
 
     @property
     def gains(self) -> ServoGains | None:
-        """The servo gains from the options; None if they are not given."""
+        """The servo gains given by --kp, --kd and --max-torque; None without them."""
         if self.kp is None:
             return None
         limit = sys.float_info.max if self.max_torque is None else self.max_torque
@@ -160,10 +161,10 @@ def print_audit(config: Diagnose) -> None:
 
 
 def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
-    """Diagnose, and write down the verdict, the report and the overlay.
+    """Diagnose, and write verdict, report and Rerun overlay into the run folder.
 
-    A run that was interrupted goes on from its last long stage if `config.resume` names
-    its folder; the verdict is the same to the last digit, except for its duration.
+    An interrupted run continues after its last finished stage if `config.resume` names
+    its folder; the verdict is then the same to the last digit, except for its duration.
 
     Example:
       >>> folder, verdict = run_diagnosis(Diagnose((Path("a.parquet"),), robot="nao"))
@@ -185,7 +186,7 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
 
 
 Read = tuple[Plant, list[Trace], list[Trace]]
-"""The robot model, its recordings, and those of the reference."""
+"""The robot model, the recordings, and the reference recordings (healthy robot)."""
 
 
 def _read(config: Diagnose) -> Read:
@@ -198,7 +199,7 @@ def _read(config: Diagnose) -> Read:
 def _diagnosed(
     config: Diagnose, read: Read, folder: RunFolder, hooks: Hooks
 ) -> Diagnosis:
-    """Diagnose; a run whose recordings are refused leaves no folder."""
+    """Diagnose; delete the run's folder if its recordings are refused."""
     plant, traces, reference = read
     try:
         return diagnose(
@@ -220,7 +221,7 @@ def _diagnosed(
 def _write(
     config: Diagnose, folder: RunFolder, found: Diagnosis, advance: Callable[[], None]
 ) -> None:
-    """Write the verdict first, then the files that explain it."""
+    """Write the verdict, then the report and the other files that explain it."""
     folder.write_text(VERDICT, found.verdict.to_json())
     folder.write_text(AUDIT, found.audit.to_json() + "\n")
     with extra(CORRECTED_XML):
@@ -238,10 +239,10 @@ def _write(
 
 
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:
-    """Write the corrected model, if effects were found.
+    """Write the model with the effects found, if any, into the run folder.
 
     Args:
-      folder: of the run; gets `corrected.xml` and `corrected.json`.
+      folder: the run's folder; gets `corrected.xml` and `corrected.json`.
       found: the diagnosis.
     """
     if not found.verdict.effects:
@@ -256,7 +257,7 @@ def write_correction(folder: RunFolder, found: Diagnosis) -> None:
 
 
 def _description(config: Diagnose) -> robots.Description | None:
-    """The robot that the overlay draws; None if it is no biped, such as an arm."""
+    """The robot that the Rerun overlay draws; None if it is no biped."""
     try:
         return robots.get(config.robot)
     except GroundwalkError:

@@ -1,4 +1,4 @@
-"""`groundwalk doctor`: what is installed, what is missing, and what to do about it."""
+"""`groundwalk doctor`: says what is installed, what is missing, and how to fix it."""
 
 import argparse
 import dataclasses

@@ -36,7 +36,8 @@ class Evaluate(RunOptions):
       gaits: names (`groundwalk list gaits`), .json files with a gait, or run folders of
         optimize-gait.
       worlds: the worlds to walk in: sim, real or both.
-      terrain: such as "lumps:amplitude_m=0.008"; each world's own by default.
+      terrain: the ground, such as "lumps:amplitude_m=0.008"; by default that of each
+        world.
       robot: name of a robot (`groundwalk list robots`), or a .urdf or .toml file.
       trials: trials of each gait in each world, each on its own ground.
       threads: processor threads; 0 for all.
@@ -50,7 +51,7 @@ class Evaluate(RunOptions):
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse invalid options before anything is written."""
         super().__post_init__()
         robots.get(self.robot)
         if not self.worlds or not (self.gaits or self.resume):
@@ -60,13 +61,13 @@ class Evaluate(RunOptions):
             self.study(world)
 
     def study(self, world: str) -> Study:
-        """How the gaits are evaluated in one world, "sim" or "real"."""
+        """Ground, trials and threads of the evaluation in a world, "sim" or "real"."""
         terrain = self.terrain or worlds.kind(world).terrain
         return Study(world, terrain, self.trials, threads=self.threads)
 
 
 def main(config: Evaluate) -> None:
-    """Evaluate world by world; a world that is done is not computed again."""
+    """Evaluate the gaits in each world; a resumed run skips the worlds it has done."""
     folder, config = open_run(VERB, config)
     gaits = load_gaits(config.gaits)
     result = folder.read_json(RESULT) if folder.has(RESULT) else {}

@@ -30,7 +30,7 @@ class Export:
     out: Path | None = None
 
     def __post_init__(self) -> None:
-        """Refuse unknown robots, and files that exist."""
+        """Refuse an unknown robot, or an output file that exists."""
         robots.get(self.robot)
         if self.out is not None:
             check_new(self.out)

@@ -42,22 +42,24 @@ from worlds import Recording, read_recording
 
 VERB = "humanoids"
 WALK = TrialRules(limit_s=5.0, start_spread_rad=0.01)
-"""Walks that are counted: 5 s, from start poses whose joints spread by 0.01 rad."""
+"""Rules of the walks whose falls are counted: at most 5 s; the joint angles of the
+start poses have a standard deviation of 0.01 rad."""
 
 SEARCHED = TrialRules(limit_s=5.0, start_spread_rad=0.02)
-"""Walks in a search. Their start poses spread more than those of the walks that are
-counted, because a search sees only a few walks of each gait."""
+"""Rules of the walks in a search: at most 5 s. The start poses spread more (0.02 rad)
+than in the final count of falls: a search sees only a few walks of each gait."""
 
 START = gaits.get("start").replace(max_forward=0.12)
-"""Where the searches start: slower [m/s] than the NAO's start gait, which is not tuned
-for these robots."""
+"""Gait from which every search starts: the NAO's untuned gait with its forward speed
+lowered to 0.12 m/s, because it is not tuned for these robots."""
 
 WALKS = 3
-"""Walks of each gait in a generation, from different poses: one walk may be luck."""
+"""Number of walks that rate a gait in the search, each from another start pose,
+because a single walk may be luck."""
 
 FALL_PENALTY_CM_S = 60.0
-"""What a fall costs a robot of the NAO's size [cm/s]: more than the fastest walk gains,
-so that the search prefers a slow gait to one that falls."""
+"""Penalty of a fall in the reward [cm/s], for a robot of the NAO's size: more than the
+speed of the fastest walk, so that the search prefers a slow gait to one that falls."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class Humanoids(RunOptions):
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse invalid options before anything is written."""
         for name in self.robots:
             robots.get(name)
         if not self.robots or len({*map(short_name, self.robots)}) < len(self.robots):
@@ -96,7 +98,7 @@ class Humanoids(RunOptions):
         super().__post_init__()
 
     def studies(self) -> dict[str, Study]:
-        """How a tuned gait is evaluated, by world."""
+        """Ground, trials and rules of a tuned gait's evaluation, by world."""
         return {
             "sim": Study("sim", "flat", self.trials, WALK, self.threads),
             "real": Study("real", "lumps", self.real_trials, WALK, self.threads),
@@ -104,7 +106,7 @@ class Humanoids(RunOptions):
 
 
 def main(config: Humanoids) -> None:
-    """Tune and evaluate robot by robot; a robot that is done is not computed again."""
+    """Tune and evaluate each robot; a resumed run skips the robots it has done."""
     folder, config = open_run(VERB, config)
     result: dict[str, Any] = folder.read_json(RESULT) if folder.has(RESULT) else {}
     for name in config.robots:
@@ -126,7 +128,7 @@ def main(config: Humanoids) -> None:
 
 
 def _walk(folder: RunFolder, name: str) -> Recording:
-    """The tuned gait's first walk in the sim."""
+    """Recording of a robot's first walk in the sim with its tuned gait."""
     path = folder.path / short_name(name) / RECORDINGS / "sim_tuned.parquet"
     return read_recording(path)
 
@@ -134,7 +136,7 @@ def _walk(folder: RunFolder, name: str) -> Recording:
 def _robot(
     config: Humanoids, folder: RunFolder, description: Description
 ) -> dict[str, Any]:
-    """Tune one robot's gait and evaluate it; the measures are plain values."""
+    """Tune one robot's gait and evaluate it; return the measures as JSON values."""
     # The seed follows from the name: the other robots of the run make no difference.
     own = [config.seed, *description.name.encode()]
     of_search, of_trials = np.random.SeedSequence(own).spawn(2)
@@ -164,7 +166,7 @@ def _search(
     description: Description,
     seed: np.random.SeedSequence,
 ) -> Gait:
-    """The best mean gait of a short search on flat ground in the sim."""
+    """Search on flat ground in the sim; return the best of all generations' means."""
     budget = Budget(config.population, config.generations, config.sigma)
     rater = partial(_rate, config, description)
     return tune(folder.path / CHECKPOINT, START, budget, rater, seed)
@@ -176,7 +178,7 @@ def _rate(
     tried: FloatArray,
     seed: np.random.SeedSequence,
 ) -> FloatArray:
-    """Rewards (n,) [cm/s] of n gaits, a `Rater` of `experiments.walking.tuning`."""
+    """Mean rewards (n,) [cm/s] of n gaits (n, 16), over `WALKS` walks of each."""
     study = config.studies()["sim"]
     # The same poses for all gaits, so that only the gaits make a difference.
     poses = seed.spawn(WALKS) * len(tried)

@@ -17,14 +17,14 @@ from walk_engine import PARAMETERS, gaits
 from worlds.hidden import KINDS
 
 UNITS = {"_rad": "rad", "_per_m2": "1/m2", "_m": "m"}
-"""Units of terrain parameters, by the end of their names."""
+"""Unit of a terrain parameter by the ending of its name."""
 
 Table = tuple[list[str], list[list[str]]]
-"""Headings and rows of a printed table."""
+"""The headings and the rows of a table of texts."""
 
 
 def robot_table() -> Table:
-    """Mass, leg length and number of joints of every robot."""
+    """Table of all robots: mass, leg length and number of joints."""
     rows = []
     for name in robots.names():
         robot = robots.get(name)
@@ -37,7 +37,7 @@ def robot_table() -> Table:
 
 
 def terrain_table() -> Table:
-    """Every terrain with its own parameters, then the parameters of all terrains."""
+    """Table of all terrains with their parameters; those that all share come last."""
     common = dataclasses.fields(Ground)
     known = {field.name for field in common}
     rows = []
@@ -52,7 +52,7 @@ def terrain_table() -> Table:
 
 
 def gait_table() -> Table:
-    """Every gait parameter, with its value in each gait, its bounds and its meaning."""
+    """Table of the gait parameters: value in each gait, bounds and meaning."""
     named = {name: gaits.get(name) for name in gaits.names()}
     rows = [
         [
@@ -69,7 +69,7 @@ def gait_table() -> Table:
 
 
 def effect_table() -> Table:
-    """Every kind of hidden effect, where it may be, and its parameters."""
+    """Table of the hidden effects: possible places, and parameters."""
     rows = []
     for name, kind in KINDS.items():
         rows.append([name, f"@{kind.place}", "", "", _summary(type(kind))])
@@ -104,7 +104,7 @@ class List:
     kind: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="KIND")]
 
     def __post_init__(self) -> None:
-        """Refuse anything but the three lists."""
+        """Refuse a list that does not exist."""
         if self.kind not in TABLES:
             raise UnknownNameError("list", self.kind, TABLES)
 

@@ -38,10 +38,10 @@ class OptimizeGait(RunOptions):
 
     Attributes:
       robot: name of a robot (`groundwalk list robots`), or a .urdf or .toml file.
-      start: name, .json file or run folder of the gait that the search starts from.
+      start: the gait that the search starts from: a name, .json file or run folder.
       terrain: ground of the search in the sim, for example "lumps:amplitude_m=0.005".
       real_terrain: ground of the evaluation in the real world.
-      sim: folder of a diagnosis; the sim then has the physics that it found missing.
+      sim: run folder of a diagnosis; its effects are added to the sim.
       population: gaits tried in each generation.
       generations: number of generations of the search.
       sigma: spread of the first generation, as a share of each parameter's range.
@@ -61,7 +61,7 @@ class OptimizeGait(RunOptions):
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse invalid options before anything is written."""
         super().__post_init__()
         self.plan()
         for world in WORLDS:
@@ -73,7 +73,7 @@ class OptimizeGait(RunOptions):
         return SearchPlan(**{name: getattr(self, name) for name in names})
 
     def study(self, world: str) -> Study:
-        """How start and tuned gait are evaluated in a world, "sim" or "real"."""
+        """Ground and trials of the gaits' evaluation in a world, "sim" or "real"."""
         ground = dict(zip(WORLDS, (self.terrain, self.real_terrain), strict=True))
         correction = self.sim if world == "sim" else None
         return Study(
@@ -98,16 +98,16 @@ def main(config: OptimizeGait) -> None:
 
 
 def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
-    """Tune a gait and try it in both worlds, from Python.
+    """Tune a gait in the sim, and try it in both worlds.
 
     Args:
-      config: what is tuned, and how.
+      config: the options of the search and of the evaluation.
 
     Returns:
-      The run's folder, with everything in it, and the gait.
+      The run's folder with all results, and the tuned gait.
 
     Raises:
-      GroundwalkError: the folder exists already, or cannot be continued.
+      GroundwalkError: the run's folder exists already, or cannot be continued.
 
     Example:
       >>> folder, gait = tune_gait(OptimizeGait(population=8, generations=2, trials=1))

@@ -1,4 +1,4 @@
-"""`groundwalk real-robots`: diagnose real recordings, and compare with known values."""
+"""`groundwalk real-robots`: diagnose real robots, and compare with published values."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,21 +17,22 @@ from experiments.runs.extras import extra
 from groundwalk.errors import BadValueError
 
 DATA = Path("data")
-"""Default folder of the recordings; they are not part of the repository."""
+"""Default folder of the real robots' recordings, which are not in the repository."""
 DIAGNOSIS = "diagnosis.html"
-"""The diagnosis' own report; the run's `report.html` compares it with known values."""
+"""File name of the diagnosis' own report, because `report.html` is the run's page,
+which compares the diagnosis with published values."""
 
 
 @dataclass(frozen=True)
 class RealRobots:
-    """Diagnose recordings of a real robot, and compare the answer with known values.
+    """Diagnose recordings of a real robot, and compare with published values.
 
     Attributes:
       robot: the robot whose recordings are diagnosed.
       data: folder with a subfolder of recordings for each robot; docs/diagnosis.md says
         where they come from.
       seed: every random number follows from it.
-      threads: number of threads that replay.
+      threads: processor threads of the replays.
       out: the run's folder; a new one under runs/ by default.
     """
 

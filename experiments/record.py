@@ -1,4 +1,4 @@
-"""`groundwalk record`: make a recording of a moving robot in either world."""
+"""`groundwalk record`: record a robot that moves in the sim or in the real world."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,10 +33,10 @@ ENGINES = {"sim": "mujoco", "real": "bullet"}
 
 _RATE_HZ = 100.0
 _JITTER_S = 0.0005
-"""Standard deviation of the time stamps of a recording [s]."""
+"""Standard deviation of the errors of a recording's time stamps [s]."""
 
 _REST_S = 0.8
-"""How long a robot stands before it walks [s]."""
+"""Time for which a robot stands before it walks [s]."""
 
 _LONGEST_S = 600.0
 Motion = Literal[
@@ -73,7 +73,7 @@ class Record:
     seed: int = 1
 
     def __post_init__(self) -> None:
-        """Refuse impossible recordings before anything is computed."""
+        """Refuse invalid options before anything is computed."""
         check_new(self.out)
         if self.out.suffix.lower() not in (".parquet", ".csv"):
             raise BadValueError(f"out is {self.out}; a recording is .parquet or .csv")
@@ -94,11 +94,11 @@ class Record:
         return self.motion not in MOTIONS
 
     def effects(self) -> tuple[Hidden, ...]:
-        """The hidden effects, parsed."""
+        """The effects that `hidden` describes as text."""
         return tuple(Hidden.parse(text) for text in self.hidden)
 
     def plant(self) -> HiddenPlant:
-        """The robot with its base fixed or floating, as the motion needs it."""
+        """The robot, its base floating if the motion is on feet, otherwise fixed."""
         return hidden_plant(self.robot, floating=self.on_feet)
 
 
@@ -161,7 +161,7 @@ def make_recording(config: Record) -> Recording:
 def _feed(
     config: Record, plant: HiddenPlant, rng: np.random.Generator
 ) -> tuple[FloatArray, Feed]:
-    """The start pose (joints,) [rad], and the function that gives the commands."""
+    """The start pose (joints,) [rad], and a function that gives the commands [rad]."""
     time_s = np.arange(round(config.duration * _RATE_HZ) + 1) / _RATE_HZ
     description = plant.description
     if config.motion == "walk" and description is not None:

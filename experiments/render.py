@@ -36,8 +36,8 @@ class Render:
       paths: run folders, or recordings (.parquet or .csv).
       out: the file to write; its ending decides between strip and film.
       only: show only recordings whose name, or file name, contains one of these words.
-      start: time of the first picture [s]; by default such that the fall is shown, or
-        without a fall the middle of the walk.
+      start: time of the first picture [s]; by default chosen to show the fall or,
+        without a fall, the middle of the walk.
       duration: length of the part that is shown [s].
       frames: number of pictures in a strip, at equal distances in time.
       rate: pictures per second of a film.
@@ -58,7 +58,7 @@ class Render:
     balance: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse values out of bounds, and files that exist."""
+        """Refuse values out of bounds, and an output file that exists."""
         check_paths(self.paths)
         if self.out.suffix not in (STRIP, *FILMS):
             raise BadValueError(f"{self.out} must end with .png, .gif or .mp4")
@@ -99,7 +99,7 @@ def main(config: Render) -> None:
 
 
 def _has(name: str, word: str) -> bool:
-    """Whether a recording's name holds a word; "sim_tuned" stands for "sim/tuned"."""
+    """Whether a recording's name contains a word; "sim_tuned" matches "sim/tuned"."""
     return word.replace("_", "/") in name.replace("_", "/")
 
 

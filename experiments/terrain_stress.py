@@ -43,7 +43,8 @@ class TerrainStress(RunOptions):
       robots: names (`groundwalk list robots`), or .urdf or .toml files.
       families: kinds of difficult ground, friction and softness among them. Flat ground
         is always tried.
-      rungs: number of severities of a family, in equal ratios from mild to hard.
+      rungs: number of severities of a family, from mild to hard, each the same factor
+        from the one before.
       trials: trials of each gait at each severity, each on its own ground.
       worst: number of falls, of each gait and world, that are kept as Rerun files.
       threads: processor threads; 0 for all.
@@ -59,7 +60,7 @@ class TerrainStress(RunOptions):
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse invalid options before anything is written."""
         if not (self.gaits or self.resume):
             raise BadValueError("no gait is given; name one, such as start")
         for name in ("worlds", "robots", "families"):
@@ -79,7 +80,7 @@ class TerrainStress(RunOptions):
 
     @property
     def places(self) -> list[Place]:
-        """Every robot, world and severity to walk at, in the order of the cells."""
+        """All combinations of robot, world, family of ground and severity, in order."""
         found = []
         for robot, world in itertools.product(self.robots, self.worlds):
             leg_m = leg_length_m(robots.get(robot))
@@ -91,7 +92,7 @@ class TerrainStress(RunOptions):
 
 
 def main(config: TerrainStress) -> None:
-    """Walk cell by cell; a cell that is done is not computed again."""
+    """Run all trials; a resumed run skips those that it has done."""
     folder, config = open_run(VERB, config)
     gaits = load_gaits(config.gaits)
     cells = _walk_cells(folder, config, gaits)
@@ -112,10 +113,10 @@ def main(config: TerrainStress) -> None:
 def _walk_cells(
     folder: RunFolder, config: TerrainStress, gaits: Mapping[str, Gait]
 ) -> list[dict[str, Any]]:
-    """Compute all cells that the folder does not hold yet.
+    """Compute all cells that the run folder does not hold yet.
 
-    A cell is a place with the trials of all gaits. Its bits depend on the seed alone,
-    so that a run that was stopped continues to the same result.
+    A cell is the trials of all gaits for one robot, world, family of ground and
+    severity. It depends on the seed alone: a resumed run has the same result.
     """
     state = _state(folder, gaits)
     cells: list[dict[str, Any]] = state["cells"]
@@ -133,7 +134,7 @@ def _walk_cells(
 
 
 def _state(folder: RunFolder, gaits: Mapping[str, Gait]) -> dict[str, Any]:
-    """The gaits, and the cells that are done (none in a new run).
+    """The stored state of a run: its gaits, and the cells done (none in a new run).
 
     Raises:
       BadValueError: a gait's file has changed since the run began.

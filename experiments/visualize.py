@@ -24,7 +24,8 @@ from worlds.rerun_files.log import write_rrd
 from worlds.rerun_files.viewer import open_viewer
 
 _HEAD_BYTES = 4096
-"""Number of bytes, from a file's begin, in which groundwalk's mark is looked for."""
+"""Number of bytes at the start of a .rrd file in which the word "groundwalk", which
+marks files that groundwalk has written, is looked for."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Visualize:
 
     All recordings go into one .rrd file, side by side. For a run folder, these are all
     its recordings; its search is written to a separate file, search.rrd, and drawn as a
-    picture. A diagnosis has written its overlay.rrd already, which is named and opened.
+    picture. A diagnosis already has an overlay.rrd, whose name is printed.
     See docs/seeing.md.
 
     Attributes:
@@ -50,14 +51,14 @@ class Visualize:
     json: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse missing paths, and files that exist."""
+        """Refuse paths that do not exist, and an output file that exists."""
         check_paths(self.paths)
         if self.out is not None:
             check_new(self.out, ".rrd")
 
 
 def main(config: Visualize) -> None:
-    """Write all files for which there is data, and print their names."""
+    """Write the Rerun files and the picture of the search, and print their names."""
     runs = [RunFolder.at(path) for path in config.paths if path.is_dir()]
     pictures = [*filter(None, map(picture_search, runs))]
     recordings = gather(config.paths)
@@ -101,10 +102,11 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 
 def gather(paths: Sequence[Path]) -> dict[str, Recording]:
-    """Read recordings, by scene name; with several paths, each name begins with one.
+    """Read recordings, by the names under which they are shown.
 
     Args:
-      paths: run folders and recordings.
+      paths: run folders and recordings. If there are several, the name of a run's
+        recording begins with the name of its folder.
 
     Raises:
       BadRecordingError: a file is no recording.
@@ -122,7 +124,7 @@ def gather(paths: Sequence[Path]) -> dict[str, Recording]:
 
 
 def default_out(paths: Sequence[Path]) -> Path:
-    """The file to write if no --out is given.
+    """The .rrd file that `groundwalk visualize` writes without --out.
 
     Raises:
       BadValueError: the file exists and was not written by groundwalk.

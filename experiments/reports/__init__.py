@@ -28,4 +28,5 @@ __getattr__ = lazy_face(
         "tables": ["print_table"],
     },
 )
-"""Imports nothing before it is used: the doctor works without any package."""
+"""Imports a module of this package when one of its names is first used, so that
+`groundwalk doctor` works without any installed package."""

@@ -1,4 +1,4 @@
-"""Figures as PNG files."""
+"""Writes Matplotlib figures as PNG files."""
 
 import io
 from pathlib import Path
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
 
 def write_figure(figure: "Figure", path: Path) -> None:
-    """Write a figure as a PNG file, whole or not at all.
+    """Write a figure as a PNG file; after an error no partial file remains.
 
     Args:
-      figure: a figure made without pyplot, which therefore needs no closing.
-      path: the file.
+      figure: a figure made without pyplot, so that it need not be closed.
+      path: the file to write.
     """
     png = io.BytesIO()
     figure.savefig(png, format="png")

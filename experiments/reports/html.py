@@ -1,4 +1,4 @@
-"""HTML pages that contain all they need: no script, style or picture from outside."""
+"""Self-contained HTML pages: no script, style or picture is loaded from outside."""
 
 import base64
 import html
@@ -17,10 +17,10 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 
 def render(template: str, **values: Any) -> str:
-    """Fill a template in `templates/`; texts are escaped.
+    """Fill a Jinja template of the folder `templates/`; texts are escaped.
 
     Args:
-      template: name of its file; it extends `report_base.html.jinja`.
+      template: name of the template's file.
       **values: the template's variables.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -41,7 +41,7 @@ def body_html(markdown: str, folder: Path) -> str:
 
     Args:
       markdown: the text.
-      folder: where the pictures are.
+      folder: folder of the pictures.
     """
     return str(_parser().render(markdown, {FOLDER: folder}))
 
@@ -63,7 +63,7 @@ def _parser() -> "MarkdownIt":
 
 
 def _pictures_stand_alone(state: "StateCore") -> None:
-    """Hide the tags of paragraphs that hold only a picture, which becomes a figure."""
+    """Hide the tags of paragraphs with only a picture: it is rendered as a figure."""
     for k, token in enumerate([] if state.inlineMode else state.tokens):
         if token.type == "inline" and _is_picture(token.children or []):
             state.tokens[k - 1].hidden = state.tokens[k + 1].hidden = True
@@ -80,7 +80,7 @@ def _figure(
     options: object,
     env: Mapping[str, Path],
 ) -> str:
-    """A picture with its caption below; only the caption if it cannot be embedded."""
+    """HTML of a picture with its caption; only the caption if it cannot be embedded."""
     token = tokens[index]
     words = html.escape(token.content)
     name = str(token.attrGet("src"))

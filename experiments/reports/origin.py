@@ -1,4 +1,4 @@
-"""The origin of a page: the command that repeats its run, settings and versions."""
+"""Origin of a report page: the command that repeats its run, settings, versions."""
 
 import os
 import shlex
@@ -13,14 +13,14 @@ from experiments.runs.repeat_command import NOT_REPEATED
 
 @dataclass(frozen=True)
 class Origin:
-    """The origin of a page, in words.
+    """The origin of a report page, as texts.
 
     Attributes:
       command: the command line that repeats the run.
-      commit: the code's commit, whether there were uncommitted changes, and the commits
-        at which the run was resumed.
+      commit: the code's git commit, whether there were uncommitted changes, and the
+        commits at which the run was resumed.
       settings: values of all options by name, including defaults.
-      versions: of groundwalk, Python and the packages, by name.
+      versions: versions of groundwalk, Python and the packages, by name.
 
     Example:
       >>> Origin.of_run(RunFolder.at(Path("runs/mine"))).command
@@ -38,7 +38,7 @@ class Origin:
 
         Args:
           provenance: content of the run's provenance.json.
-          settings: values of the options by name; those that are None are left out.
+          settings: values of the options by name; options that are None are left out.
         """
         known = [provenance, *provenance.get("resumed", ())]
         versions = {
@@ -65,11 +65,11 @@ class Origin:
         return cls.of(folder.read_json(PROVENANCE), chosen)
 
     def rows(self) -> list[tuple[str, str]]:
-        """Names and values of all settings, the commit, and all versions."""
+        """Pairs of name and text: all settings, the commit, and all versions."""
         return [*self.settings.items(), ("commit", self.commit), *self.versions.items()]
 
     def to_markdown(self) -> list[str]:
-        """Command, settings, commit and versions as a list of four items."""
+        """Lines of a Markdown list: command, settings, commit and versions."""
         settings = ", ".join(f"{name} {value}" for name, value in self.settings.items())
         versions = ", ".join(f"{name} {value}" for name, value in self.versions.items())
         return [
@@ -86,13 +86,16 @@ def _code(provenance: Mapping[str, Any]) -> str:
 
 
 def command_of(provenance: Mapping[str, Any]) -> str:
-    """The command line of a run; early versions noted only its arguments."""
+    """The command line of a run, from its provenance.json.
+
+    Early versions of groundwalk stored only the arguments.
+    """
     known = provenance.get("command")
     return str(known or shlex.join(["groundwalk", *provenance["arguments"]]))
 
 
 def shown(text: str) -> str:
-    """A text for readers: if it is a path in the current folder, relative to it."""
+    """Make a text a relative path, if it is a path in the current folder."""
     return text.removeprefix(f"{Path.cwd()}{os.sep}")
 
 

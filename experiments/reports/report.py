@@ -1,7 +1,7 @@
 """The page of a run in two forms: Markdown for a repository, and one HTML file.
 
-All verbs write their pages with `Report`, except the diagnosis, whose figures need a
-template of their own; it shares the frame and the style of the HTML.
+All verbs write their pages with `Report`, except `groundwalk diagnose`, whose figures
+need an HTML template of their own with the same style.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ class Report:
     """A page: a question, its answer, the tables and pictures behind it, its origin.
 
     Attributes:
-      question: the heading.
+      question: the heading of the page.
       answer: paragraphs in plain words; may be empty.
       body: lines of Markdown: tables, notes, pictures. A picture is the name of a file
         beside the page.
@@ -49,7 +49,7 @@ class Report:
         """The page as HTML that contains its pictures and loads nothing else.
 
         Args:
-          folder: where the pictures are.
+          folder: folder of the pictures.
         """
         return render(
             TEMPLATE,
@@ -63,10 +63,10 @@ class Report:
         )
 
     def write(self, folder: Path, page: str = PAGE) -> None:
-        """Write both forms, each file at once.
+        """Write the page as Markdown and as `report.html`, without partial files.
 
         Args:
-          folder: where the pictures are.
+          folder: folder of the pictures, into which both files are written.
           page: name of the Markdown file.
         """
         write_text(folder / page, self.to_markdown())
@@ -90,6 +90,6 @@ def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> lis
 
 
 def _are_numbers(texts: Sequence[str]) -> bool:
-    """Whether all texts begin with a digit or a signed digit; "" and "-" may occur."""
+    """Whether every text is "", "-" or begins with a digit, with or without a sign."""
     found = [text for text in texts if text not in ("", "-")]
     return bool(found) and all(text.lstrip("+-")[:1].isdigit() for text in found)

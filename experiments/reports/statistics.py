@@ -1,14 +1,15 @@
-"""Confidence intervals of counted falls, and the severity at which half of them fall.
+"""Confidence intervals of fall rates, and the ground on which half of the trials fall.
 
-`half_fall` fits a logistic curve. Let x be the place on the ladder of severities, 0 its
-mildest rung and 1 its hardest, on a logarithmic scale. The share of trials that fall is
+`half_fall` fits a logistic curve. The severities tried (of a slope, a bump ...) are the
+rungs of a ladder. Let x be the position on the ladder, 0 at its mildest rung and 1 at
+its hardest, linear in the logarithm of the severity. The share of trials that fall is
 modelled as 1 / (1 + exp(-(x - m) / w)), w > 0, because harder ground is never safer.
-m is the result; w is a nuisance parameter. The estimate has the largest likelihood; the
-interval holds all m whose profile log-likelihood is at most 3.84 / 2 below it (Wilks
-1938). If all trials stand up to some rung and all fall from the next one on, the
-likelihood grows without end as w shrinks: with the smallest width that is allowed, 90 %
-of the change happens within a tenth of the ladder, and the estimate is the middle
-between these two rungs.
+The middle m is the result; the width w is a nuisance parameter. The estimate maximizes
+the likelihood; the interval holds all m whose profile log-likelihood is at most
+3.84 / 2 below the maximum (Wilks 1938). If no trial falls up to some rung and all fall
+from the next one on, the likelihood grows without bound as w shrinks; w is therefore
+bounded so that 90 % of the change happens within a tenth of the ladder. The estimate is
+then the middle between these two rungs.
 """
 
 from collections.abc import Sequence
@@ -31,10 +32,11 @@ WIDTHS = np.geomspace(0.017, 1.0, 16)
 from 5 to 95 % over 5.9 widths, so the smallest is a tenth of the ladder."""
 
 MIDDLES = np.linspace(-1.0, 2.0, 601)
-"""Candidate middles m: from one ladder length below to one above, in steps of 0.005."""
+"""Candidate middles m of the logistic curve, in ladder lengths from the mildest rung:
+from one length below the ladder to one above it, in steps of 0.005."""
 
 _FLAT = 1e-9
-"""Log-likelihoods that differ by less are treated as equal: rounding error."""
+"""Log-likelihoods that differ by less than this (rounding error) count as equal."""
 
 
 def wilson(hits: int, trials: int) -> tuple[float, float]:
@@ -69,8 +71,8 @@ class HalfFall:
       beyond: "" if the severity lies within the ladder, ">" if it is harder than every
         rung, "<" if it is milder.
       severity: the estimate; the hardest rung if `beyond` is ">", the mildest if "<".
-      low, high: 95 % interval from mild to hard (for friction, where less is harder,
-        `low` is the larger number); None if that end lies outside of the ladder.
+      low, high: ends of the 95 % interval, the milder first (for friction, where less
+        is harder, `low` is the larger number); None for an end outside of the ladder.
     """
 
     beyond: str
@@ -87,12 +89,13 @@ def half_fall(
     """Estimate the severity at which half of the trials fall.
 
     Args:
-      severities: (rungs,) positive, from the mildest to the hardest, rising or falling.
-      falls: (rungs,) trials that fell.
-      trials: (rungs,) all trials.
+      severities: (rungs,) positive severities from the mildest to the hardest, either
+        rising (heights) or falling (friction).
+      falls: (rungs,) number of trials that fell.
+      trials: (rungs,) number of all trials.
 
     Raises:
-      BadValueError: there are less than two rungs, or they are not ordered.
+      BadValueError: there are fewer than two severities, or they are not ordered.
 
     Example:
       >>> half_fall([1, 2, 4, 8], falls=[0, 0, 8, 8], trials=[8] * 4).beyond
@@ -129,7 +132,7 @@ def _is_ordered(ladder: FloatArray) -> bool:
 
 
 def _profile(x: FloatArray, falls: FloatArray, trials: FloatArray) -> FloatArray:
-    """(middles,) log-likelihood of each middle, maximized over the widths."""
+    """(middles,) log-likelihood of each of `MIDDLES`, maximized over `WIDTHS`."""
     away = (x - MIDDLES[:, None, None]) / WIDTHS[:, None]
     # log p = -log(1 + exp(-z)), log (1 - p) = -log(1 + exp(z))
     likelihood = -(

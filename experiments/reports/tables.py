@@ -10,7 +10,7 @@ Scores = Mapping[str, Mapping[str, Mapping[str, Any]]]
 """The fields of a `Score` by world ("sim", "real") and by the name of the gait."""
 
 SCORE_HEADINGS = ("world", "gait", "speed [cm/s]", "falls")
-"""Headings of `score_rows`."""
+"""Headings of the table of scores, whose rows `score_rows` makes."""
 
 
 def print_table(
@@ -25,7 +25,7 @@ def print_table(
     Args:
       columns: the headings. On a terminal only the last column is wrapped.
       rows: the cells, one text for each column.
-      colours: a colour of rich for the first cell of each row; none by default.
+      colours: colour of each row's first cell, such as "red"; none by default.
 
     Example:
       >>> print_table(["robot", "joints"], [["nao", "22"]])
@@ -55,7 +55,7 @@ def print_table(
 
 
 def score_rows(scores: Scores) -> list[tuple[str, str, str, str]]:
-    """One row of texts for each world and gait, as `SCORE_HEADINGS` has them."""
+    """Rows (world, gait, speed [cm/s], falls) of texts, one for each world and gait."""
     return [
         (
             world,
@@ -69,12 +69,12 @@ def score_rows(scores: Scores) -> list[tuple[str, str, str, str]]:
 
 
 def print_json(result: Mapping[str, Any]) -> None:
-    """Print a result for programs: nothing else goes to standard output."""
+    """Print a result as JSON, for programs that read standard output."""
     print(json.dumps(result, indent=1))
 
 
 def print_folder(folder: Path) -> None:
-    """Tell where a run has written its pages, pictures and recordings."""
+    """Print the path of the run folder, which holds pages, pictures and recordings."""
     print(f"Results written to {folder}")
 
 

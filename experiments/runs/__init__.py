@@ -1,4 +1,4 @@
-"""Runs: their folders and options, progress, worker processes, and what may fail.
+"""Runs: folders, options, progress, worker processes, and steps that may fail.
 
 A run folder holds the options of a run, its state and its results; a run that was
 stopped is continued from it.
@@ -32,4 +32,5 @@ __getattr__ = lazy_face(
         "processes": ["as_done", "process_pool"],
     },
 )
-"""Imports nothing before it is used: the doctor works without any package."""
+"""Imports a module of this package when one of its names is first used, so that
+`groundwalk doctor` works without any installed package."""

@@ -12,18 +12,14 @@ from diagnosis.search.hooks import Saved
 from groundwalk.files import write_bytes
 
 PLAIN = "plain"
-"""Name of the array that holds JSON text as bytes."""
+"""Name of the array, in an npz file, that holds the JSON part of a result as bytes."""
 
 
 class CheckpointFiles:
-    """A checkpoint with one npz file for each result; pickle is never used."""
+    """A folder of intermediate results, one npz file for each; pickle is never used."""
 
     def __init__(self, folder: Path) -> None:
-        """Use a folder.
-
-        Args:
-          folder: for the files alone; it is made with the first of them.
-        """
+        """Use a folder that holds nothing else; the first `save` makes it."""
         self._folder = folder
 
     def load(self, key: str) -> Saved | None:
@@ -36,7 +32,7 @@ class CheckpointFiles:
         return Saved(json.loads(arrays.pop(PLAIN).tobytes()), arrays)
 
     def save(self, key: str, saved: Saved) -> None:
-        """Write a result under a key, all of it or nothing."""
+        """Write a result under a key; after an error no partial file remains."""
         text = np.frombuffer(json.dumps(saved.plain).encode(), np.uint8)
         arrays: dict[str, Any] = {PLAIN: text, **saved.arrays}
         content = io.BytesIO()
@@ -44,9 +40,9 @@ class CheckpointFiles:
         write_bytes(self._folder / f"{key}.npz", content.getvalue())
 
     def exists(self) -> bool:
-        """Whether the run has results that are not complete yet."""
+        """Whether the folder exists, that is, whether a run was interrupted."""
         return self._folder.exists()
 
     def delete(self) -> None:
-        """Delete all files; a complete run does not need them."""
+        """Delete the folder, which a complete run does not need."""
         shutil.rmtree(self._folder, ignore_errors=True)

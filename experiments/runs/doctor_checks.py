@@ -1,6 +1,6 @@
 """The checks of `groundwalk doctor`: Python, packages, robot files, viewer, folder.
 
-They need nothing but Python itself, so that they work when every package is missing.
+They use only the standard library, so that they work when every package is missing.
 """
 
 import enum
@@ -20,7 +20,7 @@ from pathlib import Path
 TESTED_PYTHON = (3, 11)
 
 PINS = Path(__file__).resolve().parents[2] / "constraints.txt"
-"""The tested versions of packages; only a checkout has this file."""
+"""File with the tested package versions; an installed groundwalk does not have it."""
 
 IMPORTS = {
     "absl-py": "absl",
@@ -31,27 +31,28 @@ IMPORTS = {
     "rerun-sdk": "rerun",
     "sb3-contrib": "sb3_contrib",
 }
-"""Module to import for a package whose module has another name."""
+"""Module whose import checks a package, where it is not named like the package; ""
+for a package without a module."""
 
 
 class State(enum.StrEnum):
-    """Severity of a finding."""
+    """Severity of a finding of `groundwalk doctor`."""
 
     OK = "ok"
     NOTE = "note"
-    """It works, but differs from the tested setup; or something optional is missing."""
+    """The finding works, but is not as tested; or something optional is missing."""
     FAIL = "fail"
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the report.
+    """The result of one check of `groundwalk doctor`.
 
     Attributes:
-      name: what was checked, such as a package.
+      name: the thing that was checked, such as a package.
       state: severity.
-      found: what is installed.
-      advice: what to do; empty if there is nothing to do.
+      found: the version or file found, or a word such as "missing".
+      advice: what the user should do; "" for nothing.
     """
 
     name: str
@@ -97,9 +98,9 @@ def check_package(
 
     Args:
       requirement: name and lowest version, such as "mujoco>=4.0".
-      tested: the version that groundwalk is tested with, if known.
+      tested: the version that groundwalk is tested with; None if not known.
       find_version: returns a package's version or raises PackageNotFoundError.
-      find_problem: imports a module; returns the error's text, "" if it works.
+      find_problem: imports a module and returns the error's text, "" if it works.
     """
     name, least = requirement.split(">=")
     wanted = f"{name}=={tested}" if tested else f"'{requirement}'"
@@ -164,7 +165,7 @@ def check_viewer(path: str) -> Finding:
 
 
 def check_folder(folder: Path) -> Finding:
-    """Check that files can be written into a folder."""
+    """Check that files can be written into a folder, by writing one."""
     try:
         with tempfile.TemporaryFile(dir=folder):
             return Finding("this folder", State.OK, "can be written to")
@@ -174,7 +175,7 @@ def check_folder(folder: Path) -> Finding:
 
 
 def examine() -> list[Finding]:
-    """Do all checks of this machine."""
+    """Run all checks on this machine."""
     beside = str(Path(sys.executable).parent)
     return [
         check_python(sys.version_info[:2]),

@@ -1,4 +1,4 @@
-"""Pictures and pages whose failure must not end a run that has its result."""
+"""A context in which errors are only printed: for pictures and pages of a run."""
 
 import contextlib
 import sys
@@ -9,12 +9,12 @@ from collections.abc import Iterator
 def extra(name: str) -> Iterator[None]:
     """Make a picture, an overlay or a page; if that fails, print one line and go on.
 
-    A run has its result, perhaps of hours, before it draws anything. An error of any
-    kind within the block therefore becomes one line on standard error, and the program
-    continues behind the block. Ctrl-C is not caught.
+    A run already has its result, perhaps of hours, when it draws. An exception within
+    the block is therefore printed as one line on standard error, and the program
+    continues after the block. Ctrl-C is not caught.
 
     Args:
-      name: name of the file or files that are made, for the line.
+      name: name of the file or files that are made, for the printed line.
 
     Example:
       >>> with extra("walk.png"):

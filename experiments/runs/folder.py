@@ -25,11 +25,12 @@ PACKAGES = (
     "mujoco", "pybullet", "cma", "numpy", "scipy", "rerun-sdk", "pyarrow", "torch",
 )  # fmt: skip
 FILE_ENDS = frozenset({".toml", ".urdf", ".xml", ".json"})
-"""Endings by which the text of an option is known to be a file, such as a robot's."""
+"""Endings by which an option's text, such as --robot, is known to be a file name."""
 
 _CODE = ("commit", "changed")
 _SOURCES = (":(top)", ":(top,exclude)docs/results")
-"""The files that git is asked about: all but results, which do not change the code."""
+"""Files that git checks for uncommitted changes: all but the stored results, which do
+not change the code (a pathspec of git)."""
 
 Config = TypeVar("Config", bound=Any)
 
@@ -43,12 +44,12 @@ class RunFolder:
     """
 
     def __init__(self, path: Path) -> None:
-        """Use `create` or `at`, which check the folder."""
+        """Use a folder without any check; `create` and `at` check it."""
         self.path = path
         self._lock: FolderLock | None = None
 
     def lock(self) -> None:
-        """Keep other processes out for as long as this object lives.
+        """Keep other processes out of the folder for as long as this object lives.
 
         Raises:
           RunFolderError: another process writes into the folder.
@@ -57,12 +58,12 @@ class RunFolder:
 
     @classmethod
     def create(cls, verb: str, config: Any) -> Self:
-        """Make a new folder; write down the configuration and the code's version.
+        """Make a new folder; write the configuration and the code's version into it.
 
         Args:
           verb: the verb that runs, as on the command line.
-          config: its options, a dataclass with `out` and `seed`; if `out` is None, the
-            folder is `runs/<verb>/<date>_<time>_s<seed>`.
+          config: the verb's options, a dataclass with `out` and `seed`; if `out` is
+            None, the folder is `runs/<verb>/<date>_<time>_s<seed>`.
 
         Raises:
           RunFolderError: the folder exists already.
@@ -86,10 +87,10 @@ class RunFolder:
 
         Args:
           path: the folder.
-          verb: the verb that the run must be of; any by default.
+          verb: the verb that must have made the folder; any by default.
 
         Raises:
-          RunFolderError: it is no run folder, or of another verb.
+          RunFolderError: it is no run folder, or another verb has made it.
         """
         if not (path / CONFIG).is_file():
             raise RunFolderError(f"{path} is no run folder: it holds no {CONFIG}")
@@ -100,7 +101,7 @@ class RunFolder:
         return folder
 
     def note_resumed(self) -> None:
-        """Note the version of the code that resumes, if it is not noted yet."""
+        """Add the version of the code that resumes the run to its provenance.json."""
         began = self.read_json(PROVENANCE)
         known = [began, *began.get("resumed", [])]
         now = {key: value for key, value in provenance().items() if key in _CODE}
@@ -109,27 +110,27 @@ class RunFolder:
             self.write_json(PROVENANCE, began)
 
     def write_json(self, name: str, content: Any) -> None:
-        """Write a JSON file, whole or not at all.
+        """Write a JSON file; after an error no partial file remains.
 
         Args:
           name: the file's name in the folder.
-          content: values that JSON knows.
+          content: dicts, lists, texts, numbers, booleans and None.
         """
         self.write_text(name, json.dumps(content, indent=1) + "\n")
 
     def write_text(self, name: str, content: str) -> None:
-        """Write a text file, whole or not at all."""
+        """Write a text file; after an error no partial file remains."""
         write_text(self.path / name, content)
 
     def write_bytes(self, name: str, content: bytes) -> None:
-        """Write a binary file, whole or not at all."""
+        """Write a binary file; after an error no partial file remains."""
         write_bytes(self.path / name, content)
 
     def read_json(self, name: str) -> dict[str, Any]:
-        """Read a JSON file that holds a table.
+        """Read a JSON file whose content is an object (a dict).
 
         Raises:
-          RunFolderError: the file is missing, damaged or holds no table.
+          RunFolderError: the file is missing, damaged or holds no object.
         """
         path = self.path / name
         try:
@@ -153,8 +154,8 @@ def check_free(path: Path | None, resumable: bool = False) -> None:
     """Refuse a folder that exists already: no run is overwritten.
 
     Args:
-      path: the folder of a new run; None for a default that is always new.
-      resumable: whether the verb has the option --resume.
+      path: the folder of a new run; None for the default, which is always new.
+      resumable: whether the error message may advise the option --resume.
 
     Raises:
       RunFolderError: the folder exists.
@@ -165,11 +166,11 @@ def check_free(path: Path | None, resumable: bool = False) -> None:
 
 
 def check_new(path: Path, suffix: str = "") -> None:
-    """Refuse a path at which no new file can be made.
+    """Refuse the path of an output file that exists or has the wrong ending.
 
     Args:
-      path: as given with --out.
-      suffix: what its name must end with.
+      path: the file to write, as given with --out.
+      suffix: required ending of its name, such as ".rrd"; "" for any.
 
     Raises:
       BadValueError: the path exists, or the name ends otherwise.
@@ -188,13 +189,13 @@ def open_run(verb: str, config: Config, may_grow: str = "") -> tuple[RunFolder, 
 
     Args:
       verb: the verb that runs, as on the command line.
-      config: its options, a frozen dataclass. A resumed run keeps the options that it
-        was started with.
+      config: the verb's options, a frozen dataclass. A resumed run keeps the options
+        that it was started with.
       may_grow: name of an option that may be larger when the run is resumed. If it is,
-        the result is removed, so that the run continues beyond its end.
+        the result is deleted, so that the run continues beyond its former end.
 
     Returns:
-      The folder, and the options that count; files in them have whole paths.
+      The folder, and the options to use, with absolute paths.
 
     Raises:
       RunFolderError: a new run's folder exists, a resumed one's does not, or another
@@ -239,7 +240,7 @@ def open_run(verb: str, config: Config, may_grow: str = "") -> tuple[RunFolder, 
 
 
 def with_whole_paths(config: Config) -> Config:
-    """Options whose files have whole paths, so that they are found from any folder.
+    """Options with absolute file paths, so that the files are found from any folder.
 
     Args:
       config: a frozen dataclass. `out` and `resume` stay as they are.
@@ -253,7 +254,7 @@ def with_whole_paths(config: Config) -> Config:
 
 
 def _whole(value: Any) -> Any:
-    """A path, or the text of a file that exists, with its whole path."""
+    """Make a path, or a text that names an existing file, an absolute path."""
     if isinstance(value, tuple):
         return tuple(map(_whole, value))
     if isinstance(value, Path):
@@ -265,7 +266,7 @@ def _whole(value: Any) -> Any:
 
 
 def to_plain(config: Any) -> dict[str, Any]:
-    """Options by name as values that JSON knows; paths become text."""
+    """Options by name, as values that JSON can store; paths become texts."""
     plain = json_data.to_plain(config)
     return {one.name: plain[one.name] for one in options_of(config)}
 
@@ -291,7 +292,7 @@ def _version(package: str) -> str | None:
 
 
 def _git(*arguments: str) -> str | None:
-    """The answer of git in the folder of this code; None outside a repository."""
+    """Output of a git command in the folder of this code; None outside a repository."""
     try:
         answer = subprocess.run(
             ["git", *arguments],

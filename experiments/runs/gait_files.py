@@ -1,4 +1,4 @@
-"""Gaits as users name them: by name, as a JSON file, or as a run folder."""
+"""Loads gaits that users give by name, as a JSON file, or as a run folder."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,10 +25,10 @@ def load_gait(name: str) -> Gait:
 
 
 def load_gaits(names: Sequence[str]) -> dict[str, Gait]:
-    """Load gaits, by their short names.
+    """Load gaits; the result's keys are their short names (see `short_name`).
 
     Args:
-      names: gaits as `load_gait` takes them.
+      names: for each gait its name, its JSON file, or the run folder of a search.
 
     Raises:
       BadValueError: two gaits have the same short name.
@@ -45,10 +45,10 @@ def load_gaits(names: Sequence[str]) -> dict[str, Gait]:
 
 
 def short_name(name: str) -> str:
-    """The name, for tables and file names, of a gait or robot that may be a file.
+    """Shorten the name of a gait or robot, which may be a file, for tables and files.
 
-    A file is called as itself without its ending; a run folder, or the `result.json` in
-    it, as the folder.
+    The result is a file's name without its ending; of a run folder, or of the
+    `result.json` in it, the folder's name.
 
     Example:
       >>> short_name("gaits/fast.json"), short_name("runs/mine/result.json")

@@ -9,14 +9,14 @@ from typing import ClassVar, Self
 from groundwalk.errors import RunFolderError
 
 LOCK = ".lock"
-"""The lock's file within the folder; it holds the number of the process."""
+"""Name of the lock file in a run folder; it holds the ID of the process."""
 
 
 class FolderLock:
     """Keeps other processes out of a folder for as long as this object lives.
 
-    The operating system ends the lock when the process dies, so that the folder of a
-    killed run can be used at once. Within one process a folder can be locked again.
+    The operating system releases the lock when the process dies, so that the folder of
+    a killed run can be used at once. One process can lock the same folder repeatedly.
 
     Example:
       >>> lock = FolderLock.of(Path("runs/mine"))
@@ -28,7 +28,7 @@ class FolderLock:
     )
 
     def __init__(self, folder: Path) -> None:
-        """Use `of`: it finds the lock that this process already has."""
+        """Lock a folder. Call `of` instead: it reuses a lock of this process."""
         file = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT)
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -50,7 +50,7 @@ class FolderLock:
         """Lock a folder that exists.
 
         Raises:
-          RunFolderError: another process, which still runs, has locked it.
+          RunFolderError: another running process has locked it.
         """
         key = folder.resolve()
         lock = cls._held.get(key)

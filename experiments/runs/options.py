@@ -1,4 +1,4 @@
-"""Options that several verbs share, and their check."""
+"""Options that several verbs of the command line share, and their check."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class RunOptions:
     """
 
     if_interrupted: ClassVar[str] = RESUMABLE
-    """What the command line says after "interrupted"."""
+    """Text that is printed after "interrupted" on Ctrl-C: how to continue the run."""
 
     seed: int = 1
     out: Path | None = None
@@ -35,16 +35,16 @@ class RunOptions:
     json: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what no run can do, before anything is written."""
+        """Refuse invalid options before anything is written."""
         check_at_least(self, seed=0)
 
 
 def check_at_least(options: Any, **least: float) -> None:
-    """Refuse options that are too small, or not a number.
+    """Refuse options that are too small or NaN.
 
     Args:
-      options: the options, a dataclass; None is allowed for any of them.
-      **least: the smallest value that is allowed, by the option's name.
+      options: the options, a dataclass; an option that is None is not checked.
+      **least: the smallest allowed value, by the option's name.
 
     Raises:
       BadValueError: an option is smaller, or NaN.
@@ -59,5 +59,5 @@ def check_at_least(options: Any, **least: float) -> None:
 
 
 def options_of(config: Any) -> list["dataclasses.Field[Any]"]:
-    """The fields of a configuration: its own first, then those of `RunOptions`."""
+    """Fields of a dataclass of options: its own, then those of `RunOptions`."""
     return sorted(dataclasses.fields(config), key=lambda field: bool(field.kw_only))

@@ -1,4 +1,4 @@
-"""Calls that are spread over several processes, each started afresh."""
+"""Distributes calls over worker processes, which are spawned, not forked."""
 
 import contextlib
 import os
@@ -14,16 +14,16 @@ Result = TypeVar("Result")
 
 @contextlib.contextmanager
 def process_pool(processes: int, calls: int | None = None) -> Iterator[Executor]:
-    """Processes that compute submitted calls; closed at the end of the block.
+    """An executor of worker processes, closed at the end of the `with` block.
 
-    They are spawned, not forked, because PyBullet and MuJoCo keep state that no other
-    process may inherit. Functions must therefore belong to a module; arguments and
-    results are pickled. If the block ends by an error or Ctrl-C, calls that have not
-    begun are cancelled.
+    The processes are spawned, not forked, because PyBullet and MuJoCo keep state that
+    no other process may inherit. Functions must therefore be defined at the top of a
+    module; arguments and results are pickled. If the block ends by an error or Ctrl-C,
+    calls that have not begun are cancelled.
 
     Args:
-      processes: how many; 0 for one per core.
-      calls: number of calls, if it is known: no more processes than these are started.
+      processes: number of processes; 0 for one per core.
+      calls: number of calls, if known; no more processes than this are started.
 
     Example:
       >>> with process_pool(2) as pool:
@@ -46,12 +46,12 @@ def process_pool(processes: int, calls: int | None = None) -> Iterator[Executor]
 def as_done(
     calls: Mapping[Key, "Future[Result]"],
 ) -> Iterator[tuple[Key, "Future[Result]"]]:
-    """Submitted calls with their keys, in the order in which they finish."""
+    """Yield each key and its submitted call, in the order in which the calls finish."""
     keys = {call: key for key, call in calls.items()}
     for call in as_completed(keys):
         yield keys[call], call
 
 
 def _end_quietly() -> None:
-    """Let Ctrl-C end a worker without a traceback: its parent reports it."""
+    """Let Ctrl-C end a worker process silently: its parent process reports it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)

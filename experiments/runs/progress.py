@@ -10,10 +10,10 @@ if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
 LINES_PER_TASK = 10
-"""Number of lines that are printed for a whole piece of work."""
+"""Number of lines of progress that are printed for one task, outside of a terminal."""
 
 LONG_S = 60.0
-"""Expected duration [s] from which the cost of a run is announced."""
+"""Expected duration of a run [s] from which it is announced before the run begins."""
 
 
 class Task(Protocol):
@@ -24,18 +24,18 @@ class Task(Protocol):
 
         Args:
           note: short text about the last step, such as its result.
-          steps: how many steps are done since the last report.
+          steps: number of steps done since the last report.
         """
 
 
 @contextmanager
 def progress(title: str, steps: int, done: int = 0) -> Iterator[Task]:
-    """Show the progress of a piece of work on standard error, with the time left.
+    """Show the progress of a task on standard error, with the time left.
 
     Args:
-      title: name of the work.
+      title: name of the task.
       steps: number of its steps.
-      done: number of steps that an earlier run has done.
+      done: number of steps that an interrupted run has done before.
 
     Example:
       >>> with progress("trials", steps=10) as task:
@@ -77,7 +77,7 @@ class _Bar:
 
 
 class _Lines:
-    """Prints a line of text for each tenth of the work."""
+    """Prints a line of text after each tenth of a task; used without a terminal."""
 
     def __init__(self, title: str, steps: int, done: int) -> None:
         self._title, self._steps, self._done = title, steps, done
@@ -95,16 +95,16 @@ class _Lines:
 
 
 class Stages:
-    """Progress of work in stages, one after another, each with its time left.
+    """Shows the progress of work in consecutive stages, each with its time left.
 
-    It is the progress display of `diagnosis.diagnose`. Use it in a `with` block.
+    `diagnosis.diagnose` takes it as its progress display. Use it in a `with` block.
     """
 
     def __init__(self, work: str, threads: int) -> None:
-        """Begin without a stage.
+        """Begin before the first stage.
 
         Args:
-          work: name of the work, for the line about its cost.
+          work: name of the work, for the line that announces its duration.
           threads: number of threads, for the same line.
         """
         self._work, self._threads = work, max(threads, 1)
@@ -123,10 +123,10 @@ class Stages:
         self._open.close()
 
     def cost(self, seconds: float) -> None:
-        """Print how long the work will take if that is more than a minute.
+        """Print how long the work will take, if that is more than a minute.
 
         Args:
-          seconds: estimated duration.
+          seconds: estimated duration [s].
         """
         if seconds > LONG_S:
             threads = f"{self._threads} thread{'s' if self._threads > 1 else ''}"
@@ -139,9 +139,9 @@ class Stages:
         """Finish the present stage and begin the next one.
 
         Args:
-          name: of the stage.
-          steps: rough number of its steps; if it has fewer, it ends early, if it has
-            more, it stays at its end until the next stage begins.
+          name: name of the next stage.
+          steps: its approximate number of steps. With fewer steps the display ends
+            early; with more it stays at 100 % until the next stage begins.
         """
         self._finish()
         self._left = max(steps, 1)

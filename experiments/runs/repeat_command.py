@@ -10,18 +10,18 @@ from experiments.command_line import VERBS
 from experiments.runs.options import options_of
 
 NOT_REPEATED = frozenset({"out", "resume", "json"})
-"""Options of the output, which do not change a result."""
+"""Options that are left out, because they do not change a result."""
 
 
 def repeat_command(verb: str, config: Any) -> str:
     """The command line that repeats a run.
 
-    It is the command line of this process. If the run was started from Python, as in a
-    notebook, it is made from the options that differ from their defaults.
+    That is the command line of this process. If the run was started from Python, as in
+    a notebook, it is made from the options that differ from their defaults.
 
     Args:
-      verb: the verb that runs, as in `RunFolder.create`: "transfer-toy" for a study.
-      config: its options, a dataclass.
+      verb: the verb that runs, such as "evaluate".
+      config: the verb's options, a dataclass.
     """
     program = _program(Path(sys.argv[0]))
     if program:
@@ -31,7 +31,7 @@ def repeat_command(verb: str, config: Any) -> str:
 
 
 def _program(path: Path) -> list[str]:
-    """The words that started this process; none if it was not groundwalk's code."""
+    """The words that started this process; none if groundwalk was not the program."""
     if path.name == "groundwalk":
         return ["groundwalk"]
     ours = Path(__file__).parents[1]

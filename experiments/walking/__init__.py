@@ -1,7 +1,7 @@
-"""Walking: trials of gaits, recording them, evaluating gaits and searching for them.
+"""Walking: runs and records trials of gaits, evaluates gaits and searches for them.
 
-The names below are for use from Python; `evaluation`, `search`, `tuning` and
-`gait_search` hold what the verbs are made of.
+The names in `__all__` are for use from Python. The modules `evaluation`, `search`,
+`tuning` and `gait_search` are used by the verbs of the command line.
 """
 
 from experiments.walking.recorder import Recorder

@@ -1,4 +1,4 @@
-"""How well gaits walk a course in a world: speed, its spread, and falls."""
+"""Evaluates how well gaits walk a course in a world: mean speed, spread, falls."""
 
 import contextlib
 import dataclasses
@@ -31,8 +31,8 @@ from worlds import (
 from worlds.hidden.effects import Hidden
 
 MOST_AT_ONCE = 60
-"""Largest number of robots that walk side by side: in the real world each needs 70 MB
-of memory."""
+"""Largest number of robots that walk at the same time, because each needs 70 MB of
+memory in the real world (PyBullet)."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,8 @@ class Score:
     """Summary of the trials of one gait in one world.
 
     Attributes:
-      speed_cm_s: mean forward speed [cm/s]; of a trial with a fall, until the fall.
+      speed_cm_s: forward speed [cm/s], the mean over the trials; the speed of a trial
+        with a fall is that until the fall.
       speed_std: standard deviation of the speed over the trials [cm/s].
       falls: number of trials that ended with a fall.
       trials: number of trials.
@@ -54,16 +55,17 @@ class Score:
 
 @dataclass(frozen=True)
 class Study:
-    """Where and how gaits are evaluated.
+    """The world, the ground and the rules of an evaluation of gaits.
 
     Attributes:
       world: "sim" or "real".
-      terrain: the ground, as text such as "lumps:amplitude_m=0.01"; every trial has its
-        own seed.
+      terrain: the ground, as text such as "lumps:amplitude_m=0.01"; each trial has
+        another random seed.
       trials: number of trials of each gait.
       rules: how a trial begins, and when it is over.
       threads: threads of the sim, or processes of the real world; 0 for one per core.
-      correction: folder or file of a diagnosis, whose effects the sim gets.
+      correction: run folder or `corrected.json` of a diagnosis, whose effects are added
+        to the sim; None for the plain sim.
       hidden: effects that the real world has and the sim does not.
     """
 
@@ -76,7 +78,7 @@ class Study:
     hidden: tuple[Hidden, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse unknown worlds and terrains, and less than one trial."""
+        """Refuse an unknown world or terrain, or fewer than one trial."""
         worlds.kind(self.world)
         parse(self.terrain)
         check_at_least(self, trials=1, threads=0)
@@ -110,9 +112,9 @@ class Outcome:
     """The trials of one gait in a world.
 
     Attributes:
-      score: their summary.
-      trials: how each of them went.
-      recording: the first trial, tick by tick.
+      score: summary of the trials.
+      trials: distance, duration and end of each trial.
+      recording: recording of the first trial.
     """
 
     score: Score
@@ -129,10 +131,10 @@ def evaluate(
     """Let each gait walk the same trials: the same grounds, noise and start poses.
 
     Args:
-      study: where and how they walk.
+      study: world, ground and rules of the trials.
       description: the robot model.
       gaits: the gaits by name.
-      seed: of the grounds, the sensor noise and the start poses.
+      seed: seed of the grounds, the sensor noise and the start poses.
 
     Returns:
       The outcome of each gait, by its name.
@@ -156,7 +158,7 @@ def evaluate(
 
 @dataclass(frozen=True, eq=False)
 class _Start:
-    """Number, ground and seeds of a trial: the same for all gaits."""
+    """Number, ground and seeds of a trial, which are the same for all gaits."""
 
     number: int
     spec: TerrainSpec
@@ -182,7 +184,7 @@ def _walk(
     wave: Sequence[tuple[str, _Start]],
     on_end: Callable[[], object],
 ) -> tuple[Trials, dict[str, Recording]]:
-    """Walk some trials side by side; record those that are the first of their gait."""
+    """Run trials (gait name and start) in one world; record each gait's trial 0."""
     starts = [start for _, start in wave]
     grounds, seeds = [s.ground for s in starts], [s.of_noise for s in starts]
     world = study.make_world(description, grounds, seeds)
@@ -207,7 +209,7 @@ def _walk(
 
 
 def score(trials: Trials) -> Score:
-    """Summarize trials; the standard deviation of a single trial counts as zero."""
+    """Summarize trials; of a single trial the standard deviation is set to zero."""
     speed = trials.speed_cm_s
     return Score(
         speed_cm_s=float(speed.mean()),
@@ -245,9 +247,9 @@ def keep(
     """Write the recordings of all gaits into a run folder.
 
     Args:
-      folder: the run.
+      folder: the run's folder.
       world: "sim" or "real"; part of the file names.
-      outcomes: by the name of the gait.
+      outcomes: trials and recording of each gait, by the gait's name.
 
     Returns:
       The fields of each gait's `Score`, by its name.

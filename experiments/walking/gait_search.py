@@ -32,22 +32,23 @@ from walk_engine import Gait
 from worlds import WorldOptions
 
 SEARCH_VERB = "optimize-gait"
-"""The verb whose run folders hold such a search."""
+"""Name of the verb whose run folders hold such a search."""
 
 RATED = dataclasses.replace(SEARCH_TRIAL, start_spread_rad=0.01)
-"""Rules for rating the mean gaits after the search. The joints of the start pose spread
-by 0.01 rad, so that a gait that only works from one exact pose does not win."""
+"""Rules for rating the generations' mean gaits after the search. The start poses have a
+standard deviation of 0.01 rad, so that no gait wins that needs one exact pose."""
 
 
 @dataclass(frozen=True)
 class SearchPlan:
-    """What a search tunes, and how long.
+    """Options of a search: robot, ground, first gait, and size of the search.
 
     Attributes:
       robot: name or file of the robot.
       start: name or file of the gait that the search starts from.
       terrain: the ground in the sim, as text such as "lumps:amplitude_m=0.005".
-      sim: folder of a diagnosis whose effects the sim gets; None for the plain sim.
+      sim: run folder of a diagnosis whose effects are added to the sim; None for the
+        plain sim.
       population: gaits tried in each generation.
       generations: number of generations.
       sigma: standard deviation of the first generation, as a share of each
@@ -67,7 +68,7 @@ class SearchPlan:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse a search that cannot run."""
+        """Refuse invalid values."""
         description = robots.get(self.robot)
         if self.sim is not None:
             check_correction(description, self.options, self.sim)
@@ -78,19 +79,19 @@ class SearchPlan:
 
     @property
     def options(self) -> WorldOptions:
-        """Options of the sim."""
+        """Options of the sim in which the gaits are rated."""
         return dataclasses.replace(worlds.kind("sim").options, threads=self.threads)
 
     def seeds(self) -> tuple[np.random.SeedSequence, ...]:
-        """Seeds of the samples, the grounds, the ratings, and the trials afterwards.
+        """Seeds of CMA-ES, of the grounds, of the final ratings, of the later trials.
 
-        None of them depends on the number of generations.
+        None of the four depends on the number of generations.
         """
         of_search, of_trials = np.random.SeedSequence(self.seed).spawn(2)
         return (*of_search.spawn(3), of_trials)
 
     def grounds(self, generations: int) -> list[TerrainSpec]:
-        """The ground of each generation, from the first one on."""
+        """The ground of each of the first `generations` generations."""
         _, of_grounds, *_ = self.seeds()
         seeds = of_grounds.generate_state(generations).tolist()
         return [TerrainSpec(*parse(self.terrain), seed=seed) for seed in seeds]
@@ -100,11 +101,12 @@ def search_gait(plan: SearchPlan, folder: RunFolder) -> Gait:
     """Search for the best gait, with a checkpoint after each generation.
 
     Args:
-      plan: what is tuned.
-      folder: gets checkpoint and history; generations that it holds are not repeated.
+      plan: options of the search.
+      folder: run folder for checkpoint and history; generations that it already holds
+        are not repeated.
 
     Returns:
-      The mean gait, of all generations, with the best rewards in a final comparison.
+      The best of all generations' mean gaits, by a rating after the search.
     """
     of_samples, *_ = plan.seeds()
     grounds = plan.grounds(plan.generations)
@@ -133,22 +135,22 @@ def rate(
     recorder: Recorder | None = None,
     on_end: Callable[[], object] = lambda: None,
 ) -> tuple[Trials, FloatArray]:
-    """Let n gaits walk side by side in one sim, as the search rates them.
+    """Let n gaits walk in one sim, and compute the rewards that the search uses.
 
-    Only the ground and (if the rules spread them) the start poses are random. The same
-    gait on the same ground gives the same bits again.
+    Only the ground and (if the rules spread them) the start poses are random: the same
+    gait on the same ground with the same pose gives the same bits again.
 
     Args:
-      plan: robot, sim and threads.
+      plan: gives robot, sim and threads.
       tried: n gaits, or their vectors (n, 16).
-      grounds: n grounds; give one object n times to share it.
-      poses: n seeds of the start poses, if the rules spread these.
-      rules: when a walk is over.
-      recorder: notes every tick.
-      on_end: called once for each walk that is over.
+      grounds: n grounds; give one object n times to share its memory.
+      poses: n seeds of the start poses; needed only if the rules spread the poses.
+      rules: time limit of a walk, and spread of the start poses.
+      recorder: records every tick; None for no recording.
+      on_end: called once at the end of each walk.
 
     Returns:
-      How the walks went, and their rewards (n,) [cm/s].
+      Distance, duration and end of each walk, and the rewards (n,) [cm/s].
     """
     description = robots.get(plan.robot)
     noiseless = [np.random.SeedSequence(0)] * len(tried)
@@ -164,7 +166,7 @@ def rate(
 def _generation(
     plan: SearchPlan, strategy: GaitSearch, ground: Heightfield
 ) -> dict[str, Any]:
-    """Rate the samples of one generation, and the mean gait they are drawn from."""
+    """Run a generation of CMA-ES: rate its samples and its mean; return its record."""
     tried = np.vstack([strategy.ask(), strategy.mean.to_vector()])
     trials, rewards = rate(plan, tried, [ground] * len(tried))
     strategy.tell(rewards[:-1])
@@ -180,7 +182,7 @@ def _generation(
 
 
 def _ratings(plan: SearchPlan, means: FloatArray) -> list[FloatArray]:
-    """Rewards (n,) [cm/s] of the n mean gaits, `RATINGS` times on different grounds."""
+    """`RATINGS` arrays (n,) of rewards [cm/s] of n gaits, each on another ground."""
     _, _, of_ratings, _ = plan.seeds()
     grounds = plan.grounds(plan.generations + RATINGS)[plan.generations :]
     ratings = []

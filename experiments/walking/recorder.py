@@ -1,4 +1,4 @@
-"""Writes down, tick by tick, what the robots of a world measure."""
+"""Records the measurements of robots in a world, tick by tick."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ _AXES = ("x", "y", "z")
 
 
 class Recorder:
-    """Collects what some robots of a world measure, and turns it into recordings.
+    """Collects measurements of some robots of a world, and makes recordings of them.
 
     Example:
       >>> recorder = Recorder(world.description, robots=[0])
@@ -27,7 +27,7 @@ class Recorder:
 
         Args:
           description: the robot model.
-          robots: numbers of the world's robots to record, from 0 on.
+          robots: indices of the robots to record among the world's n robots.
         """
         self._description = description
         self._robots = list(robots)
@@ -41,14 +41,14 @@ class Recorder:
         support: npt.ArrayLike,
         active: BoolArray,
     ) -> None:
-        """Note one tick of the robots that are still active.
+        """Add one tick of the robots that are still active.
 
         Args:
-          observation: what the n robots measured before the command took effect.
-          truth: their poses and velocities at that time.
-          command_rad: (n, joints) the command [rad] of this tick; NaN for none.
+          observation: measurements of the n robots before the command took effect.
+          truth: poses and velocities of the robots' bases at that time.
+          command_rad: (n, joints) position targets [rad] of this tick; NaN for none.
           support: (n,) the supporting leg: 1 left, -1 right, 0 both.
-          active: (n,) whether a robot is still active; the others are not noted.
+          active: (n,) whether a robot's trial still runs; others are not recorded.
         """
         for robot in self._robots:
             if active[robot]:
@@ -63,7 +63,7 @@ class Recorder:
                 )
 
     def recording(self, robot: int, metadata: RecordingMetadata) -> Recording:
-        """One robot's recording, in the columns of format 1 (docs/recordings.md)."""
+        """Make the recording of the robot with this index in the world."""
         table = np.array(self._rows[robot]).T
         columns = dict(zip(self._names(), table, strict=True))
         for side in ("left", "right"):
@@ -97,7 +97,7 @@ class Recorder:
 
 
 def servo_gains(description: Description) -> dict[str, ServoGains]:
-    """Stiffness, damping and torque limit of every joint's servo, for metadata."""
+    """Stiffness, damping and torque limit of every joint's servo, by joint."""
     return {
         joint.name: ServoGains(
             kp=joint.motor.kp_nm_rad,

@@ -10,15 +10,17 @@ from groundwalk.errors import BadValueError
 from walk_engine.gait import PARAMETERS, Gait, from_unit, to_unit
 
 SMALLEST_POPULATION = 4
-"""CMA-ES needs at least two parents, which it takes from the better half."""
+"""Smallest number of gaits in a generation: CMA-ES needs at least two parents, which it
+takes from the better half."""
 
 
 def check_search(population: int, sigma: float) -> None:
-    """Refuse a population or a spread with which no search can work.
+    """Refuse a population or a spread that CMA-ES cannot use.
 
     Args:
-      population: gaits in a generation.
-      sigma: standard deviation of the first generation, as a share of the ranges.
+      population: number of gaits in a generation.
+      sigma: standard deviation of the first generation, as a share of each parameter's
+        range.
 
     Raises:
       BadValueError: the population is smaller than 4, or sigma is not in (0, 1].
@@ -32,7 +34,7 @@ def check_search(population: int, sigma: float) -> None:
 
 
 class _NormalSource:
-    """Standard normal numbers for pycma, which would use NumPy's global generator."""
+    """Standard normal numbers for pycma, whose default is NumPy's global generator."""
 
     def __init__(self, seed: np.random.SeedSequence) -> None:
         self._generator = np.random.default_rng(seed)
@@ -42,10 +44,9 @@ class _NormalSource:
 
 
 class GaitSearch:
-    """CMA-ES over gaits: asks for samples, is told their rewards, moves its mean.
+    """CMA-ES over gaits: `ask` draws samples, `tell` takes their rewards.
 
-    A search can be saved as bytes; the one that is read back continues with the same
-    bits.
+    A search can be saved as bytes; after reading it continues with the same bits.
     """
 
     def __init__(
@@ -55,14 +56,14 @@ class GaitSearch:
         sigma: float,
         seed: np.random.SeedSequence,
     ) -> None:
-        """Begin at a gait.
+        """Begin a search at a gait.
 
         Args:
           start: the mean of the first generation.
-          population: gaits in a generation.
+          population: number of gaits in a generation.
           sigma: standard deviation of the first generation, as a share of each
             parameter's range.
-          seed: of the search's own random numbers.
+          seed: seed of the samples.
         """
         import cma
 
@@ -102,17 +103,17 @@ class GaitSearch:
 
     @property
     def sigma(self) -> float:
-        """The overall step size of CMA-ES, as a share of the ranges."""
+        """The overall step size of CMA-ES, as a share of the parameters' ranges."""
         return float(self._strategy.sigma)
 
     def to_bytes(self) -> bytes:
-        """Save the search between two generations."""
+        """The state of the search between two generations, for `from_bytes`."""
         self._asked = []
         return pickle.dumps(self)
 
     @classmethod
     def from_bytes(cls, content: bytes) -> Self:
-        """Read the bytes of `to_bytes`. Unpickles them: only for files of one's own."""
+        """Restore a search from `to_bytes`; unpickles, so only for trusted files."""
         search = pickle.loads(content)
         if not isinstance(search, cls):
             raise BadValueError("these bytes hold no gait search")

@@ -1,4 +1,4 @@
-"""The sim, plain or with the effects that a diagnosis has found."""
+"""Makes the sim, plain or with the effects that a diagnosis has found."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,19 +21,20 @@ def make_sim(
     options: WorldOptions,
     correction: Path | None = None,
 ) -> World:
-    """A sim with one robot on each ground.
+    """Make a sim with one robot on each ground.
 
     Args:
       description: the robot model.
-      grounds: one per robot; give one object n times to share it.
+      grounds: one per robot; give one object n times to share its memory.
       seeds: one per robot, for its sensor noise.
       options: options of the sim.
-      correction: folder or file of a diagnosis, whose effects the sim gets.
+      correction: run folder or `corrected.json` of a diagnosis, whose effects are added
+        to the sim; None for the plain sim.
 
     Raises:
       BadModelError: the correction is no diagnosis of this robot, or the sim cannot
         simulate one of its effects.
-      UnknownNameError: it names an effect or a joint that does not exist.
+      UnknownNameError: the correction names an unknown effect or joint.
     """
     if correction is None:
         return worlds.make("sim", description, grounds, seeds, options)
@@ -44,7 +45,7 @@ def make_sim(
 def check_correction(
     description: Description, options: WorldOptions, correction: Path
 ) -> Model:
-    """Check that a sim can have the effects of a diagnosis, and return them.
+    """Check that the sim can simulate the effects of a diagnosis, and return them.
 
     Arguments and errors are those of `make_sim`.
     """

@@ -1,4 +1,4 @@
-"""Trials: gaits that walk straight ahead in a world, until time is up or a fall."""
+"""Trials: gaits walk straight ahead in a world until a fall or the time limit."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -16,11 +16,11 @@ from worlds import FALLS, TICK_S, End, World
 
 @dataclass(frozen=True)
 class TrialRules:
-    """How a trial begins, and when it is over.
+    """The start pose, the time limit and the course of a trial.
 
     Attributes:
       limit_s: time limit [s].
-      course_m: the trial is finished after this distance forward [m]; None for no end.
+      course_m: the trial ends after this distance forward [m]; None for no such end.
       start_spread_rad: standard deviation [rad] of the joint angles at the start around
         the gait's own start pose.
 
@@ -34,7 +34,7 @@ class TrialRules:
     start_spread_rad: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse limits and spreads that are not positive numbers."""
+        """Refuse limits that are not positive, and a negative spread."""
         for name, value in vars(self).items():
             if value is None and name == "course_m":
                 continue
@@ -44,22 +44,23 @@ class TrialRules:
 
 
 SEARCH_TRIAL = TrialRules(limit_s=7.5)
-"""A trial in a search: 7.5 s or until a fall (the SGAT paper, section on the NAO)."""
+"""Rules of a trial in a search: 7.5 s or until a fall, as in the NAO experiment of the
+SGAT paper."""
 
 COURSE_TRIAL = TrialRules(limit_s=40.0, course_m=3.0, start_spread_rad=0.01)
-"""A trial in an evaluation: a course of 3 m, as in the SGAT paper. The start poses
-spread by 0.01 rad, so that no two trials are alike."""
+"""Rules of a trial in an evaluation: a course of 3 m, as in the SGAT paper. Start poses
+have a standard deviation of 0.01 rad, so that no two trials are alike."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """How n trials went; `walk_trials` returns it.
+    """Distance, duration and end of n trials, as `walk_trials` returns them.
 
     Attributes:
-      distance_m: (n,) way forward [m], along the direction faced at the start.
+      distance_m: (n,) distance [m] along the direction faced at the start.
       time_s: (n,) duration of the trial [s].
-      ended: n reasons why the rollout ended; `End.NONE` if the time was up or the
-        course finished.
+      ended: n reasons why the trial ended early, such as a fall; `End.NONE` if the
+        time was up or the course finished.
 
     Example:
       >>> trials = Trials(np.array([0.5]), np.array([2.0]), (End.NONE,))
@@ -78,7 +79,7 @@ class Trials:
 
     @classmethod
     def joined(cls, parts: Sequence["Trials"]) -> "Trials":
-        """All trials of some parts, in their order."""
+        """Concatenate the trials of several parts."""
         return cls(
             np.concatenate([part.distance_m for part in parts]),
             np.concatenate([part.time_s for part in parts]),
@@ -87,7 +88,7 @@ class Trials:
 
     @property
     def speed_cm_s(self) -> FloatArray:
-        """(n,) mean forward speed until the end of the trial."""
+        """(n,) mean forward speed [cm/s] until the end of the trial."""
         return np.asarray(100 * self.distance_m / self.time_s)
 
     @property
@@ -97,21 +98,21 @@ class Trials:
 
 
 FALL_PENALTY_CM_S = 15.0
-"""What a fall costs in the reward [cm/s], as in the SGAT paper's NAO experiment."""
+"""Penalty of a fall in the reward [cm/s], as in the SGAT paper's NAO experiment."""
 
 
 def reward_cm_s(
     trials: Trials, limit_s: float, fall_penalty_cm_s: float = FALL_PENALTY_CM_S
 ) -> FloatArray:
-    """Reward of each trial for a search: forward speed, less a penalty for a fall.
+    """Reward of each trial for a search: forward speed minus a penalty for a fall.
 
-    The speed is taken over the whole time limit, also after a fall. If it were taken
-    until the fall only, the search would prefer a sprint that ends on the floor.
+    The speed is the distance over the whole time limit, even after a fall. If it were
+    the speed until the fall, the search would prefer a sprint that ends in a fall.
 
     Args:
-      trials: how they went.
+      trials: distance and end of each trial.
       limit_s: duration of a trial without a fall [s].
-      fall_penalty_cm_s: what a fall costs [cm/s].
+      fall_penalty_cm_s: penalty of a fall [cm/s].
 
     Returns:
       (n,) rewards [cm/s].
@@ -128,12 +129,12 @@ def reward_cm_s(
 def start_pose(
     engine: WalkEngine, rules: TrialRules, seeds: Sequence[np.random.SeedSequence]
 ) -> FloatArray:
-    """The poses in which n trials begin.
+    """The joint angles at the start of n trials.
 
     Args:
       engine: the walk engine of the n gaits.
-      rules: how far the poses spread.
-      seeds: n seeds; not used if the poses do not spread.
+      rules: give the standard deviation of the poses.
+      seeds: n seeds; not used if that standard deviation is 0.
 
     Returns:
       (n, joints) joint angles [rad].
@@ -159,10 +160,10 @@ def walk_trials(
     Args:
       world: a world with one robot for each gait.
       gaits: n gaits, or their vectors (n, 16).
-      rules: how a trial begins, and when it is over.
-      seeds: n seeds of the start poses, if the rules spread these.
-      recorder: notes every tick.
-      on_end: called once for each robot whose trial is over.
+      rules: start pose, time limit and course of a trial.
+      seeds: n seeds of the start poses; needed only if the rules spread the poses.
+      recorder: records every tick; None for no recording.
+      on_end: called once at the end of each robot's trial.
 
     Example:
       >>> ground, seed = terrain.make("flat", seed=0), np.random.SeedSequence(1)

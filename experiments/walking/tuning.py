@@ -1,9 +1,9 @@
 """A gait search from its first to its last generation, with checkpoints.
 
-The answer of a search is the mean of one generation's distribution. From one
-generation to the next the mean may move over a cliff, because fast gaits have
-neighbours that fall at once. The last mean is therefore not simply the answer: after
-the search all means are rated again, with new random numbers, and the best is taken.
+The result of a search is the mean gait of one generation's distribution. Because gaits
+close to a fast gait may fall at once, the mean of the last generation may be bad. After
+the search the means of all generations are therefore rated again, with new random
+numbers, and the best one is the result.
 """
 
 import pickle
@@ -22,19 +22,19 @@ from groundwalk.files import write_bytes
 from walk_engine import Gait
 
 Entry = dict[str, Any]
-"""The record of one generation; its `mean_reward` [cm/s] is shown while it runs."""
+"""The record of one generation as JSON values, with its `mean_reward` [cm/s]."""
 
 MEAN = "mean_gait"
-"""Key, in an entry, of the mean gait that the generation began with."""
+"""Key, in the record of a generation, of the mean gait that it began with."""
 
 RATINGS = 10
-"""How often every generation's mean gait is rated after the search."""
+"""Number of ratings of every generation's mean gait after the search."""
 
 Rater = Callable[[FloatArray, np.random.SeedSequence], FloatArray]
 """Function that rates n gaits, vectors (n, 16), and returns their rewards (n,) [cm/s].
 
-It draws the same random numbers for all n gaits from the seed, so that only the gaits
-make a difference between the rewards."""
+Its second argument is a seed, from which it draws the same random numbers for all n
+gaits, so that rewards differ only because of the gaits."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Budget:
     """The size of a search.
 
     Attributes:
-      population: gaits tried in each generation.
+      population: number of gaits tried in each generation.
       generations: number of generations.
       sigma: standard deviation of the first generation, as a share of each parameter's
         range.
@@ -54,7 +54,7 @@ class Budget:
 
     @property
     def rated(self) -> int:
-        """Number of ratings: samples and means in the search, then all means again."""
+        """Total number of ratings: samples and means in the search, means after it."""
         means = self.generations + 1
         return self.generations * (self.population + 1) + RATINGS * means
 
@@ -66,22 +66,22 @@ def run_search(
     generations: int,
     note: Callable[[list[Entry]], object] = lambda entries: None,
 ) -> FloatArray:
-    """Run the generations of a search that the checkpoint does not hold yet.
+    """Run those generations of a search that are not in the checkpoint yet.
 
     Args:
       checkpoint: a file that is written after every generation.
       begin: makes the search if there is no checkpoint.
-      generation: asks for gaits, rates them and tells the search, given the number of
-        the generation from 0 on.
-      generations: number of generations in all.
-      note: is given the entries of all generations after each of them; every entry has
-        the `mean_gait` that its generation began with.
+      generation: function of the generation's number (from 0) and the search, which
+        asks the search for gaits, rates them, tells the rewards and returns a record.
+      generations: total number of generations.
+      note: called after each generation with the records of all generations so far;
+        each record contains the `mean_gait` that its generation began with.
 
     Returns:
       (generations + 1, 16) vectors of the mean gaits, from the first to the last.
 
     Raises:
-      RunFolderError: the checkpoint is damaged, or too old.
+      RunFolderError: the checkpoint is damaged, or of an old version of groundwalk.
     """
     search, entries = _read(checkpoint) if checkpoint.exists() else (begin(), [])
     with progress("search", generations, done=len(entries)) as bar:
@@ -101,8 +101,8 @@ def best_mean(means: FloatArray, ratings: Sequence[FloatArray]) -> Gait:
     """The mean gait with the best average reward.
 
     Args:
-      means: (n, 16) vectors, as `run_search` returns them.
-      ratings: one array (n,) of rewards [cm/s] for each time that they were rated.
+      means: (n, 16) vectors of mean gaits.
+      ratings: for each rating, the rewards (n,) [cm/s] of all means.
     """
     return Gait.from_vector(means[np.mean(ratings, axis=0).argmax()])
 
@@ -119,9 +119,9 @@ def tune(
     Args:
       checkpoint: a file that is written after every generation.
       start: the mean of the first generation.
-      budget: the size of the search.
+      budget: size of the search.
       rater: rates gaits in the search, and `RATINGS` times after it.
-      seed: of the search and of all ratings.
+      seed: seed of the search and of all ratings.
     """
     of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
 
