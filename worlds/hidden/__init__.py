@@ -1,4 +1,6 @@
-"""Physics that a world can have and its nominal model lacks: the truth of benchmarks.
+"""Hidden physics: what a simulated robot has and its published, nominal model lacks.
+
+Recordings of such robots test a diagnosis, since the missing physics is known exactly.
 
 Example:
   >>> from worlds.hidden import Hidden, hidden_plant

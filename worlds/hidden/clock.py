@@ -1,4 +1,4 @@
-"""When a hidden world's ticks happen, and how late commands reach the servos."""
+"""Times of control ticks with jitter, and the delay of commands to the servos."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True, eq=False)
 class Clock:
-    """The control ticks of a recording, counted in fine physics steps.
+    """The control ticks of a recorded run, as numbers of physics steps.
 
     Attributes:
-      step_s: fine step.
-      ticks: (rows,) number of the fine step of each tick, the first one 0.
-      first: the tick at which the recording begins; its time is 0.
+      step_s: time step of the physics.
+      ticks: (rows,) number of the physics step at which each tick happens; 0 first.
+      first: index of the tick at which the recording begins; its time is 0.
     """
 
     step_s: float
@@ -37,13 +37,13 @@ class Clock:
         jitter_s: float,
         rng: np.random.Generator,
     ) -> "Clock":
-        """Even ticks, each late or early by a whole number of fine steps.
+        """Evenly spaced ticks, each early or late by a random number of physics steps.
 
         Args:
-          step_s: fine step.
-          rate_hz: ticks a second.
-          spans_s: time before the recording, and length of the recording.
-          jitter_s: largest deviation of a tick from even ticks.
+          step_s: time step of the physics.
+          rate_hz: ticks per second.
+          spans_s: time before the recording begins, and length of the recording.
+          jitter_s: largest deviation of a tick from its even time.
           rng: draws the deviations.
 
         Raises:
@@ -61,29 +61,32 @@ class Clock:
 
 
 _LEAD_STEPS = 0.5
-"""Delay that every command has: in a leapfrog integration the force at the start of a
-step stands for half a step before and half a step after it."""
+"""Delay of every command in physics steps: in leapfrog integration the force at the
+start of a step stands for the time from half a step before to half a step after it."""
 
 
 class CommandLine:
-    """Carries commands to the servos, late by any part of a fine step."""
+    """Delays commands to servos by a time that need not be whole physics steps."""
 
     def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
-        """Begin with no command under way.
+        """Begin with one command in force and no other sent.
 
         Args:
-          start_rad: (j,) command that has reached the servos.
-          delay_steps: delay of later commands, in fine steps.
+          start_rad: (j,) position targets that the servos have at the beginning.
+          delay_steps: delay of later commands, in physics steps.
         """
         self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
         self._coming: deque[tuple[float, FloatArray]] = deque()
 
     def send(self, step: int, command_rad: FloatArray) -> None:
-        """Send a (j,) command at the beginning of a fine step."""
+        """Send (j,) position targets at the beginning of physics step number `step`."""
         self._coming.append((step + self._delay, command_rad))
 
     def over(self, step: int) -> FloatArray:
-        """(j,) mean command over the fine step that begins."""
+        """(j,) mean position targets [rad] that the servos have in this physics step.
+
+        Must be called once for each step, in order: it drops the commands used.
+        """
         if not self._coming or self._coming[0][0] >= step + 1:
             return self._now
         mean, done = np.zeros_like(self._now), 0.0

@@ -1,4 +1,4 @@
-"""Steps a robot with hidden physics in an engine."""
+"""Steps one robot with hidden physics in a physics engine."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from worlds.hidden.plant import HiddenPlant
 
 
 class HiddenDrive:
-    """Brings commands and forces to a robot, and its encoders' readings back."""
+    """Applies commands, joint torques and pushes to a robot; reads its encoders."""
 
     def __init__(
         self,
@@ -26,17 +26,17 @@ class HiddenDrive:
         step_s: float,
         start_rad: FloatArray,
     ) -> None:
-        """Begin where the robot rests.
+        """Begin with the robot at rest in its start pose.
 
         Args:
           plant: the nominal robot.
           effects: the hidden effects.
-          world: an engine that has been reset to the pose.
-          step_s: fine step.
-          start_rad: (j,) the pose.
+          world: the engine, already reset to the start pose.
+          step_s: time step of the physics.
+          start_rad: (j,) joint angles of the start pose.
 
         Raises:
-          GroundwalkError: a place is unknown.
+          GroundwalkError: an effect is at a joint that the robot lacks.
         """
         inertia = least_inertia_kg_m2(plant, start_rad)
         around = surroundings(effects)
@@ -47,19 +47,20 @@ class HiddenDrive:
         self._pushes = [(body, push) for body, push in pushes if push is not None]
         self._late_steps = around.encoder_delay_s / step_s
         self._step = 0
-        # Angles at the encoders, as far back as their readings are late.
+        # Past angles at the encoders, as many as their delay needs.
         self._seen = deque([start_rad], maxlen=ceil(self._late_steps) + 2)
 
     def send(self, command_rad: FloatArray) -> None:
-        """Send (j,) position targets."""
+        """Send (j,) position targets to the servos, which get them after the delay."""
         self._line.send(self._step, command_rad)
 
     def advance(self, steps: int, zero_step: int = 0) -> None:
-        """Compute fine steps; the engine takes its sensors in during the last ones.
+        """Take physics steps; sensor values are averaged over the last of them.
 
         Args:
-          steps: how many.
-          zero_step: number of the step at which the effects' time is 0.
+          steps: number of physics steps to take.
+          zero_step: physics step at which the recording begins: effects count their
+            time from it.
         """
         world, end = self._world, self._step + steps
         while self._step < end:
@@ -81,7 +82,7 @@ class HiddenDrive:
                 world.watch()
 
     def encoders(self) -> FloatArray:
-        """(j,) what noiseless encoders read now, offsets and delays included [rad]."""
+        """(j,) readings [rad] of noiseless encoders now, with offsets and delays."""
         steps = np.arange(self._step + 1 - len(self._seen), self._step + 1)
         late = self._step - self._late_steps
         angles = [np.interp(late, steps, column) for column in np.transpose(self._seen)]

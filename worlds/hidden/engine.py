@@ -1,4 +1,4 @@
-"""The interface of the physics engines of robots with hidden physics."""
+"""The interface of the physics engines that simulate robots with hidden physics."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,24 +12,24 @@ from worlds.hidden.effects.placed import Hidden
 from worlds.hidden.plant import HiddenPlant
 
 ENGINES = ("bullet", "mujoco")
-"""Names of the engines that compute hidden physics."""
+"""Names of the physics engines that can simulate robots with hidden physics."""
 WATCH_STEPS = 8
-"""Sensed forces and accelerations are means over this many fine steps: 2 to 4 ms, which
-is shorter than any tick and long enough for the noise of contacts to cancel."""
+"""Number of physics steps over which sensed forces and accelerations are averaged: 2 to
+4 ms, shorter than any tick and long enough for the noise of contacts to cancel."""
 
 
 @dataclass(frozen=True, eq=False)
 class BodySense:
-    """Readings of a robot's noiseless sensors, and where its base is.
+    """Readings of a robot's noiseless sensors, and the pose and velocity of its base.
 
-    In the frame of the ground or of a fixed base's mount. Zero where a robot lacks the
-    sensor.
+    The ground's frame is that of the ground or of a fixed base's mount, even if tilted.
+    Values are zero where a robot lacks the sensor.
 
     Attributes:
       gyroscope_rad_s, accelerometer_m_s2: (3,) base frame.
-      foot_force_n: (8,) as in `worlds.Observation`.
-      position_m: (3,) of the base.
-      orientation: (4,) quaternion w, x, y, z of the base.
+      foot_force_n: (8,) at four points of the left, then of the right sole.
+      position_m: (3,) of the base, ground frame.
+      orientation: (4,) quaternion w, x, y, z of the base, ground frame.
       linear_m_s: (3,) velocity of the base, ground frame.
       angular_rad_s: (3,) turning rate of the base, base frame.
     """
@@ -44,7 +44,7 @@ class BodySense:
 
 
 class HiddenEngine(Protocol):
-    """One robot under joint torques, a fine step at a time.
+    """A physics engine with one robot, stepped under joint torques.
 
     Attributes:
       position_rad, velocity_rad_s: (j,) of the joints, after the last step.
@@ -54,25 +54,25 @@ class HiddenEngine(Protocol):
     velocity_rad_s: FloatArray
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
-        """Put the robot at rest; a floating base upright at a height."""
+        """Put the robot at rest in a (j,) pose, a floating base upright at a height."""
 
     def step(self, torque_nm: FloatArray) -> None:
-        """One fine step under (j,) torques and the pushes since the last step."""
+        """Take one physics step under (j,) joint torques and the pushes set before."""
 
     def push(self, body: str, force_n: FloatArray) -> None:
-        """Let a force (3,) act at a body's centre of mass over the next step."""
+        """Let a (3,) force act at a body's centre of mass over the next step."""
 
     def body_velocity(self, body: str) -> FloatArray:
         """(3,) velocity of a body's centre of mass [m/s]."""
 
     def watch(self) -> None:
-        """Add the sensors' values of a step; called after the last steps of a tick."""
+        """Add this step's sensor values to a mean, in the last few steps of a tick."""
 
     def sense(self) -> BodySense:
-        """Readings of the sensors: means over the steps watched since the last call."""
+        """Mean sensor readings over the steps since the last call that were watched."""
 
     def close(self) -> None:
-        """Free memory."""
+        """Free the engine's memory."""
 
 
 def check_engine(name: str, effects: Sequence[Hidden]) -> None:
@@ -90,11 +90,11 @@ def check_engine(name: str, effects: Sequence[Hidden]) -> None:
 
 
 def least_inertia_kg_m2(plant: HiddenPlant, pose_rad: FloatArray) -> FloatArray:
-    """(j,) inertia that a torque at each joint accelerates with all other joints free.
+    """(j,) inertia [kg m^2] seen by a torque at each joint, all other joints free.
 
     Args:
       plant: the nominal robot.
-      pose_rad: (j,) where the joints are.
+      pose_rad: (j,) joint angles.
     """
     import mujoco
 

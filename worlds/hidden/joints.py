@@ -1,4 +1,4 @@
-"""Torques at the joints of a robot with hidden physics, for one fine step."""
+"""Torques at the joints of a robot with hidden physics, for one physics step."""
 
 from collections.abc import Sequence
 
@@ -12,10 +12,11 @@ from worlds.hidden.transmission import Transmission
 
 
 class HiddenJoints:
-    """A robot's servos and transmissions, and the other torques at its joints.
+    """A robot's servos, transmissions and other joint torques, with hidden effects.
 
-    An engine's speeds are those half a step ago; the law extrapolates them from the
-    last two to the present, which makes its explicit damping exact to second order.
+    The engine's leapfrog integration gives the speeds of half a step ago. They are
+    extrapolated to the present from the last two, so that damping, which is computed
+    explicitly, is accurate to second order.
     """
 
     def __init__(
@@ -29,9 +30,9 @@ class HiddenJoints:
 
         Args:
           plant: the nominal robot.
-          effects: all that is hidden; those at other places change nothing here.
-          step_s: time step.
-          inertia_kg_m2: (j,) least inertia that a torque at each joint moves.
+          effects: hidden effects; those that are not at joints change nothing here.
+          step_s: time step of the physics.
+          inertia_kg_m2: (j,) inertia at each joint with all other joints free.
 
         Raises:
           GroundwalkError: a joint is unknown, or has two transmissions.
@@ -63,14 +64,16 @@ class HiddenJoints:
 
     @property
     def offset_rad(self) -> FloatArray:
-        """(j,) angle that the encoders read less the true angle."""
+        """(j,) constant error [rad] of the encoders: angle read minus true angle."""
         return self._servos.offset_rad
 
     def encoders(self, position_rad: FloatArray) -> FloatArray:
-        """(j,) angles where the encoders sit, without any offset.
+        """(j,) true angles [rad] that the encoders measure, before any encoder offset.
+
+        These are joint angles, or a motor's angle where the encoder sits at the motor.
 
         Args:
-          position_rad: (j,) of the joints.
+          position_rad: (j,) joint angles.
         """
         angles = position_rad
         for joint, transmission in self._loose.items():
@@ -86,13 +89,13 @@ class HiddenJoints:
         velocity_rad_s: FloatArray,
         command_rad: FloatArray,
     ) -> FloatArray:
-        """(j,) torques [N m] that hold over the next fine step.
+        """(j,) torques [N m] on the joints, constant over the next physics step.
 
         Args:
-          time_s: in the recording's time, negative before it begins.
-          position_rad: (j,) of the joints, as the engine has them.
-          velocity_rad_s: (j,) of the joints, as the engine has them.
-          command_rad: (j,) that has reached the servos.
+          time_s: time since the recording began, negative before.
+          position_rad: (j,) joint angles from the engine.
+          velocity_rad_s: (j,) joint speeds from the engine, half a step old.
+          command_rad: (j,) position targets that have reached the servos.
         """
         before = velocity_rad_s if self._before is None else self._before
         speed = 1.5 * velocity_rad_s - 0.5 * before

@@ -1,4 +1,4 @@
-"""The MuJoCo model of a robot with hidden physics in its bodies, gravity and soles."""
+"""Makes MuJoCo models with physics (effects) that the robot's nominal model lacks."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -20,13 +20,13 @@ def hidden_model(
     step_s: float,
     ground: Heightfield | None,
 ) -> "mujoco.MjModel":
-    """The robot with the effects' changes of its bodies, of gravity and of its soles.
+    """The robot's model, with joints, bodies, gravity and soles as the effects say.
 
     Args:
-      plant: the nominal robot.
-      effects: all that is hidden; effects on servos and signals change nothing here.
-      step_s: time step.
-      ground: under a floating robot; None for a fixed base.
+      plant: the nominal robot, without effects.
+      effects: physics to add; effects on servos and signals change nothing here.
+      step_s: time step of the physics.
+      ground: the ground under a floating robot; None for a fixed base.
 
     Raises:
       UnknownNameError: the robot has no such body or joint.
@@ -36,8 +36,8 @@ def hidden_model(
     quiet_mujoco()
     spec = plant.make_spec()
     spec.compiler.discardvisual = False
-    # Semi-implicit Euler: with speeds half a step ahead it is a leapfrog, and exact
-    # to second order for all that depends on positions.
+    # If speeds are read as those half a step later, semi-implicit Euler is a leapfrog:
+    # second-order accurate for all that depends on positions.
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER
     spec.option.timestep = step_s
     for effect in effects:
@@ -53,7 +53,7 @@ def hidden_model(
 
 
 def _part(spec: Any, plant: HiddenPlant, effect: Hidden) -> Any:
-    """The joint or body at an effect's place."""
+    """The `MjsJoint` or `MjsBody` of a `mujoco.MjSpec` that an effect changes."""
     if effect.kind.place == "joint":
         plant.joint(effect.place)
         return spec.joint(effect.place)
@@ -65,7 +65,10 @@ def _part(spec: Any, plant: HiddenPlant, effect: Hidden) -> Any:
 
 
 def _set_friction(model: "mujoco.MjModel", effects: Sequence[Hidden]) -> None:
-    """Let the soles' friction count, not the larger of sole's and ground's."""
+    """Set the soles' friction, and let it alone count instead of the larger of two.
+
+    Without a priority MuJoCo takes the larger coefficient of sole and ground.
+    """
     soles = model.geom_contype == 1
     model.geom_priority[soles] = 1
     for effect in effects:

@@ -1,4 +1,4 @@
-"""MuJoCo as the engine of a robot with hidden physics."""
+"""MuJoCo as the physics engine of a robot with hidden physics."""
 
 from typing import TYPE_CHECKING
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 class HiddenMujoco:
-    """One robot under joint torques; see `HiddenEngine`."""
+    """One robot driven by joint torques in MuJoCo; implements `HiddenEngine`."""
 
     def __init__(self, plant: HiddenPlant, model: "mujoco.MjModel") -> None:
-        """Allocate the state.
+        """Allocate MuJoCo's data.
 
         Args:
           plant: the nominal robot.
-          model: the robot with its hidden effects.
+          model: model of the robot with its hidden effects.
         """
         import mujoco
 
@@ -43,7 +43,7 @@ class HiddenMujoco:
         self._sensors = np.zeros(self._model.nsensordata)
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
-        """Put the robot at rest; see `HiddenEngine`."""
+        """Put the robot at rest in a (j,) pose, a floating base at this height."""
         self._mujoco.mj_resetData(self._model, self._data)
         self._q[:] = pose_rad
         if self._floating:
@@ -52,7 +52,7 @@ class HiddenMujoco:
         self._forget()
 
     def step(self, torque_nm: FloatArray) -> None:
-        """One fine step; see `HiddenEngine`."""
+        """Take one physics step under (j,) joint torques and the pushes set before."""
         self._applied[:] = torque_nm
         self._mujoco.mj_step(self._model, self._data)
         if self._pushed:
@@ -60,12 +60,12 @@ class HiddenMujoco:
             self._pushed = False
 
     def push(self, body: str, force_n: FloatArray) -> None:
-        """Let a force act over the next step; see `HiddenEngine`."""
+        """Let a (3,) force act at a body's centre of mass over the next step."""
         self._data.xfrc_applied[self._model.body(body).id, :3] += force_n
         self._pushed = True
 
     def body_velocity(self, body: str) -> FloatArray:
-        """(3,) velocity of a body's centre of mass [m/s]; see `HiddenEngine`."""
+        """(3,) velocity of a body's centre of mass [m/s], world frame."""
         kind = self._mujoco.mjtObj.mjOBJ_BODY
         both = np.zeros(6)
         number = self._model.body(body).id
@@ -73,12 +73,12 @@ class HiddenMujoco:
         return both[3:]
 
     def watch(self) -> None:
-        """Add the sensors' values of this step; see `HiddenEngine.watch`."""
+        """Add the sensors' values of this step to the sums that `sense` averages."""
         self._sensors += self._data.sensordata
         self._watched += 1
 
     def sense(self) -> BodySense:
-        """Readings of the sensors; see `HiddenEngine.sense`."""
+        """Mean sensor readings over the steps watched since the last call."""
         gyroscope, accelerometer, feet = np.zeros(3), np.zeros(3), np.zeros(8)
         if self._shares is not None:
             mean = self._sensors / max(self._watched, 1)

@@ -1,4 +1,4 @@
-"""The nominal robots of worlds with hidden physics: models, servos and ranges."""
+"""Nominal robots to which hidden physics is added: models, servos and joint ranges."""
 
 import re
 from collections.abc import Callable
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 _SO101 = "so_arm_description/urdf/so101.urdf"
 _SO101_HELD = "gripper"
 SO101_TORQUE_NM = 2.9
-"""Largest torque of each servo; the model file of concealed cases states it, too."""
+"""Largest torque of each servo of the SO-101 arm [N m], as its model file states it."""
 SO101_ROTOR_KG_M2 = 0.003
-"""Inertia of the rotor behind each gear, lumped into the link. Without it the wrist's
-inertia is 4e-5 kg m^2: too little for a servo of 17 N m/rad and 0.6 N m s/rad to show
-any effect of inertia."""
+"""Rotor inertia of each SO-101 servo seen through its gear [kg m^2], an assumed value
+that is added to the link. Without it the wrist's inertia is 4e-5 kg m^2: too little for
+inertia to show beside a servo of 17 N m/rad and 0.6 N m s/rad."""
 
 PENDULUM = """<mujoco model="pendulum">
   <compiler angle="radian"/>
@@ -42,25 +42,25 @@ PENDULUM = """<mujoco model="pendulum">
   </worldbody>
 </mujoco>
 """
-"""MuJoCo model of half a kilogram 0.3 m below a hinge."""
+"""MJCF of a pendulum: 0.5 kg, 0.3 m below a hinge of +-3 rad and +-4 N m."""
 
 
 @dataclass(frozen=True, eq=False)
 class HiddenPlant:
-    """The nominal robot; arrays are in the order of `joints`.
+    """A robot without hidden physics; arrays are (j,) in the order of `joints`.
 
     Attributes:
-      name: "pendulum", "so101" or a robot's name.
-      file: name and text of its model file; None for a robot that is known by name.
-      make_spec: a new MuJoCo specification without actuators and ground.
+      name: "pendulum", "so101" or the name of a robot of `groundwalk list robots`.
+      file: (name, text) of its model file; None for a robot of that list.
+      make_spec: makes a new `mujoco.MjSpec` without actuators and ground.
       joints: names of the joints, which all have servos.
-      links: the body that each joint moves.
+      links: name of the body that each joint moves.
       kp_nm_rad, kd_nm_s_rad, max_torque_nm, back_emf_nm_s_rad: the servos,
         torque = clip(kp (command - position) - kd v, +-max) - back_emf v.
-      range_rad: (j, 2) of each joint.
-      speed_rad_s: (j,) that commands may reach.
+      range_rad: (j, 2) lowest and highest angle.
+      speed_rad_s: highest speed of commands.
       floating: whether the base is free.
-      description: of a robot that `groundwalk list robots` knows; else None.
+      description: of a robot of `groundwalk list robots`; else None.
 
     Example:
       >>> float(hidden_plant("pendulum").max_torque_nm[0])
@@ -83,17 +83,17 @@ class HiddenPlant:
 
     @property
     def servo(self) -> dict[str, ServoGains]:
-        """Servo gains as recordings state them: damping and back-EMF in one number."""
+        """Each joint's servo gains as recordings state them: kd is kd plus back-EMF."""
         damping = self.kd_nm_s_rad + self.back_emf_nm_s_rad
         rows = zip(self.kp_nm_rad, damping, self.max_torque_nm, strict=True)
         gains = [ServoGains(*map(float, row)) for row in rows]
         return dict(zip(self.joints, gains, strict=True))
 
     def joint(self, name: str) -> int:
-        """Column of a joint.
+        """Index of a joint in `joints` and in all arrays (j,).
 
         Raises:
-          UnknownNameError: the robot has none of that name.
+          UnknownNameError: the robot has no joint of that name.
         """
         if name not in self.joints:
             raise UnknownNameError(f"joint of {self.name}", name, self.joints)
@@ -103,8 +103,8 @@ class HiddenPlant:
         """The same robot with other nominal servo gains.
 
         Args:
-          stiffness: factor of all kp.
-          damping: factor of all kd; back-EMF is the motor's and stays.
+          stiffness: factor on all kp.
+          damping: factor on all kd; back-EMF belongs to the motor and stays.
         """
         return replace(
             self,
@@ -114,10 +114,10 @@ class HiddenPlant:
 
 
 def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
-    """A robot by name: "pendulum", "so101", or one that `groundwalk list` knows.
+    """A nominal robot: "pendulum", "so101", or a name of `groundwalk list robots`.
 
     Args:
-      name: of the robot.
+      name: name of the robot.
       floating: whether its base is free.
 
     Raises:
@@ -153,7 +153,10 @@ def _pendulum() -> HiddenPlant:
 
 
 def _so101() -> HiddenPlant:
-    """The arm of example-robot-data; the gripper is part of the wrist."""
+    """The SO-101 arm of the package example-robot-data, its gripper fixed to the wrist.
+
+    Gains and highest speed of commands are chosen: the package has none.
+    """
     import mujoco
 
     text = so101_urdf()
@@ -176,7 +179,7 @@ def _so101() -> HiddenPlant:
 
 
 def so101_urdf() -> str:
-    """URDF of the SO-101 arm without meshes and gripper joint, rotors in its links.
+    """URDF of the SO-101 arm without meshes and gripper joint, with rotor inertias.
 
     Raises:
       BadValueError: the files of example-robot-data are not installed.
@@ -198,10 +201,13 @@ def so101_urdf() -> str:
 
 
 def described_hidden_plant(description: Description, floating: bool) -> HiddenPlant:
-    """The nominal robot of a description.
+    """The nominal robot that a description describes.
+
+    Its servos have the stiffness, back-EMF and stall torque of the motors; commands
+    may reach 70 % of a motor's no-load speed.
 
     Args:
-      description: the robot.
+      description: the robot as data: links, joints, motors, feet and sensors.
       floating: whether its base is free.
     """
 

@@ -1,4 +1,4 @@
-"""Sensors: they turn a run with hidden physics into a recording."""
+"""Makes a recording with sensor noise from the true motion of a simulated robot."""
 
 import math
 from collections.abc import Sequence
@@ -21,12 +21,13 @@ class HiddenSensors:
     """Standard deviations of the sensors' noise, and their resolution.
 
     Attributes:
-      quantum_rad: resolution of the encoders; by default 12 bits a turn.
+      quantum_rad: resolution of the encoders, to which they round; default 12 bits per
+        turn, 0 for none.
       encoder_rad: noise of the encoders, before they round.
       gyroscope_rad_s: noise of each axis.
       accelerometer_m_s2: noise of each axis.
-      foot_force_n: noise of each foot's sum.
-      place_m: noise of each coordinate of the base, as motion capture measures it.
+      foot_force_n: noise of each foot's total force.
+      place_m: noise of each coordinate of the base, as from motion capture.
       turn_rad: noise of the base's orientation about each axis.
       linear_m_s: noise of each component of the base's velocity.
       angular_rad_s: noise of each component of the base's turning rate.
@@ -43,7 +44,7 @@ class HiddenSensors:
     angular_rad_s: float = 0.005
 
     def __post_init__(self) -> None:
-        """Refuse negative spreads."""
+        """Refuse standard deviations and resolutions that are negative."""
         for name, value in vars(self).items():
             if not (math.isfinite(value) and value >= 0):
                 raise BadValueError(f"{name} is {value}; it must not be negative")
@@ -57,17 +58,17 @@ def hidden_recording(
     rng: np.random.Generator,
     metadata: RecordingMetadata,
 ) -> Recording:
-    """A run as its sensors measure it, from the beginning of the recording on.
+    """The recording that noisy sensors make of a run; rows before its start are cut.
 
     Velocities are differences of the encoders' readings, as cheap servos give them.
 
     Args:
-      plant: the robot.
+      plant: the nominal robot.
       run: the true motion.
-      effects: the hidden effects; one of them may bias the gyroscope.
-      sensors: how good the sensors are.
+      effects: the hidden effects, of which only a gyroscope bias is used here.
+      sensors: noise and resolution of the sensors.
       rng: draws the noise.
-      metadata: goes into the recording as it is.
+      metadata: robot, base and servo gains to be stated in the recording.
     """
     first = run.clock.first
     measured = run.encoder_rad + sensors.encoder_rad * rng.standard_normal(
@@ -100,7 +101,7 @@ def _vector(name: str, table: FloatArray) -> dict[str, FloatArray]:
 def _inertial(
     run: Run, bias: FloatArray, sensors: HiddenSensors, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
-    """Gyroscope and accelerometer."""
+    """Noisy gyroscope [rad/s] and accelerometer [m/s^2] columns of a recording."""
     rate, felt = run.sense["gyroscope_rad_s"], run.sense["accelerometer_m_s2"]
     noise = rng.standard_normal((2, *rate.shape))
     return _vector(
@@ -111,7 +112,7 @@ def _inertial(
 def _base(
     run: Run, sensors: HiddenSensors, rng: np.random.Generator
 ) -> dict[str, FloatArray]:
-    """Foot forces, and pose and velocities of the base."""
+    """Noisy foot forces, base pose and base velocities as columns of a recording."""
     sense, rows = run.sense, len(run.command_rad)
 
     def noisy(name: str, spread: float) -> FloatArray:
@@ -135,10 +136,13 @@ def _base(
 def _turned(
     orientation: FloatArray, spread_rad: float, rng: np.random.Generator
 ) -> FloatArray:
-    """Quaternions (rows, 4), each turned by a small random angle."""
+    """Quaternions (rows, 4), each turned by a random rotation vector.
+
+    Its components have the standard deviation `spread_rad`.
+    """
     x, y, z = (spread_rad / 2 * rng.standard_normal((len(orientation), 3))).T
     a, b, c, d = orientation.T
-    # orientation times the quaternion 1 + (x, y, z), which is a small turn
+    # orientation times the quaternion (1, x, y, z), which is a small rotation
     turned = np.stack(
         [
             a - b * x - c * y - d * z,

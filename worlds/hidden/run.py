@@ -1,4 +1,4 @@
-"""Lets a robot with hidden physics follow commands: the run behind one recording."""
+"""Simulates one robot with hidden physics that follows commands."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
@@ -18,21 +18,21 @@ from worlds.real.engines import hidden_engine
 from worlds.sim.start_height import StartHeight
 
 Feed = Callable[[int, BodySense], FloatArray]
-"""(j,) command of a tick, from the tick's number and the sensors' readings."""
+"""Function of a control tick's number and the sensors' readings at that tick, which
+returns the position targets (j,) [rad] to send."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """The true motion, without noise; rows are the clock's ticks.
+    """True motion of a simulated robot, without noise; one row per control tick.
 
     Attributes:
-      clock: the ticks.
-      command_rad: (rows, j) sent at each tick.
-      encoder_rad: (rows, j) readings of noiseless encoders, offsets and delays
-        included.
-      position_rad: (rows, j) of the joints.
-      sense: arrays (rows, ...) by `BodySense`'s names; the base's motion is in a frame
-        whose z axis is the true vertical.
+      clock: times of the ticks.
+      command_rad: (rows, j) position targets sent.
+      encoder_rad: (rows, j) readings of noiseless encoders with offsets and delays.
+      position_rad: (rows, j) true joint angles.
+      sense: arrays (rows, ...) by attribute name of `BodySense`, but with the motion of
+        the base in a frame whose z axis is the true vertical.
       ok: whether all numbers are finite and a floating base has not fallen.
     """
 
@@ -53,19 +53,20 @@ def run_hidden(
     start_rad: FloatArray,
     seed: np.random.SeedSequence,
 ) -> Run:
-    """Let a robot with hidden physics follow commands.
+    """Simulate a robot with hidden physics that follows commands.
 
     Args:
       plant: the nominal robot.
       effects: the hidden effects.
       engine: "bullet" or "mujoco".
-      clock: when commands are sent and sensors read.
-      feed: the commands.
-      start_rad: (j,) pose at the first tick, where the robot rests.
-      seed: of the bumps of uneven ground.
+      clock: times at which commands are sent and sensors are read.
+      feed: gives the command of each tick.
+      start_rad: (j,) joint angles at the first tick, where the robot is at rest.
+      seed: for the random bumps of uneven ground.
 
     Raises:
-      GroundwalkError: a place is unknown, or the engine lacks an effect.
+      GroundwalkError: the robot lacks the joint or body of an effect, or the engine
+        cannot simulate an effect.
     """
     around = surroundings(effects)
     ground = around.ground(seed) if plant.floating else None
@@ -89,7 +90,10 @@ def run_hidden(
 
 
 def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed) -> Run:
-    """All ticks, in the frame of the ground; no more commands once numbers blow up."""
+    """Simulate all ticks; poses are in the ground's frame.
+
+    Once the simulation diverges, nothing more is sent and the state stays.
+    """
     ticks, zero = clock.ticks, int(clock.ticks[clock.first])
     commands, encoders, positions, senses = [], [], [], []
     ok = True
@@ -118,12 +122,14 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
 
 
 def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
-    """Whether a floating base has finite numbers and never falls (`worlds.falls`).
+    """Whether the pose of a floating base stays finite and the robot never falls.
+
+    A fall is a tilt of more than 60 degrees, or less than half the start height.
 
     Args:
       felt: "position_m" (rows, 3) and "orientation" (rows, 4) w, x, y, z of the base,
         in the ground's frame.
-      ground: under the robot.
+      ground: the ground under the robot.
     """
     place_m, turn = felt["position_m"], felt["orientation"]
     if not (np.isfinite(place_m).all() and np.isfinite(turn).all()):
@@ -134,10 +140,10 @@ def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
 
 
 def _upright(felt: dict[str, FloatArray], turn: FloatArray) -> dict[str, FloatArray]:
-    """The base's motion in a frame whose z axis is the true vertical.
+    """Rotate the base's motion from tilted ground into a frame with vertical z axis.
 
     Args:
-      felt: arrays (rows, ...) by `BodySense`'s names, in the ground's frame.
+      felt: arrays (rows, ...) by attribute name of `BodySense`, in the ground's frame.
       turn: (3, 3) rotation from the ground's frame to the upright one.
     """
     import mujoco

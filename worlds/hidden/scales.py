@@ -1,4 +1,4 @@
-"""Measures torques, speeds, reach and masses of the nominal robot in a motion."""
+"""Measures torques, speeds, ranges and masses of the nominal robot in a motion."""
 
 from collections.abc import Sequence
 
@@ -12,18 +12,18 @@ from worlds.hidden.servos import servo_torque_nm
 from worlds.hidden.setting import Bodies, Scales
 
 _MOSTLY = 95
-"""Percentile of a servo's torque that stands for its usual torque: single peaks at the
-start of a motion do not count."""
+"""Percentile of a servo's absolute torque that counts as its usual torque; below 100 so
+that single peaks at the start of a motion do not count."""
 _POSES = 100
-"""Poses of each run in which bodies are measured; runs of 10 s at 10 poses a second."""
+"""Number of poses of each run in which bodies are measured: ten a second in 10 s."""
 
 
 def scales(plant: HiddenPlant, runs: Sequence[Run]) -> Scales:
-    """Measure runs of the nominal robot; where they differ the largest value counts.
+    """Measure runs of the nominal robot, mostly by the largest value of all runs.
 
     Args:
-      plant: the robot.
-      runs: with nothing hidden.
+      plant: the nominal robot.
+      runs: simulated motions without hidden effects.
     """
     torque = [_servo_nm(plant, run) for run in runs]
     asked = [
@@ -54,7 +54,7 @@ def scales(plant: HiddenPlant, runs: Sequence[Run]) -> Scales:
 
 
 def _servo_nm(plant: HiddenPlant, run: Run) -> FloatArray:
-    """(rows, j) absolute torques of the servos [N m]."""
+    """(rows, j) absolute torques of the servos [N m] in a run."""
     speed = np.gradient(run.position_rad, run.clock.time_s, axis=0)
     gains = (
         plant.kp_nm_rad,
@@ -66,7 +66,7 @@ def _servo_nm(plant: HiddenPlant, run: Run) -> FloatArray:
 
 
 def _bodies(plant: HiddenPlant, runs: Sequence[Run]) -> Bodies:
-    """Measure the bodies in some poses of each run."""
+    """Measure how bodies move and load the joints, in 100 poses of each run."""
     names = plant.links
     if plant.floating and plant.description is not None:
         names = (*names, plant.description.root.name)
@@ -86,7 +86,7 @@ def _bodies(plant: HiddenPlant, runs: Sequence[Run]) -> Bodies:
 
 
 class _Probe:
-    """Looks at the nominal robot's b bodies and j joints in one pose after another."""
+    """Computes geometry of the nominal robot's b bodies and j joints, pose by pose."""
 
     def __init__(self, plant: HiddenPlant, names: Sequence[str]) -> None:
         import mujoco
@@ -101,17 +101,18 @@ class _Probe:
     def view(
         self, qpos: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-        """Measure one pose.
+        """Measure one pose (nq,).
 
         Returns:
-          Centres of mass (b, 3) [m], their levers (b, j) [m], the levers of whole
-          branches (j,) [m], and whether a joint carries a body (b, j).
+          Centres of mass (b, 3) [m]; gravity's lever arm on each body about each joint
+          (b, j) [m], and on all bodies beyond a joint together (j,) [m]; whether a
+          joint moves a body (b, j).
         """
         self._data.qpos[:] = qpos
         self._mujoco.mj_kinematics(self._model, self._data)
         self._mujoco.mj_comPos(self._model, self._data)
         turns = [self._jacobians(body) for body in self._bodies]
-        # Gravity's lever is the rate at which a joint's turn lifts the centre of mass.
+        # Gravity's lever arm is the height gained by the centre of mass per radian.
         return (
             self._data.xipos[self._bodies],
             np.array([np.abs(linear[2]) for linear, _ in turns]),
@@ -135,7 +136,10 @@ class _Probe:
         return levers
 
     def arm_m(self) -> FloatArray:
-        """(j, 3) from each joint's axis to its link's centre of mass."""
+        """(j, 3) shortest vector from each joint's axis to its link's centre of mass.
+
+        In metres, in the link's frame.
+        """
         own = self._bodies[: len(self._joints)]
         axis = self._model.jnt_axis[self._joints]
         away = self._model.body_ipos[own] - self._model.jnt_pos[self._joints]
@@ -144,7 +148,7 @@ class _Probe:
 
 
 def _poses(plant: HiddenPlant, runs: Sequence[Run]) -> list[FloatArray]:
-    """Position vectors (q,) of the model at evenly spaced rows of each run."""
+    """MuJoCo's `qpos` at 100 evenly spaced rows of each run."""
     poses = []
     for run in runs:
         first, rows = run.clock.first, len(run.position_rad)

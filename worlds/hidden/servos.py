@@ -1,4 +1,4 @@
-"""The servos of a robot with hidden physics: their law, and what effects change."""
+"""The servo law of robots with hidden physics, and its numbers that effects change."""
 
 from functools import cached_property
 
@@ -13,13 +13,13 @@ def servo_torque_nm(
     error_rad: FloatArray,
     speed_rad_s: FloatArray,
 ) -> FloatArray:
-    """Joint torques (..., j) of servos: clip(kp error - kd v, +-max) - back_emf v.
+    """Joint torques (..., j) [N m] of servos: clip(kp e - kd v, +-max) - back_emf v.
 
     Args:
       gains: kp [N m/rad], kd [N m s/rad], back-EMF [N m s/rad] and largest torque
         [N m], each (j,).
-      error_rad: (..., j) set-point less position.
-      speed_rad_s: (..., j) of the joints.
+      error_rad: (..., j) servo error e: set-point minus joint position.
+      speed_rad_s: (..., j) joint speed v.
     """
     kp, kd, back_emf, most = gains
     torque = kp * error_rad - kd * speed_rad_s
@@ -28,26 +28,22 @@ def servo_torque_nm(
 
 
 class Servos:
-    """Numbers of a robot's servos, and the set-points that they follow.
+    """Gains, limits and faults of a robot's servos, and the set-points they follow.
 
-    Effects change the arrays before the first step; all are (j,) and in the plant's
-    order.
+    Hidden effects change the arrays before the first step. All are (j,), one value for
+    each joint in the plant's order.
 
     Attributes:
       kp_nm_rad, kd_nm_s_rad, back_emf_nm_s_rad, max_torque_nm: see `servo_torque_nm`.
-      max_speed_rad_s: at which a set-point follows its command at most.
-      fade_1_s: share of kp that is lost in each second.
-      offset_rad: measured less true angle.
-      leaks: (to, from, share): a share of one joint's command is added to another's.
+      max_speed_rad_s: highest speed of a set-point that follows its command.
+      fade_1_s: share of kp that is lost in each second of the recording.
+      offset_rad: constant encoder error, measured minus true angle.
+      leaks: (to, from, share) for crosstalk: columns of two joints, and the share of
+        the second joint's command that is added to the first one's.
     """
 
     def __init__(self, plant: HiddenPlant, step_s: float) -> None:
-        """Begin with the nominal servos.
-
-        Args:
-          plant: the nominal robot.
-          step_s: time step.
-        """
+        """Begin with the nominal robot's servos; `step_s` is the physics step."""
         j = len(plant.joints)
         self.kp_nm_rad = plant.kp_nm_rad.copy()
         self.kd_nm_s_rad = plant.kd_nm_s_rad.copy()
@@ -71,17 +67,20 @@ class Servos:
     def gains(
         self, time_s: float
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """kp, kd, back-EMF and largest torque (j,) at a time of the recording."""
+        """kp, kd, back-EMF and largest torque, each (j,), at a time of the recording.
+
+        Units are those of `servo_torque_nm`; only kp changes with time, where it fades.
+        """
         kp = self.kp_nm_rad
         if self._fades:
             kp = kp * np.maximum(1.0 - self.fade_1_s * max(time_s, 0.0), 0.0)
         return kp, self.kd_nm_s_rad, self.back_emf_nm_s_rad, self.max_torque_nm
 
     def set_point(self, command_rad: FloatArray) -> FloatArray:
-        """(j,) angles that the servos aim at in the next step.
+        """(j,) true joint angles [rad] that the servos aim at in the next step.
 
         Args:
-          command_rad: (j,) commands that have reached the servos.
+          command_rad: (j,) position targets that have reached the servos.
         """
         target = command_rad
         if self.leaks:
@@ -93,12 +92,12 @@ class Servos:
         return target - self.offset_rad
 
     def _slewed(self, target: FloatArray) -> FloatArray:
-        """Set-points of limited speed, which begin at the first command."""
+        """(j,) set-points that follow (j,) targets at limited speed, from the first."""
         if self._target is None:
             self._target = target
         most, now = self.max_speed_rad_s * self._step_s, self._target
         change = target - now
         self._target = now + np.clip(change, -most, most)
-        # At the beginning of the step a ramp is at `now`. A set-point below the limit
-        # is a mean over the step already.
+        # A set-point at its speed limit is at `now` as the step begins. One below the
+        # limit is a target, which already is a mean over the step.
         return np.where(np.abs(change) > most, now, self._target)

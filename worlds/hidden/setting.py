@@ -1,4 +1,4 @@
-"""Quantities from which the size and place of effects in concealed cases follow."""
+"""Quantities that decide size and place of the hidden effect drawn for a test case."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -9,31 +9,35 @@ from groundwalk.arrays import BoolArray, FloatArray
 from worlds.hidden.plant import HiddenPlant
 
 LEAST_MOTION_RAD = 0.08
-"""A joint whose commands span more than this counts as one that moves [rad]. Excited
-joints span ten times as much, held ones nothing: insensitive within a factor of two."""
+"""Range of a joint's commands [rad] above which the joint counts as moving. Excited
+joints have ten times as much, held ones none: insensitive within a factor of two."""
 LEAST_MOVED_M = 0.03
-"""A body whose centre of mass stays in a box of smaller diagonal counts as still."""
+"""A body counts as still if a box of this diagonal [m] holds its centre of mass at all
+times."""
 LEAST_LEVER_M = 0.02
-"""A joint feels a weight whose horizontal distance from the joint's axis gets this
-large [m]."""
+"""Lever arm [m] of gravity about a joint that a body must reach at some time, so that
+its weight counts as noticeable at that joint."""
 _LEAST_TORQUE = 0.02
-"""Torque that a joint is taken to need at least, as a share of its servo's limit."""
+"""Floor of a joint's usual torque, as a share of its servo's limit: effects at idle
+joints need a size above 0, too."""
 _LEAST_SPEED_RAD_S = 0.5
-"""Speed that a joint is taken to reach at least: held joints need sizes, too."""
+"""Floor of the top speed of a joint's command: effects at held joints need a size above
+0, too."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """How bodies of the nominal robot move, and what joints feel of their weight.
+    """How the nominal robot's b bodies move, and how their weight loads its j joints.
 
     Attributes:
-      names: of the b bodies: each joint's link in the joints' order, then a free trunk.
-      moved_m: (b,) diagonal of the box in which the centre of mass stays.
+      names: each joint's link in the order of the joints, then the trunk if it is free.
+      moved_m: (b,) diagonal of the smallest box that holds the centre of mass.
       carried_by: (b, j) whether a joint moves the body relative to the base.
-      lever_m: (b, j) largest horizontal distance of the body's centre of mass from a
-        joint's axis; 0 where the axis is vertical, since gravity has no lever there.
-      branch_lever_m: (j,) the same for the common centre of all bodies on a joint.
-      arm_m: (j, 3) from a joint's axis to its own link's centre of mass, link frame.
+      lever_m: (b, j) largest lever arm of the body's weight about a joint's axis in the
+        motion; 0 where the axis is vertical.
+      branch_lever_m: (j,) the same for the weight of all bodies beyond a joint.
+      arm_m: (j, 3) shortest vector from a joint's axis to its link's centre of mass,
+        link frame.
     """
 
     names: tuple[str, ...]
@@ -46,21 +50,21 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False)
 class Scales:
-    """Torques, speeds, reach and masses of the nominal robot in a motion.
+    """Torques, speeds, ranges and masses of the nominal robot in a motion.
 
-    Sizes of hidden effects are stated as parts of these.
+    Sizes of hidden effects are drawn as shares of these.
 
     Attributes:
-      torque_nm: (j,) 95th percentile of each servo's torque.
-      peak_nm: (j,) largest torque.
-      peak_rad_s: (j,) highest speed of a command.
+      torque_nm: (j,) usual torque of each servo: 95th percentile of its absolute value.
+      peak_nm: (j,) largest absolute torque of each servo.
+      peak_rad_s: (j,) highest speed of the commands.
       reach_rad: (j, 2) lowest and highest position.
-      asked_rad: (j,) span of the commands.
-      inertia_kg_m2: (j,) least inertia that a torque at the joint moves.
-      carried_kg: (j,) mass of all bodies that hang on a joint.
+      asked_rad: (j,) highest minus lowest command.
+      inertia_kg_m2: (j,) inertia seen by a torque at the joint, all others free.
+      carried_kg: (j,) mass of all bodies beyond a joint.
       axis: (j, 3) each joint's axis in the frame of its link.
       moving_kg: mass of all bodies that can move.
-      bodies: how they move.
+      bodies: motion of the bodies, and lever arms of their weights.
 
     Example:
       `worlds.hidden.scales.scales(plant, runs)` measures them.
@@ -79,20 +83,20 @@ class Scales:
 
     @property
     def moving(self) -> BoolArray:
-        """(j,) joints that are commanded to move."""
+        """(j,) flags of the joints that are commanded to move."""
         return np.asarray(self.asked_rad > LEAST_MOTION_RAD)
 
     def moves(self, body: str) -> bool:
-        """Whether a body's centre of mass moves."""
+        """Whether a body's centre of mass moves noticeably, by at least 3 cm."""
         return bool(self.bodies.moved_m[self._row(body)] >= LEAST_MOVED_M)
 
     def feels_weight(self, body: str) -> bool:
-        """Whether some joint that moves carries the body's weight on a lever."""
+        """Whether the body's weight noticeably loads a joint that moves."""
         levers_m = self.bodies.lever_m[self._row(body), self.moving]
         return bool(levers_m.max(initial=0.0) >= LEAST_LEVER_M)
 
     def carriers(self, body: str) -> int:
-        """How many of the joints that move carry the body."""
+        """Number of joints that are commanded to move and move this body."""
         return int(self.bodies.carried_by[self._row(body), self.moving].sum())
 
     def _row(self, body: str) -> int:
@@ -100,10 +104,12 @@ class Scales:
 
 
 class Spot(NamedTuple):
-    """Where an effect may be: a joint's column, and that joint's link or the trunk.
+    """Where an effect may be: index of a joint, and the name of its link or the trunk.
+
+    An effect on a joint uses the first, an effect on a body the second.
 
     Example:
-      `KINDS["backlash"].spots(plant, scales, joints)` lists the spots of a kind.
+      `KINDS["backlash"].spots(plant, scales, joints)` lists possible spots of backlash.
     """
 
     joint: int
@@ -112,15 +118,15 @@ class Spot(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """Robot, motion, spot and ease from which an effect's size follows.
+    """All that decides the size of a hidden effect drawn for a test case.
 
     Attributes:
-      plant: the robot.
-      scales: of the robot's motion with nothing hidden.
-      spot: where the effect is.
-      ease: how easy the effect is to see, from 0 (hard) to 1 (easy); negative values
-        give effects that are smaller still.
-      duration_s: of each recording.
+      plant: the nominal robot.
+      scales: torques, speeds and masses of its motion without effects.
+      spot: joint and body where the effect is.
+      ease: how easy the effect is to detect, from 0 (hard) to 1 (easy); negative values
+        make it harder still.
+      duration_s: length of each recording.
       rng: draws signs, directions and times.
 
     Example:
@@ -136,31 +142,31 @@ class Setting:
 
     @property
     def joint(self) -> int:
-        """Column of the joint."""
+        """Index of the joint where the effect is."""
         return self.spot.joint
 
     @property
     def torque_nm(self) -> float:
-        """Torque that the joint's servo mostly stays below, with a floor [N m]."""
+        """Usual torque of the joint's servo [N m], at least 2 % of its largest."""
         least = _LEAST_TORQUE * self.plant.max_torque_nm[self.joint]
         return float(max(self.scales.torque_nm[self.joint], least))
 
     @property
     def speed_rad_s(self) -> float:
-        """Highest speed of the joint's command, with a floor [rad/s]."""
+        """Highest speed of the joint's command [rad/s], at least 0.5."""
         return float(max(self.scales.peak_rad_s[self.joint], _LEAST_SPEED_RAD_S))
 
     @property
     def sign(self) -> float:
-        """Plus or minus one, drawn anew at each access."""
+        """1 or -1, drawn at random on each access."""
         return float(self.rng.choice([-1.0, 1.0]))
 
     def part(self, easy: float, hard: float) -> float:
-        """The size at this ease, interpolated evenly in the logarithm.
+        """The effect's size, interpolated logarithmically by `ease`.
 
         Args:
-          easy: size at ease 1.
-          hard: size at ease 0.
+          easy: size of an effect that is easy to detect (ease 1).
+          hard: size of an effect that is hard to detect (ease 0).
         """
         return float(hard * (easy / hard) ** self.ease)
 
@@ -171,24 +177,24 @@ class Setting:
 
     @property
     def many_joints(self) -> bool:
-        """Whether several moving joints, or a free base, move the body."""
+        """Whether several moving joints, or a free base, move the spot's body."""
         return self.plant.floating or self.scales.carriers(self.spot.body) > 1
 
     @property
     def at_end(self) -> bool:
-        """Whether the body is the joint's own link and the last of its chain."""
+        """Whether the spot's body is its joint's link and the last one of a chain."""
         carried = self.scales.bodies.carried_by[:, self.joint]
         own = self.spot.body == self.plant.links[self.joint]
         return own and int(carried.sum()) == 1
 
     @property
     def direction(self) -> FloatArray:
-        """(3,) unit vector of uniform direction, drawn anew at each access."""
+        """(3,) unit vector of uniformly random direction, drawn on each access."""
         way = self.rng.standard_normal(3)
         return np.asarray(way / np.linalg.norm(way))
 
     @property
     def across(self) -> FloatArray:
-        """(3,) random unit vector across the joint's axis, in its link's frame."""
+        """(3,) random unit vector normal to the joint's axis, in its link's frame."""
         way = np.cross(self.scales.axis[self.joint], self.direction)
         return np.asarray(way / np.linalg.norm(way))

@@ -1,4 +1,4 @@
-"""A robot's signals and ground, as hidden effects change them."""
+"""Signal delays, gyroscope bias and ground of a robot with hidden effects."""
 
 import math
 from dataclasses import dataclass, field
@@ -10,19 +10,19 @@ from groundwalk.gravity import GRAVITY_M_S2
 from terrain import Heightfield, Lumps
 
 _HALF_SIDE_M = 3.0
-"""Half the side of the square ground; recordings of 6 s stay well within it."""
+"""Half the side of the square ground [m]; walks of 6 s stay well within it."""
 _BUMP_WAVELENGTH_M = 0.2
-"""Shortest wavelength of bumps: about the length of a NAO's foot."""
+"""Shortest wavelength of bumps [m]: about the length of a NAO's foot."""
 _BUMP_BLEND_M = 0.05
 
 
 @dataclass(eq=False)
 class Surroundings:
-    """Delays and bias of signals, and the ground; all zero where nothing is hidden.
+    """Signal delays, gyroscope bias and ground of a robot; all zero without effects.
 
     Attributes:
-      command_delay_s: until a command reaches the servos.
-      encoder_delay_s: by which the encoders' readings are late.
+      command_delay_s: time from sending a command until it reaches the servos.
+      encoder_delay_s: age of the encoders' readings.
       gyroscope_bias_rad_s: (3,) constant error of the gyroscope, base frame.
       pitch_rad: dip of the ground, or of a fixed base's mount, towards the front (x).
       roll_rad: rise of the ground or mount towards the left (y).
@@ -37,9 +37,9 @@ class Surroundings:
     bumps_m: float = 0.0
 
     def tilt(self) -> FloatArray:
-        """(3, 3) rotation from the frame of mount or ground to the upright world.
+        """(3, 3) rotation R_y(pitch) R_x(roll) from the ground's to the upright frame.
 
-        R = R_y(pitch) R_x(roll).
+        For a fixed base, the ground stands for the base's mount.
         """
         pitch, roll = self.pitch_rad, self.roll_rad
         about_y = np.array(
@@ -59,14 +59,14 @@ class Surroundings:
         return np.asarray(about_y @ about_x)
 
     def gravity_m_s2(self) -> FloatArray:
-        """(3,) gravity in the frame of the mount or the ground."""
+        """(3,) gravity [m/s^2] in the frame of the tilted ground or mount."""
         return np.asarray(self.tilt().T @ np.array([0, 0, -GRAVITY_M_S2]))
 
     def ground(self, seed: np.random.SeedSequence) -> Heightfield:
-        """The ground under a floating robot: level, or with bumps from the start on.
+        """The ground under a floating robot: a plane, or bumps everywhere.
 
         Args:
-          seed: of the bumps.
+          seed: of the bumps' random shape.
         """
         low, high = -_HALF_SIDE_M, _HALF_SIDE_M
         if self.bumps_m == 0:

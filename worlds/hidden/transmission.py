@@ -1,25 +1,23 @@
-"""A spring with play between a motor and its joint."""
+"""Elasticity and play (backlash) between a motor and its joint."""
 
 from dataclasses import dataclass
 
 
 @dataclass
 class Transmission:
-    """A motor that reaches its joint through a spring with play.
+    """A motor that drives its joint through a spring and damper with play.
 
     The rotor's inertia is part of the link in the nominal models, so the motor itself
-    is taken as massless: its torque and that of the spring are in balance at all
-    times. The servo closes its loop on the motor's side. Its law is that of
-    `servos.servo_torque_nm`, solved together with the spring's. With u the motor's
-    torque,
+    is taken as massless: its torque and the spring's are equal at all times. The servo
+    controls the motor's angle m by the law of `servos.servo_torque_nm`. With q the
+    joint's angle and u the motor's torque, each implicit Euler step solves for m:
       u = clip(kp (command - m) - kd dm/dt, +-most) - back_emf dm/dt,
-      u = stiffness dead_zone(m - q, play / 2) + damping (dm/dt - dq/dt in contact),
-    the motor's angle m follows by one implicit Euler step.
+      u = stiffness dead_zone(m - q, play / 2) + damping (dm/dt - dq/dt in contact).
 
     Attributes:
       stiffness_nm_rad, damping_nm_s_rad: of the spring.
       gap_rad: total play.
-      step_s: time step.
+      step_s: time step of the physics.
       encoder_at_motor: whether the encoder reads the motor's angle, not the joint's.
       motor_rad: the motor's angle; None before the first step.
     """
@@ -38,13 +36,14 @@ class Transmission:
         command_rad: float,
         servo: tuple[float, float, float, float],
     ) -> float:
-        """Torque on the joint for the next step.
+        """Torque [N m] on the joint for the next step; moves the motor by one step.
 
         Args:
-          angle_rad: of the joint.
-          speed_rad_s: of the joint.
-          command_rad: the servo's set-point, in the motor's angle.
-          servo: kp, kd, most torque, back-EMF.
+          angle_rad: angle of the joint.
+          speed_rad_s: speed of the joint.
+          command_rad: set-point for the motor's angle.
+          servo: kp [N m/rad], kd [N m s/rad], largest torque [N m] and back-EMF
+            [N m s/rad].
         """
         kp, kd, most, back_emf = servo
         before = angle_rad if self.motor_rad is None else self.motor_rad
@@ -69,13 +68,13 @@ class Transmission:
     def _balance(
         self, before: float, q: float, v: float, motor: tuple[float, float, float]
     ) -> float:
-        """Angle at which the motor's `drive - pull m - drag dm/dt` is the spring's.
+        """Motor angle m [rad] at which the torques of motor and spring are equal.
 
         Args:
-          before: the motor's angle one step ago.
-          q: joint angle.
-          v: joint speed.
-          motor: pull, drive, drag.
+          before: the motor's angle one step ago [rad].
+          q: joint angle [rad].
+          v: joint speed [rad/s].
+          motor: (pull, drive, drag) of the motor's torque drive - pull m - drag dm/dt.
         """
         pull, drive, drag = motor
         half, h = self.gap_rad / 2, self.step_s

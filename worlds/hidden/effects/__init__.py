@@ -1,11 +1,10 @@
-"""Physics that a hidden world can have and its nominal model lacks, one class a kind.
+"""Kinds of hidden physics, one class each: what a nominal robot model lacks.
 
-The kinds carry the names and units of the diagnosis' effects, but their physics is
-written here a second time and independently of `diagnosis`, so that the benchmark does
-not test the diagnosis against its own code.
+Names and units are those of the effects in `diagnosis`, but the physics is written here
+a second time, so that benchmarks do not test the diagnosis against its own code.
 
-To add a kind, write a subclass of `HiddenKind` into a new module of this package:
-modules are found by themselves, and nothing else has to be edited.
+To add a kind, write a subclass of `HiddenKind` in a new module of this package; all
+modules here are imported and searched, so nothing else has to be edited.
 
 Example:
   >>> from worlds.hidden.effects import KINDS, Hidden

@@ -10,24 +10,24 @@ from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
 
 
 class _OneJointOneWeight(HiddenKind):
-    """A kind that changes the load of a joint: its weight or its inertia."""
+    """Hidden physics that changes the load of a joint: its weight or its inertia."""
 
     def cancels(self, plant: HiddenPlant) -> bool:
-        """Whether the robot has a single joint, which only shows one weight."""
+        """Whether the robot has one joint, where weight and inertia look alike."""
         return len(plant.joints) == 1
 
 
 class _Weight(_OneJointOneWeight):
-    """A kind that changes a body's weight."""
+    """Hidden physics that changes a body's mass or centre of mass."""
 
     place = "body"
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether the motion shows a change of the body's weight.
 
-        On a floating base the ground carries bodies that do not move. On a fixed base
-        some moving joint has to carry the weight on a lever: otherwise the change acts
-        as an encoder's offset, or not at all.
+        On a floating base the body has to move: else the ground just carries it. On a
+        fixed one its weight must load a moving joint: else the change acts as an
+        encoder offset, or not at all.
         """
         if plant.floating:
             return scales.moves(spot.body)
@@ -35,7 +35,7 @@ class _Weight(_OneJointOneWeight):
 
 
 class Armature(_OneJointOneWeight):
-    """A rotor behind the gear adds to the joint's inertia."""
+    """Extra inertia of a joint from a rotor behind its gear."""
 
     name = "armature"
     rank = 15
@@ -49,12 +49,12 @@ class Armature(_OneJointOneWeight):
         part.armature += values["inertia"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Inertia from 0.1 (hard to see) to 3 times (easy) the joint's own."""
+        """Inertia of 0.1 (hard to detect) to 3 times (easy) the joint's own."""
         return {"inertia": s.part(3, 0.1) * float(s.scales.inertia_kg_m2[s.joint])}
 
 
 class PayloadMass(_Weight):
-    """A body carries an extra mass at its centre of mass."""
+    """An extra point mass at a body's centre of mass."""
 
     name = "payload_mass"
     rank = 16
@@ -66,12 +66,12 @@ class PayloadMass(_Weight):
         part.mass += values["mass"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Mass from 1 % (hard to see) to 30 % (easy) of what hangs on the joint."""
+        """Mass of 1 % (hard to detect) to 30 % (easy) of what the joint carries."""
         return {"mass": s.part(0.3, 0.01) * float(s.scales.carried_kg[s.joint])}
 
 
 class ComOffset(_Weight):
-    """A body's centre of mass is not where the model has it."""
+    """A shift of a body's centre of mass from where the nominal model has it."""
 
     name = "com_offset"
     rank = 17
@@ -79,15 +79,15 @@ class ComOffset(_Weight):
     apart = ("payload_mass", "armature")
 
     def change_part(self, part: Any, values: Values) -> None:
-        """Shift the centre of mass in the body's frame."""
+        """Shift the centre of mass, along the axes of the body's frame."""
         part.ipos = part.ipos + np.array([values[axis] for axis in "xyz"])
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Shift by 3 (hard to see) to 50 mm (easy), across the joint's axis.
+        """Shift of 3 (hard to detect) to 50 mm (easy), normal to the joint's axis.
 
-        A shift along the axis would change nothing for the joint. The last body of a
-        chain gets longer or shorter: a shift to the side would act as a turn of the
-        whole link does, and thus as an encoder's offset.
+        A shift along the axis would not load the joint. In the last body of a chain the
+        shift is away from or towards the axis: one to the side would act as a rotation
+        of the whole link, and thus as an encoder offset.
         """
         size_m, arm_m = s.part(0.05, 0.003), s.scales.bodies.arm_m[s.joint]
         length_m = float(np.linalg.norm(arm_m))

@@ -1,4 +1,4 @@
-"""Dry friction with true sticking (Coulomb, Stribeck, loaded gears), and LuGre's."""
+"""Dry friction with true sticking (Coulomb, Stribeck, load), and LuGre friction."""
 
 import math
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ from worlds.hidden.effects.kind import (
 from worlds.hidden.setting import Setting
 
 RIGID_NM_RAD = 3000.0
-"""Stiffness of surfaces that stick and of gear teeth that touch: under a servo's torque
-of a few N m they give less than 0.001 rad, which is below an encoder's resolution."""
+"""Stiffness [N m/rad] of surfaces that stick and of gear teeth that touch: under a
+torque of 3 N m they yield by 0.001 rad, less than an encoder's resolution."""
 
 
 @dataclass
 class DryFriction:
-    """Friction that holds still below breakaway and slides above.
+    """Friction torque at a joint that sticks below a limit and slides at it.
 
     A very stiff bristle between the two surfaces bends with the motion until it
     carries the sliding torque, and then slips (elastic-plastic return mapping;
     Dupont, Hayward, Armstrong, Altpeter 2002, with the plastic branch entered at
-    once). While the bristle sticks it is damped, so that it does not ring.
+    once). While it sticks, the bristle is critically damped so that it does not ring.
 
     Attributes:
-      stiffness_nm_rad, damping_nm_s_rad: of the bristle, as stiff as steps allow.
-      coulomb_nm: sliding torque.
-      extra_nm, speed_rad_s: Stribeck: extra exp(-(v / speed)^2) more near standstill.
-      load_share: share of the servo's torque that adds to the sliding torque.
+      stiffness_nm_rad, damping_nm_s_rad: of the bristle.
+      coulomb_nm: constant part of the sliding torque.
+      extra_nm, speed_rad_s: Stribeck part extra exp(-(v / speed)^2) at joint speed v.
+      load_share: share of the servo's absolute torque that is added.
     """
 
     stiffness_nm_rad: float
@@ -44,11 +44,11 @@ class DryFriction:
 
     @classmethod
     def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
-        """Friction whose bristle is rigid, or as stiff as the time step allows.
+        """Make friction with a bristle of 3000 N m/rad, or less for a long time step.
 
         Args:
-          contact: inertia and time step at the joint.
-          torques: the other attributes.
+          contact: inertia at the joint, and time step.
+          torques: values of `coulomb_nm`, `extra_nm`, `speed_rad_s`, `load_share`.
         """
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
@@ -72,7 +72,7 @@ class DryFriction:
 
 
 class CoulombFriction(HiddenKind):
-    """Friction torque of constant size against the motion, with sticking."""
+    """Dry friction of constant torque against the motion, with sticking."""
 
     name = "coulomb_friction"
     rank = 2
@@ -81,11 +81,11 @@ class CoulombFriction(HiddenKind):
     apart = ("stribeck_friction",)  # which has a Coulomb part of its own
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Friction of constant size while the joint slides."""
+        """Law of the friction torque, of constant size while the joint slides."""
         return DryFriction.of(contact, coulomb_nm=values["torque"]).torque
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Torque from 1 % (hard to see) to 15 % (easy) of the servo's usual one."""
+        """Torque of 1 % (hard to detect) to 15 % (easy) of the servo's usual torque."""
         return {"torque": s.part(0.15, 0.01) * s.torque_nm}
 
 
@@ -103,7 +103,7 @@ class StribeckFriction(HiddenKind):
     apart = ("coulomb_friction",)  # which is a part of it
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Sliding friction of size coulomb + extra exp(-(v / speed)^2)."""
+        """Law of the friction torque: coulomb + extra exp(-(v / speed)^2)."""
         return DryFriction.of(
             contact,
             coulomb_nm=values["coulomb_torque"],
@@ -112,10 +112,10 @@ class StribeckFriction(HiddenKind):
         ).torque
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Coulomb part from 2 % (hard to see) to 10 % (easy) of the servo's torque.
+        """Coulomb part of 2 % (hard to detect) to 10 % (easy) of usual servo torque.
 
-        The extra part is 0.5 to 1.5 times as large. Its peak is at speeds that the
-        joint passes: otherwise it could not be distinguished from Coulomb friction.
+        The extra part is 0.5 to 1.5 times as large. Its speed is 3 to 30 % of the
+        joint's top speed: else it could not be distinguished from Coulomb friction.
         """
         coulomb = s.part(0.1, 0.02) * s.torque_nm
         part = s.rng.uniform(math.log(0.03), math.log(0.3))
@@ -127,7 +127,7 @@ class StribeckFriction(HiddenKind):
 
 
 class LoadFriction(HiddenKind):
-    """Dry friction in proportion to the torque that the servo transmits."""
+    """Dry friction proportional to the torque that the servo transmits."""
 
     name = "load_friction"
     rank = 4
@@ -135,7 +135,7 @@ class LoadFriction(HiddenKind):
     sizes = (0.3, 0.03)
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Friction of size share |servo torque| while the joint slides."""
+        """Law of the friction torque: share |servo torque| while the joint slides."""
         return DryFriction.of(contact, load_share=values["share"]).torque
 
 
@@ -143,12 +143,13 @@ class LoadFriction(HiddenKind):
 class SoftBristles:
     """LuGre friction without damping (Canudas de Wit, Olsson, Astrom, Lischinsky 1995).
 
-    dz/dt = v - stiffness |v| z / F, torque = stiffness z, here with a constant F.
+    The bristles' bend z at joint speed v follows dz/dt = v - stiffness |v| z / F; the
+    friction torque is stiffness z.
 
     Attributes:
-      torque_nm: F, reached after long sliding.
-      stiffness_nm_rad: of the bristles.
-      step_s: time step.
+      torque_nm: F, the friction torque after long sliding.
+      stiffness_nm_rad: stiffness of the bristles.
+      step_s: time step of the physics.
     """
 
     torque_nm: float
@@ -179,13 +180,16 @@ class LugreHysteresis(HiddenKind):
     outside = True
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Friction of soft bristles: a spring at first, Coulomb friction later."""
+        """Law of the friction torque: like a spring at first, like Coulomb's later."""
         return SoftBristles(
             values["torque"], values["stiffness"], contact.step_s
         ).torque
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Torque from 5 % (hard to see) to 30 % (easy) of the servo's usual one."""
+        """Torque of 5 % (hard to detect) to 30 % (easy) of the servo's usual torque.
+
+        The bristles bend by 0.03 to 0.12 rad under it.
+        """
         torque = s.part(0.3, 0.05) * s.torque_nm
         return {
             "torque": torque,

@@ -1,4 +1,4 @@
-"""Hidden physics that is a force on one body."""
+"""Hidden physics that is a force on one body: pushes and drag."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,8 @@ from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Scales, Setting, Spot
 
 _LASTING_SHARE = 0.3
-"""Share of drawn forces that act during the whole recording."""
+"""Share of randomly drawn forces that act during the whole recording, where possible.
+The others are short pushes."""
 
 
 class ExternalForce(HiddenKind):
@@ -27,7 +28,7 @@ class ExternalForce(HiddenKind):
     )
 
     def push(self, values: Values) -> Push:
-        """The constant force, in the world's frame, from start to start + duration."""
+        """Law of the force: constant in the world frame from start for its duration."""
         force_n = np.array([values[axis] for axis in "xyz"])
         start_s, duration_s = values["start"], values["duration"]
 
@@ -39,10 +40,10 @@ class ExternalForce(HiddenKind):
         return force
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Force from 0.5 % (hard to see) to 10 % (easy) of the moving weight.
+        """Force of 0.5 % (hard to detect) to 10 % (easy) of the moving parts' weight.
 
-        It mostly acts for 0.05 to 0.5 s. A force that lasts is only drawn where several
-        joints move the body: elsewhere it could not be distinguished from a weight.
+        It mostly acts for 0.05 to 0.5 s. A lasting force is only drawn where several
+        joints move the body: elsewhere it could not be distinguished from a payload.
         """
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         way = s.across if s.one_joint else s.direction
@@ -55,12 +56,12 @@ class ExternalForce(HiddenKind):
         return dict(zip("xyz", force.tolist(), strict=True)) | span
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether the body moves: else the base or the ground bears the force."""
+        """Whether the body moves; on a still one the force would show nowhere."""
         return scales.moves(spot.body)
 
 
 class Drag(HiddenKind):
-    """A force on a body against its velocity and proportional to it."""
+    """A force on a body, opposed and proportional to its velocity."""
 
     name = "drag"
     rank = 26
@@ -68,16 +69,19 @@ class Drag(HiddenKind):
     quantities = (Quantity("coefficient", "N s/m", 0.0),)
 
     def push(self, values: Values) -> Push:
-        """Force -coefficient v, with v the velocity of the body's centre of mass."""
+        """Law of the force: -coefficient v, v the velocity of the centre of mass."""
         coefficient = values["coefficient"]
         return lambda time_s, velocity: -coefficient * velocity()
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Drag at 1 m/s from 2 % (hard to see) to 40 % (easy) of the moving weight."""
+        """Coefficient; at 1 m/s the drag is a share of the moving parts' weight.
+
+        The share is 2 % (hard to detect) to 40 % (easy).
+        """
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         return {"coefficient": s.part(0.4, 0.02) * weight_n}
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether several joints move the body: with one, drag is viscous friction."""
+        """Whether several joints move the body; with one, drag is viscous friction."""
         many = plant.floating or scales.carriers(spot.body) > 1
         return scales.moves(spot.body) and many

@@ -12,7 +12,7 @@ from worlds.soft_ground import DAMPING_RATIO, FootSpring
 
 
 class _UnderFeet(HiddenKind):
-    """A kind that only a robot on its feet can have."""
+    """Hidden physics that only a robot standing on its feet can have."""
 
     def possible(self, plant: HiddenPlant) -> bool:
         """Whether the base is free, so that the robot stands on its feet."""
@@ -20,7 +20,7 @@ class _UnderFeet(HiddenKind):
 
 
 class ContactFriction(_UnderFeet):
-    """The friction coefficient between soles and ground."""
+    """A friction coefficient between soles and ground other than the nominal one."""
 
     name = "contact_friction"
     rank = 21
@@ -47,7 +47,7 @@ class ContactCompliance(_UnderFeet):
     sizes = (3000.0, 40000.0)
 
     def foot_spring(self, values: Values, mass_kg: float) -> FootSpring:
-        """Spring and damper under a foot, by default at a tenth of critical damping."""
+        """Spring and damper under each foot; damping is 10 % of critical by default."""
         stiffness, damping = values["stiffness"], values["damping"]
         if math.isnan(damping):
             # Each foot carries half of the robot.
@@ -67,19 +67,19 @@ class GroundSlope(HiddenKind):
     )
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Tilt the ground or the mount by pitch and roll."""
+        """Tilt the ground, or a fixed base's mount, further by pitch and roll."""
         surroundings.pitch_rad += values["pitch"]
         surroundings.roll_rad += values["roll"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Tilt from 0.5 degrees (hard to see) to 4 on feet or 8 on a fixed base."""
+        """Tilt of 0.5 degrees (hard to detect) to 4 on feet or 8 on a fixed base."""
         most_deg = 4.0 if s.plant.floating else 8.0
         tilt = math.radians(s.part(most_deg, 0.5))
         way = s.rng.uniform(0, 2 * math.pi)
         return {"pitch": tilt * math.cos(way), "roll": tilt * math.sin(way)}
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether it has several joints: with one, a tilt is an encoder's offset."""
+        """Whether the robot has several joints; with one, tilt is an encoder offset."""
         return len(plant.joints) > 1
 
 
@@ -93,5 +93,5 @@ class UnevenGround(_UnderFeet):
     sizes = (0.008, 0.0007)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Raise the bumps to this height unless they are higher already."""
+        """Set the height of the bumps, unless they are higher already."""
         surroundings.bumps_m = max(surroundings.bumps_m, values["height"])

@@ -1,4 +1,4 @@
-"""Hidden physics that is a torque at one joint, of its angle, its speed or the time."""
+"""Hidden physics that is a torque at a joint, given by its angle, speed or the time."""
 
 import math
 
@@ -13,8 +13,8 @@ from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Setting
 
 _STOP_NM_RAD = 500.0
-"""Stiffness of an end stop: hard rubber on a lever of some centimetres. A servo's
-torque of a few N m dents it by less than 0.01 rad."""
+"""Stiffness of an end stop [N m/rad]: hard rubber at a radius of some centimetres. A
+servo's torque of a few N m compresses it by less than 0.01 rad."""
 
 
 class ViscousFriction(HiddenKind):
@@ -27,21 +27,24 @@ class ViscousFriction(HiddenKind):
     apart = ("servo_damping",)
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Torque -coefficient v, with v the joint's speed."""
+        """Law of the friction torque: -coefficient v at joint speed v."""
         coefficient = values["coefficient"]
         return lambda time_s, angle, speed, servo: -coefficient * speed
 
     def size(self, s: Setting) -> dict[str, float]:
-        """At top speed from 2 % (hard to see) to 20 % (easy) of the servo's torque."""
+        """Coefficient; at the joint's top speed friction is a share of usual torque.
+
+        The share is 2 % (hard to detect) to 20 % (easy).
+        """
         return {"coefficient": s.part(0.2, 0.02) * s.torque_nm / s.speed_rad_s}
 
     def cancels(self, plant: HiddenPlant) -> bool:
-        """Whether all damping is back-EMF: less of it and more friction then cancel."""
+        """Whether all servo damping is back-EMF, which acts like viscous friction."""
         return not plant.kd_nm_s_rad.any()
 
 
 class JointSpring(HiddenKind):
-    """A spring pulls the joint towards a rest angle."""
+    """A spring that pulls the joint towards a rest angle."""
 
     name = "joint_spring"
     rank = 18
@@ -51,12 +54,15 @@ class JointSpring(HiddenKind):
     )
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Torque -stiffness (q - rest), with q the joint's angle."""
+        """Law of the spring's torque: -stiffness (q - rest) at joint angle q."""
         stiffness, rest = values["stiffness"], values["rest"]
         return lambda time_s, angle, speed, servo: -stiffness * (angle - rest)
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Stiffness from 1 % (hard to see) to 30 % (easy) of the servo's."""
+        """Stiffness of 1 % (hard to detect) to 30 % (easy) of the servo's stiffness.
+
+        The rest angle is drawn from the range of the motion.
+        """
         low, high = s.scales.reach_rad[s.joint]
         return {
             "stiffness": s.part(0.3, 0.01) * float(s.plant.kp_nm_rad[s.joint]),
@@ -65,10 +71,10 @@ class JointSpring(HiddenKind):
 
 
 class EndStop(HiddenKind):
-    """A stop keeps the joint from going beyond an angle.
+    """A stop that keeps the joint from going beyond an angle.
 
-    The stop is a stiff spring and damper that only push back. It is above the joint
-    where `side` is +1 and below it where `side` is -1.
+    It is a stiff spring and damper that only push back. The joint is kept below `angle`
+    where `side` is +1 and above it where `side` is -1.
     """
 
     name = "end_stop"
@@ -79,7 +85,7 @@ class EndStop(HiddenKind):
     )
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Nothing before the stop; beyond it a spring and damper that only push."""
+        """Law of the stop's torque: 0 before it; beyond, a spring and damper's push."""
         stop, side = values["angle"], values["side"]
         stiffness = contact.stiffness_nm_rad(_STOP_NM_RAD)
         damping = contact.damping_nm_s_rad(stiffness)
@@ -93,7 +99,7 @@ class EndStop(HiddenKind):
         return push
 
     def size(self, s: Setting) -> dict[str, float]:
-        """A stop at 90 % (hard to see) to 30 % (easy) of the motion's half width."""
+        """Stop at 90 % (hard to detect) to 30 % (easy) of the motion's amplitude."""
         low, high = s.scales.reach_rad[s.joint]
         side, half = s.sign, (high - low) / 2
         return {
@@ -115,7 +121,7 @@ class Cogging(HiddenKind):
     outside = True
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Ripple `torque` sin(per_turn q + phase), with q the joint's angle."""
+        """Law of the ripple: `torque` sin(per_turn q + phase) at joint angle q."""
         amplitude, per_turn = values["torque"], values["per_turn"]
         phase = values["phase"]
         return lambda time_s, angle, speed, servo: (
@@ -123,7 +129,7 @@ class Cogging(HiddenKind):
         )
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Torque from 3 % (hard to see) to 30 % (easy) of the servo's usual one."""
+        """Torque of 3 % (hard to detect) to 30 % (easy) of the servo's usual torque."""
         return {
             "torque": s.part(0.3, 0.03) * s.torque_nm,
             "per_turn": float(s.rng.integers(12, 60)),
@@ -144,7 +150,7 @@ class PeriodicTorque(HiddenKind):
     outside = True
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
-        """Disturbance `torque` sin(2 pi frequency t + phase), with t the time."""
+        """Law of the torque: `torque` sin(2 pi frequency t + phase) at time t."""
         amplitude, frequency = values["torque"], values["frequency"]
         phase = values["phase"]
 
@@ -155,7 +161,7 @@ class PeriodicTorque(HiddenKind):
         return wave
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Torque from 2 % (hard to see) to 20 % (easy) of the servo's usual one."""
+        """Torque of 2 % (hard to detect) to 20 % (easy) of the servo's usual torque."""
         return {
             "torque": s.part(0.2, 0.02) * s.torque_nm,
             "frequency": float(s.rng.uniform(0.7, 6.0)),

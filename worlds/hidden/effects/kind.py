@@ -1,4 +1,4 @@
-"""The base class of all kinds of hidden physics, and the types of their parts."""
+"""The base class of all kinds of hidden physics, and types that they use."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -14,23 +14,23 @@ from worlds.hidden.transmission import Transmission
 from worlds.soft_ground import FootSpring
 
 Values = Mapping[str, float]
-"""Value of each parameter by its name, in SI units."""
+"""Values of an effect's parameters by name, in SI units."""
 
 JointTorque = Callable[[float, float, float, float], float]
-"""Torque [N m] on a joint for the next step, from time [s], angle [rad], speed [rad/s]
-and the servo's torque [N m]."""
+"""Law of a torque: from time in the recording [s], joint angle [rad], joint speed
+[rad/s] and servo torque [N m] to the torque [N m] on the joint in the next step."""
 
 Push = Callable[[float, Callable[[], FloatArray]], FloatArray | None]
-"""Force (3,) [N] on a body for the next step, or None, from the recording's time [s]
-and a function that returns the body's velocity (3,) [m/s]."""
+"""Law of a force: from time in the recording [s] and a function that returns the body's
+velocity (3,) [m/s] to the force (3,) [N] in the next step, or None for no force."""
 
 _MOST = 0.15
-"""Largest stiffness of a contact in units of inertia / step^2. A semi-implicit step is
+"""Largest stiffness of a contact in units of inertia / step^2. Semi-implicit Euler is
 stable up to 4; this is far below, so that the contact's motion is resolved, too."""
 _DAMPING_RATIO = 1.0
-"""Contacts are critically damped, so that they do not ring."""
+"""Damping of contacts as a share of critical damping, so that they do not ring."""
 _LAST = 1000
-"""Rank of a kind that states none: after all others."""
+"""Position in the list of kinds for one that states none: after all others."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Quantity:
     """One parameter of a kind of hidden physics: its name, unit and sensible range.
 
     Attributes:
-      name: as in `name@place:parameter=value`.
+      name: the `parameter` in an effect's text `name@place:parameter=value`.
       unit: such as "N m"; "1" for a plain number.
       low, high: sensible range; values outside of it are refused.
       default: value where none is given; None if one must be given.
@@ -62,42 +62,43 @@ class Quantity:
 
 @dataclass(frozen=True)
 class StiffContact:
-    """How stiff a contact at a joint can be made so that time steps can follow it.
+    """Limits the stiffness of a contact at a joint to what the time step can resolve.
 
     Attributes:
-      inertia_kg_m2: least inertia that a torque at the joint moves.
-      step_s: time step.
+      inertia_kg_m2: inertia seen by a torque at the joint, all other joints free.
+      step_s: time step of the physics.
     """
 
     inertia_kg_m2: float
     step_s: float
 
     def stiffness_nm_rad(self, wanted_nm_rad: float) -> float:
-        """The wanted stiffness, or the largest that the time step can follow."""
+        """The wanted stiffness, or the largest that the time step can resolve."""
         return min(wanted_nm_rad, _MOST * self.inertia_kg_m2 / self.step_s**2)
 
     def damping_nm_s_rad(self, stiffness_nm_rad: float) -> float:
-        """Critical damping of a contact of this stiffness."""
+        """Critical damping of a contact at the joint with this stiffness."""
         return 2 * _DAMPING_RATIO * math.sqrt(stiffness_nm_rad * self.inertia_kg_m2)
 
 
 class HiddenKind:
-    """One kind of hidden physics: its parameters, physics, size and place.
+    """One kind of hidden physics that can be added to a nominal robot.
 
-    The methods change nothing by default; a subclass overrides some of them.
+    Methods for physics add nothing by default; a subclass overrides some of them. Other
+    methods and attributes serve to draw test cases with unknown effects at random.
 
     Attributes:
-      name: as in `name@place:parameter=value`.
-      rank: position in the list from which concealed cases draw. The ranks of existing
-        kinds are fixed: a change would draw other cases from the same seed.
+      name: the `name` in an effect's text `name@place:parameter=value`.
+      rank: position in the list from which cases are drawn. Ranks of existing kinds are
+        fixed: a change would draw other cases from the same seed.
       place: "joint", "body", or the one word that is this kind's only place.
       quantities: its parameters.
       outside: whether the diagnosis has no effect of this name.
-      engines: that can compute it.
-      needs_motion: whether a joint shows it only while the joint moves.
+      engines: names of the physics engines that can simulate it.
+      needs_motion: whether it shows only at joints that move.
       apart: kinds that are never drawn into the same case, if `cancels` says so.
-      sizes: the only parameter of an effect that is easy and of one that is hard to
-        see in concealed cases; kinds whose size depends on more override `size`.
+      sizes: value of the only parameter for an effect that is easy to detect, and for
+        one that is hard; kinds with more parameters override `size`.
 
     Example:
       >>> from worlds.hidden import KINDS
@@ -117,22 +118,22 @@ class HiddenKind:
 
     @property
     def parameters(self) -> dict[str, Quantity]:
-        """The parameters by name."""
+        """The kind's parameters by name."""
         return {quantity.name: quantity for quantity in self.quantities}
 
     # Physics
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Change numbers of the servo of a joint, given by its column."""
+        """Change gains, limits or faults of the servo of joint number `joint`."""
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque | None:
-        """Law of a torque at the joint besides the servo's; None if there is none."""
+        """Law of an extra torque at the joint; None if this kind adds none."""
         return None
 
     def transmission(
         self, values: Values, contact: StiffContact
     ) -> Transmission | None:
-        """What replaces the rigid gear between motor and joint; None if nothing."""
+        """Spring or play in place of the joint's rigid gear; None to keep it rigid."""
         return None
 
     def change_part(self, part: Any, values: Values) -> None:
@@ -147,39 +148,39 @@ class HiddenKind:
         return None
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Change the signals' delays and biases, or the ground."""
+        """Change signal delays, the gyroscope's bias, or the ground."""
 
     def push(self, values: Values) -> Push | None:
-        """Law of a force at a body's centre of mass; None if there is none."""
+        """Law of a force at a body's centre of mass; None if this kind adds none."""
         return None
 
     # Size and place in concealed cases
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Parameters of an effect that is as easy to see as the setting says."""
+        """Parameter values of an effect that is as easy to detect as `s.ease` says."""
         return {self.quantities[0].name: s.part(*self.sizes)}
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the robot can have this effect and distinguish it from all others."""
+        """Whether a robot can have this effect and can tell it from all others."""
         return True
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether the motion shows this effect at a spot, unlike all other effects."""
+        """Whether the motion shows this effect at a spot and no other effect alike."""
         return True
 
     def cancels(self, plant: HiddenPlant) -> bool:
-        """Whether a robot cannot distinguish this kind from those in `apart`."""
+        """Whether the robot's motion cannot tell this kind from those in `apart`."""
         return True
 
     def spots(
         self, plant: HiddenPlant, scales: Scales, joints: Sequence[int]
     ) -> list[Spot]:
-        """Where a concealed case may have this effect; empty if nowhere.
+        """Joints and bodies where a test case may have this effect; may be empty.
 
         Args:
-          plant: the robot.
-          scales: of the robot's motion with nothing hidden.
-          joints: columns of the joints that may be chosen.
+          plant: the nominal robot.
+          scales: torques, speeds and masses of the robot's motion without effects.
+          joints: indices of the joints that may be chosen.
         """
         if not self.possible(plant):
             return []

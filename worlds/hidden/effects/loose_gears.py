@@ -9,22 +9,22 @@ from worlds.hidden.transmission import Transmission
 
 
 class Backlash(HiddenKind):
-    """Play between gear teeth; the encoder is at the joint."""
+    """Play between gear teeth, with the encoder at the joint."""
 
     name = "backlash"
     rank = 5
     quantities = (Quantity("gap", "rad", 0.0, 0.5),)
     sizes = (0.06, 0.003)
-    apart = ("joint_elasticity",)  # a joint has play or a spring
+    apart = ("joint_elasticity",)  # a joint can have one of the two
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
-        """Play between teeth that are rigid, or as stiff as the time step allows."""
+        """A gear with play; its teeth are as stiff as the time step allows."""
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return Transmission(stiffness, 0.0, values["gap"], contact.step_s)
 
 
 class JointElasticity(HiddenKind):
-    """A spring and damper between motor and joint; the encoder is at the motor."""
+    """A spring and damper between motor and joint, with the encoder at the motor."""
 
     name = "joint_elasticity"
     rank = 6
@@ -32,10 +32,10 @@ class JointElasticity(HiddenKind):
         Quantity("stiffness", "N m/rad", 0.0),
         Quantity("damping", "N m s/rad", 0.0),
     )
-    apart = ("backlash",)  # a joint has play or a spring
+    apart = ("backlash",)  # a joint can have one of the two
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
-        """A spring and damper without play."""
+        """A gear that is a spring and damper without play."""
         return Transmission(
             values["stiffness"],
             values["damping"],
@@ -45,7 +45,7 @@ class JointElasticity(HiddenKind):
         )
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Stiffness from 2000 (hard to see) to 50 N m/rad (easy), lightly damped."""
+        """Stiffness of 2000 (hard to detect) to 50 N m/rad (easy), lightly damped."""
         stiffness = s.part(50.0, 2000.0)
         critical = 2 * math.sqrt(stiffness * float(s.scales.inertia_kg_m2[s.joint]))
         return {

@@ -1,4 +1,4 @@
-"""One hidden effect at its place, and the list of all kinds."""
+"""A hidden effect with place and values, and the list of all kinds of effects."""
 
 import importlib
 import math
@@ -14,7 +14,7 @@ from worlds.hidden.surroundings import Surroundings
 
 
 def _found() -> Iterator[HiddenKind]:
-    """One object of each kind that a module of this package defines."""
+    """An object of each subclass of `HiddenKind` in the modules of this package."""
     for module in pkgutil.iter_modules([str(Path(__file__).parent)]):
         name = f"{__package__}.{module.name}"
         if name in (__name__, HiddenKind.__module__):
@@ -29,7 +29,7 @@ def _found() -> Iterator[HiddenKind]:
 KINDS: Mapping[str, HiddenKind] = {
     kind.name: kind for kind in sorted(_found(), key=lambda one: (one.rank, one.name))
 }
-"""All kinds by name, in the order from which concealed cases draw."""
+"""All kinds of hidden physics by name, in the order from which test cases are drawn."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class Hidden:
     """A hidden effect at its place, such as 0.02 rad of play in the left knee.
 
     Attributes:
-      name: one of `KINDS`.
-      place: a joint, a body, or the kind's only place.
+      name: a key of `KINDS`.
+      place: name of a joint or body, or the kind's only place, such as "gyroscope".
       parameters: values in SI units by name; optional ones may be missing.
 
     Example:
@@ -81,7 +81,7 @@ class Hidden:
 
     @property
     def kind(self) -> HiddenKind:
-        """The kind of this effect: its physics, units and places."""
+        """The kind of this effect, which has its physics, units and place."""
         return KINDS[self.name]
 
     @property
@@ -90,20 +90,20 @@ class Hidden:
         return {name: self[name] for name in self.kind.parameters}
 
     def __getitem__(self, parameter: str) -> float:
-        """Value of a parameter; NaN for an optional one that has no default number."""
+        """Value of a parameter in SI units; NaN where its default is not a number."""
         if parameter in self.parameters:
             return float(self.parameters[parameter])
         default = self.kind.parameters[parameter].default
         return math.nan if default is None else default
 
     def to_text(self) -> str:
-        """`name@place:parameter=value,...`, which `parse` reads."""
+        """The effect as text `name@place:parameter=value,...`, which `parse` reads."""
         values = ",".join(f"{key}={value:g}" for key, value in self.parameters.items())
         return f"{self.name}@{self.place}:{values}"
 
     @classmethod
     def parse(cls, text: str) -> "Hidden":
-        """Read `name@place:parameter=value,...`.
+        """Read an effect from text `name@place:parameter=value,...`.
 
         Raises:
           GroundwalkError: the text is not of this form, or a name in it is unknown.
@@ -129,7 +129,7 @@ class Hidden:
 
     @classmethod
     def sized(cls, name: str, setting: Setting) -> "Hidden":
-        """The effect at a setting's spot, as easy to see as the setting says."""
+        """Draw an effect for a test case, at the setting's spot and of its ease."""
         kind = KINDS[name]
         at = {
             "joint": setting.plant.joints[setting.joint],
@@ -139,7 +139,7 @@ class Hidden:
 
 
 def surroundings(effects: Iterable[Hidden]) -> Surroundings:
-    """Signals and ground of a robot with these hidden effects.
+    """Signal delays, gyroscope bias and ground of a robot with these hidden effects.
 
     Example:
       >>> late = Hidden.parse("command_latency:delay=0.02")

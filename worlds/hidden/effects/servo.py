@@ -1,4 +1,4 @@
-"""Hidden physics of a servo: its gains, limits, encoder and wiring."""
+"""Hidden physics of a servo: changed gains and limits, encoder offset, crosstalk."""
 
 from groundwalk.errors import BadValueError
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
@@ -7,27 +7,27 @@ from worlds.hidden.servos import Servos
 from worlds.hidden.setting import LEAST_LEVER_M, Scales, Setting, Spot
 
 _LEAST_EFFORT = 0.06
-"""A joint whose servo needs a smaller share of its largest torque does not show a
-torque limit. Insensitive within a factor of two."""
+"""Least peak torque of a servo in the motion, as a share of its largest torque, for the
+joint to be given a torque limit. Insensitive within a factor of two."""
 
 
 class EncoderOffset(HiddenKind):
-    """The encoder reads a constant angle too much."""
+    """A constant error of a joint's encoder, which the servo acts on."""
 
     name = "encoder_offset"
     rank = 9
     quantities = (Quantity("offset", "rad", -1.0, 1.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Add the offset to the encoder's readings, which the servo controls."""
+        """Add the offset [rad] to the readings of the joint's encoder."""
         servos.offset_rad[joint] += values["offset"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Offset from 0.005 (hard to see) to 0.1 rad (easy), to either side."""
+        """Offset of 0.005 (hard to detect) to 0.1 rad (easy), to either side."""
         return {"offset": s.sign * s.part(0.1, 0.005)}
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether gravity shows it: a joint on a fixed base has to carry weight."""
+        """Whether gravity shows it: on a fixed base the joint has to carry weight."""
         lever_m = scales.bodies.branch_lever_m[spot.joint]
         return plant.floating or bool(lever_m >= LEAST_LEVER_M)
 
@@ -40,16 +40,16 @@ class TorqueLimit(HiddenKind):
     quantities = (Quantity("torque", "N m", 0.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Lower the servo's largest torque, if it is not lower already."""
+        """Lower the servo's largest torque to the limit, if it is above."""
         most = servos.max_torque_nm
         most[joint] = min(most[joint], values["torque"])
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Limit from 0.9 (hard to see) to 0.4 times (easy) the largest torque used."""
+        """Limit of 0.9 (hard to detect) to 0.4 (easy) of the motion's peak torque."""
         return {"torque": s.part(0.4, 0.9) * float(s.scales.peak_nm[s.joint])}
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
-        """Whether the motion needs a noticeable share of the servo's largest torque."""
+        """Whether the motion needs at least 6 % of the servo's largest torque."""
         effort = scales.peak_nm[spot.joint] / plant.max_torque_nm[spot.joint]
         return bool(effort >= _LEAST_EFFORT)
 
@@ -63,12 +63,12 @@ class SpeedLimit(HiddenKind):
     needs_motion = True
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Lower the speed at which the servo's set-point follows its command."""
+        """Limit the speed at which the servo's set-point follows its command."""
         most = servos.max_speed_rad_s
         most[joint] = min(most[joint], values["speed"])
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Limit from 0.9 (hard to see) to 0.4 times (easy) the command's top speed."""
+        """Limit of 0.9 (hard to detect) to 0.4 times (easy) the command's top speed."""
         return {"speed": s.part(0.4, 0.9) * s.speed_rad_s}
 
 
@@ -84,7 +84,7 @@ class ServoGain(HiddenKind):
         servos.kp_nm_rad[joint] *= values["factor"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Factor that differs from 1 by 0.03 (hard to see) to 0.4 (easy)."""
+        """Factor that differs from 1 by 0.03 (hard to detect) to 0.4 (easy)."""
         return {"factor": 1.0 + s.sign * s.part(0.4, 0.03)}
 
 
@@ -102,38 +102,38 @@ class ServoDamping(HiddenKind):
         servos.back_emf_nm_s_rad[joint] *= values["factor"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Factor that differs from 1 by 0.05 (hard to see) to 0.4 (easy).
+        """Factor that differs from 1 by 0.05 (hard to detect) to 0.4 (easy).
 
-        It is below 1 where all damping is back-EMF: more of that is the same as viscous
-        friction.
+        It is below 1 where all damping is back-EMF, since more back-EMF is the same as
+        viscous friction.
         """
         part = s.part(0.4, 0.05)
         sign = s.sign if s.plant.kd_nm_s_rad[s.joint] > 0 else -1.0
         return {"factor": 1.0 + sign * part}
 
     def cancels(self, plant: HiddenPlant) -> bool:
-        """Whether all damping is back-EMF: less of it and more friction then cancel."""
+        """Whether all servo damping is back-EMF, which acts like viscous friction."""
         return not plant.kd_nm_s_rad.any()
 
 
 class ServoFade(HiddenKind):
-    """The servo loses a constant share of its stiffness in every second."""
+    """The servo loses a constant share of its nominal stiffness per second."""
 
     name = "servo_fade"
     rank = 20
     quantities = (Quantity("rate", "1/s", 0.0, 10.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Let the servo's stiffness kp fade from the beginning of the recording."""
+        """Let the servo's stiffness kp decrease from the beginning of the recording."""
         servos.fade_1_s[joint] += values["rate"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Rate that takes 3 % (hard to see) to 25 % (easy) over the whole recording."""
+        """Rate [1/s] at which 3 % (hard to detect) to 25 % (easy) are lost in total."""
         return {"rate": s.part(0.25, 0.03) / s.duration_s}
 
 
 class JointCrosstalk(HiddenKind):
-    """A share of another joint's command is added to this joint's."""
+    """A share of another joint's command is added to this joint's command."""
 
     name = "joint_crosstalk"
     rank = 29
@@ -144,10 +144,10 @@ class JointCrosstalk(HiddenKind):
     outside = True
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Add a share of the command of the joint whose column is `source`.
+        """Add a share of the command of the joint whose index is `source`.
 
         Raises:
-          BadValueError: the source is not the number of another joint.
+          BadValueError: `source` is not the index of another joint.
         """
         source, joints = int(values["source"]), len(servos.kp_nm_rad)
         if not (0 <= source < joints and source != joint):
@@ -155,7 +155,7 @@ class JointCrosstalk(HiddenKind):
         servos.leaks.append((joint, source, values["share"]))
 
     def size(self, s: Setting) -> dict[str, float]:
-        """A share of 1 % (hard to see) to 20 % (easy) of any other joint's command."""
+        """Share of 1 % (hard to detect) to 20 % (easy) of a random joint's command."""
         others = [i for i in range(len(s.plant.joints)) if i != s.joint]
         return {
             "source": float(s.rng.choice(others)),
@@ -163,5 +163,5 @@ class JointCrosstalk(HiddenKind):
         }
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the robot has another joint."""
+        """Whether the robot has more than one joint."""
         return len(plant.joints) > 1

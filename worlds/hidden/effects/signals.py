@@ -1,4 +1,4 @@
-"""Hidden physics of signals: delays, and a gyroscope's bias."""
+"""Hidden physics of signals: delays of commands and encoders, and gyroscope bias."""
 
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
 from worlds.hidden.plant import HiddenPlant
@@ -7,7 +7,7 @@ from worlds.hidden.surroundings import Surroundings
 
 
 class CommandLatency(HiddenKind):
-    """Commands reach the servos late."""
+    """Commands reach all servos late, by a constant delay."""
 
     name = "command_latency"
     rank = 7
@@ -16,12 +16,12 @@ class CommandLatency(HiddenKind):
     sizes = (0.06, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to the delay of the commands."""
+        """Add this delay to that of the commands."""
         surroundings.command_delay_s += values["delay"]
 
 
 class SensorDelay(HiddenKind):
-    """The encoders' readings are late."""
+    """The readings of all encoders are late, by a constant delay."""
 
     name = "sensor_delay"
     rank = 8
@@ -30,16 +30,16 @@ class SensorDelay(HiddenKind):
     sizes = (0.04, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to the delay of the encoders' readings."""
+        """Add this delay to that of the encoders' readings."""
         surroundings.encoder_delay_s += values["delay"]
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the base is free: else late readings act as late commands do."""
+        """Whether the base is free; on a fixed one, late commands look the same."""
         return plant.floating
 
 
 class GyroBias(HiddenKind):
-    """The gyroscope reads a constant turning rate too much."""
+    """A constant error of the gyroscope, added to the true turning rate."""
 
     name = "gyro_bias"
     rank = 10
@@ -47,14 +47,14 @@ class GyroBias(HiddenKind):
     quantities = tuple(Quantity(axis, "rad/s", -5.0, 5.0) for axis in "xyz")
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add to the bias of each axis of the gyroscope."""
+        """Add this bias to that of each axis of the gyroscope."""
         surroundings.gyroscope_bias_rad_s += [values[axis] for axis in "xyz"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Bias from 0.003 (hard to see) to 0.05 rad/s (easy), in any direction."""
+        """Bias of 0.003 (hard to detect) to 0.05 rad/s (easy), randomly directed."""
         bias = s.part(0.05, 0.003) * s.direction
         return dict(zip("xyz", bias.tolist(), strict=True))
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the robot has a gyroscope: those with a description do."""
+        """Whether the robot has a gyroscope, as all robots with a description have."""
         return plant.description is not None
