@@ -1,7 +1,7 @@
-"""Finds out where sim and recordings differ, and what physics the sim lacks.
+"""Finds out where a simulation differs from recordings, and what physics it lacks.
 
-The names below are the face of this room. They are imported when they are first used,
-so that `import diagnosis` stays quick.
+The public names of this package are imported only when they are first used, so that
+`import diagnosis` stays quick.
 
 Example:
   >>> import numpy as np

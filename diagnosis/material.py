@@ -1,4 +1,8 @@
-"""Recordings ready for a diagnosis: audited, without stalls, with pulses found."""
+"""Prepares recordings for a diagnosis: audits them, removes stalls and finds pulses.
+
+A stall is a moment after which all joints follow their commands later. A pulse is a
+constant torque, for a while, that a joint's servo did not ask for.
+"""
 
 import itertools
 from collections.abc import Sequence
@@ -22,11 +26,12 @@ class Material:
     Attributes:
       plant: nominal robot model.
       audited: what the audit of the recordings found.
-      traces: recordings without stalls, with their pulses accounted for.
+      traces: the longest part of each recording without a stall; torques of pulses
+        are replayed, values that pulses falsified are missing.
       reference: recordings of the healthy robot, prepared in the same way.
-      channels: the channels that all of them measured.
-      pulses: pulses found in `traces`.
-      limits: sentences about stalls that were removed from `traces`.
+      channels: the channels that all recordings measured.
+      pulses: pulses found in `traces`: torques that no servo asked for.
+      limits: sentences about the stalls of `traces`, for the report.
     """
 
     plant: Plant
@@ -51,10 +56,12 @@ class Material:
           plant: nominal robot model.
           traces: recordings of the robot.
           reference: recordings of the healthy robot; may be empty.
-          drive: what moves the joints in replays where commands and torques are known.
+          drive: "servos": simulated servos follow the recorded commands; "torques":
+            the measured torques act on the joints.
 
         Raises:
-          BadRecordingError: the audit refuses a recording in `traces`.
+          BadRecordingError: the audit refuses a recording in `traces`, or a recording
+            lacks the torques that are to drive the joints.
         """
         audited = audit(traces, plant)
         if audited.refused:
@@ -75,7 +82,11 @@ class Material:
 def _prepared(
     plant: Plant, traces: Sequence[Trace], drive: DriveBy
 ) -> tuple[tuple[Trace, ...], tuple[Pulse, ...]]:
-    """Remove stalls, account for pulses and choose what drives the joints."""
+    """Remove stalls and pulses, and choose what drives the joints in replays.
+
+    Returns:
+      The prepared recordings, and the pulses of all of them.
+    """
     ready = [steady(trace) for trace in traces]
     pulses = [pulses_of(plant, trace) for trace in ready]
     ready = [

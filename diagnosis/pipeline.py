@@ -1,8 +1,8 @@
-"""From recordings to a verdict: what physics does the sim lack?
+"""Runs a diagnosis: from recordings to a verdict on the physics that a sim lacks.
 
-The recordings go one way. They are audited and prepared (`material.py`), a search finds
-effects (`_searched`), these are fitted again and tested on held-out data (`_tested`),
-and the findings become the verdict (`_verdict`).
+Recordings are audited and prepared (`material.py`); a search finds effects, pieces of
+physics that the sim lacks (`_searched`); they are fitted again and tested on held-out
+data (`_tested`), and become the verdict (`_verdict`).
 """
 
 import time
@@ -48,12 +48,12 @@ from diagnosis.verdict.verdict import Amount, Fit, PlacedEffect, Verdict, Verdic
 from groundwalk.blas import one_blas_thread
 
 MORE_FLOATING = 4
-"""Extra single-effect fits for floating bases, where contacts make first-order guesses
-unreliable."""
+"""Number of models that the search fits in addition if the base floats. Contacts make
+the linear estimates unreliable by which it chooses models to fit."""
 
 FIT_REPLAYS, TEST_REPLAYS = 150, 150
-"""Rough numbers of replays for calibration and signatures, and for the final test; they
-only scale the progress display."""
+"""Rough numbers of replays of the recordings in sim before the search and in the final
+test; they only scale the progress display."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +61,13 @@ class Diagnosis:
     """A verdict and the models and predictors behind it.
 
     Attributes:
-      verdict: the answer.
-      model: the effects that are believed, with their values.
+      verdict: the answer: effects with places and intervals, `none` or `unknown`.
+      model: the effects that the search accepted, with their fitted values.
       plant: the nominal robot model.
-      test: predictor of the held-out recordings, calibrated at `model`.
-      nominal: predictor of the held-out recordings, calibrated at the nominal model.
+      test: simulates the held-out recordings; its weights are set for `model`.
+      nominal: the same with weights set for the nominal model.
       audit: what the audit of the recordings found.
-      given: effects that the reference recordings show; empty without a reference.
+      given: effects that recordings of the healthy robot show; empty without such.
 
     Example:
       >>> found = diagnose(plant, traces, np.random.SeedSequence(1))
@@ -83,7 +83,7 @@ class Diagnosis:
     given: Model = ()
 
     def held_out(self) -> list[HeldOutSeries]:
-        """Measured, nominal and corrected course of each held-out recording."""
+        """Each held-out recording as measured and as simulated without and with fit."""
         return held_out_series(self.nominal, self.test, self.model)
 
 
@@ -98,18 +98,19 @@ def diagnose(
     drive: DriveBy = "servos",
     hooks: Hooks | None = None,
 ) -> Diagnosis:
-    """Find out what physics a robot model lacks that recordings show.
+    """Find out which physics recordings show that a robot model lacks.
 
     Args:
       plant: nominal robot model.
       traces: recordings of the robot.
       seed: seed of the flexible regression and of the random control.
-      rules: settings of the search; the default ones where None.
-      threads: threads of the replays.
-      reference: recordings of the healthy robot; differences that they show as well
-        are taken as given.
-      drive: what moves the joints in replays where both were recorded.
-      hooks: progress display and checkpoint; none where None.
+      rules: settings of the search; None for the default ones.
+      threads: number of threads that simulate.
+      reference: recordings of the healthy robot; the diagnosis looks only for
+        differences that they do not show.
+      drive: "servos": simulated servos follow the recorded commands; "torques": the
+        measured torques act on the joints.
+      hooks: progress display and checkpoint; None for neither.
 
     Raises:
       BadRecordingError: the recordings do not allow a diagnosis.
@@ -148,8 +149,8 @@ class _Learned:
     """A search that is ready to run, and its data.
 
     Attributes:
-      data: predictors of the fitting, selection and held-out data.
-      noise: model errors that the reference shows; None without a reference.
+      data: what simulates the data for fitting, for selection and for the final test.
+      noise: model errors that recordings of the healthy robot show; None without such.
       search: the search on `data`.
     """
 
@@ -161,7 +162,7 @@ class _Learned:
 def _learned(
     material: Material, rules: Rules | None, threads: int, hooks: Hooks
 ) -> _Learned:
-    """Learn from the reference, calibrate predictors, and judge the nominal sim."""
+    """Learn model errors of the healthy robot, divide the data, and make the search."""
     plant, reference, channels = material.plant, material.reference, material.channels
     noise: ReferenceNoise | None = None
     healthy: list[Predictor] = []
@@ -176,7 +177,7 @@ def _learned(
 
 
 def _rules(plant: Plant, rules: Rules | None) -> Rules:
-    """Settings of a search; those of a floating base have more single effects."""
+    """Settings of a search, the default ones for None; a floating base fits more."""
     rules = rules or Rules()
     if plant.base == "fixed":
         return rules
@@ -188,10 +189,10 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
 
 
 def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind]:
-    """Search for up to three effects, and the kind of the verdict that follows.
+    """Search for effects that the sim lacks, and decide the kind of the verdict.
 
-    If the verdict is `unknown` on a fixed base, kinds of effects at all joints are
-    searched for.
+    The search adds up to three effects. If the verdict on a robot with a fixed base
+    would be `unknown`, it goes on with one kind of effect at all joints at once.
     """
     judge, plant = search.judge, search.judge.fit.plant
     result = without_unsure(accepted(judge, search.run()), judge.least_gain)
@@ -205,14 +206,15 @@ def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind
 
 @dataclass(frozen=True, eq=False)
 class _Tested:
-    """The believed effects, fitted again and tested on held-out data.
+    """The effects that a search found, fitted again and tested on held-out data.
 
     Attributes:
       result: the result of the search.
       kind: kind of the verdict before the test.
-      refitted: the model fitted to fitting and selection data; None for no effect.
-      both: predictor of these data, calibrated at the model.
-      test: predictor of the held-out data, calibrated at the model.
+      refitted: the effects fitted to all data but the held-out ones; None if there
+        are no effects.
+      both: simulates the data of `refitted`, with weights set for these effects.
+      test: simulates the held-out data, with weights set for these effects.
       fit: errors on the held-out data.
     """
 
@@ -225,7 +227,7 @@ class _Tested:
 
     @property
     def model(self) -> Model:
-        """The believed effects with their final values."""
+        """The effects that the search found, with their final values."""
         return self.refitted.model if self.refitted else ()
 
 
@@ -235,7 +237,7 @@ def _tested(
     kind: VerdictKind,
     seed: np.random.SeedSequence,
 ) -> _Tested:
-    """Fit the believed effects to all learned data, and test them on held-out data."""
+    """Fit the effects found to all data but the held-out ones; test them on these."""
     if kind == "not_identifiable":  # then no effect is believed
         result = replace(result, chosen=0)
     winner, data = result.winner, learned.data
@@ -252,7 +254,14 @@ def _verdict(
     tested: _Tested,
     others: tuple[tuple[PlacedEffect, ...], ...],
 ) -> Verdict:
-    """The verdict; a held-out test that contradicts the search changes its kind."""
+    """The verdict; its kind becomes "unknown" where held-out data contradict it.
+
+    Args:
+      material: the recordings.
+      learned: the search and its data.
+      tested: the effects found and their test.
+      others: other sets of effects that explain the recordings about as well.
+    """
     data, result, kind = learned.data, tested.result, tested.kind
     both, judge = tested.both, learned.search.judge
     nominal = data.learned.residuals([()])[0]
@@ -286,7 +295,7 @@ def _verdict(
 
 
 def _detectable(search: Search, kind: VerdictKind) -> Mapping[str, Amount]:
-    """Smallest detectable sizes for a verdict that names no effect, else nothing."""
+    """By "effect@place", the smallest size that would show; {} if effects are found."""
     if kind not in ("none", "not_identifiable"):
         return {}
     judge = search.judge

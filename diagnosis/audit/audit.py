@@ -1,4 +1,4 @@
-"""Audits recordings before a diagnosis: noise, gaps, excitation and contradictions."""
+"""Audits recordings before a diagnosis: noise, gaps, motion and contradictions."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,8 +30,8 @@ from diagnosis.traces.trace import Trace
 def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
     """Measure all traces, and find what makes them unusable or limits conclusions.
 
-    A delay between commands and states is no finding: it is an effect that a diagnosis
-    may find.
+    A delay between commands and positions is no finding: it is physics that a diagnosis
+    looks for.
 
     Args:
       traces: recordings of the plant.
@@ -81,7 +81,14 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
 def _suspicions(
     trace: Trace, plant: Plant, measured: TraceAudit, smoothed: list[Smoothed]
 ) -> list[Finding]:
-    """Findings that contradict the recording's own metadata or the robot model."""
+    """Findings on contradictions within a recording, or between it and the model.
+
+    Args:
+      trace: a recording of the plant.
+      plant: the nominal robot model.
+      measured: measurements of the trace.
+      smoothed: the trace's smoothed positions, joint by joint.
+    """
     moves = [joint.moves for joint in measured.joints]
     return [
         *range_findings(trace, plant),

@@ -1,4 +1,4 @@
-"""Audits single channels: noise, quantum, missing, stuck and repeated values."""
+"""Audits single channels: noise, rounding, and missing, stuck or repeated values."""
 
 import numpy as np
 from scipy.ndimage import find_objects, label
@@ -27,25 +27,27 @@ _OF_VECTORS = {
     "base.angular_velocity": "base_angular_velocity_rad_s",
 }
 COMMANDS = ("command.", "command_torque.")
-"""Beginnings of the columns that are commanded, not measured."""
+"""Prefixes of the names of columns that are commanded, not measured."""
 _MOST_MISSING = 0.5
-"""Share of missing values from which a channel cannot be used."""
+"""A channel with a larger share of missing values than this cannot be used."""
 _BURST_S = 0.1
-"""Time without values [s] from which on a channel's gap is named."""
+"""Time without values [s] from which on a channel's gap limits conclusions."""
 _STUCK_ROWS = 4
-"""Rows at an extreme value that make a stay."""
+"""Number of successive rows at a channel's extreme value that may be clipped."""
 _STAYS, _LONG_STAY_ROWS = 2, 10
-"""Stays, or rows in a single one, from which on a channel counts as clipped."""
+"""A channel counts as clipped from this number of stays at an extreme value on, or from
+this number of rows in all stays together."""
 _ARRIVAL = 4.0
-"""Steps of noise per row at which a clipped channel reaches its extreme at least."""
+"""Smallest speed, in noise steps per row, at which a channel must reach its extreme
+value to count as clipped there."""
 _REPEATED = 0.05
-"""Share of repeated rows that is worth a finding."""
+"""Share of the rows in motion that must repeat the row before for a finding."""
 
 
 def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
     """All channels of a trace by the recording's column names, (T,) each.
 
-    Joints' quantities that were never recorded are left out.
+    Quantities that were never recorded at a joint are left out.
 
     Args:
       trace: a recording of the plant.
@@ -71,8 +73,8 @@ def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
 
     Args:
       trace: the recording.
-      name: the channel's column in the recording.
-      values: (T,) NaN where missing.
+      name: name of the channel's column in the recording.
+      values: (T,) values of the channel, NaN where missing.
     """
     there = values[np.isfinite(values)]
     noise = noise_of(trace.time_s, values)
@@ -90,7 +92,7 @@ def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
 
 
 def channel_findings(trace: Trace, channel: ChannelAudit) -> list[Finding]:
-    """Word the findings about missing and clipped values of one channel."""
+    """Findings on the missing and clipped values of one channel."""
     severity: Severity
     found = []
     where = f"{channel.name} of {trace.name}"
@@ -124,8 +126,7 @@ def repeated_share(trace: Trace, steps: FloatArray) -> float:
 
     Args:
       trace: a recording with j joints.
-      steps: (j,) quanta of the positions; 0 for continuous ones, which noise alone
-        never repeats.
+      steps: (j,) steps to which positions are rounded; 0 for continuous ones.
     """
     position = trace.position_rad
     if len(position) < 4:
@@ -137,7 +138,7 @@ def repeated_share(trace: Trace, steps: FloatArray) -> float:
 
 
 def repeated_findings(trace: Trace, share: float) -> list[Finding]:
-    """Word the finding about a share of repeated rows; none if it is small."""
+    """The finding on a large share of rows that repeat the row before, or none."""
     if share < _REPEATED:
         return []
     text = (
@@ -149,10 +150,15 @@ def repeated_findings(trace: Trace, share: float) -> list[Finding]:
 
 
 def _clipped_share(name: str, values: FloatArray, step: float) -> float:
-    """Share of rows in which a channel stays at an extreme that it reached at speed.
+    """Share of rows in which a channel is clipped: stays at an extreme value.
 
-    A signal that slows down before it stands still has come to rest; it is not clipped.
+    It must have reached that value at speed: a signal that slows down has come to rest.
     The smallest foot force does not count, since a foot without load rests at zero.
+
+    Args:
+      name: name of the channel.
+      values: (T,) its values.
+      step: difference of successive values that noise alone can make.
     """
     stays = []
     ends = (np.nanmax(values), np.nanmin(values))
@@ -171,7 +177,7 @@ def _clipped_share(name: str, values: FloatArray, step: float) -> float:
 
 
 def _longest_s(time_s: FloatArray, mask: BoolArray) -> float:
-    """Longest time [s] that a mask holds, from the row before to the row after."""
+    """Longest time [s] that (T,) flags hold, from the row before to the row after."""
     longest = 0.0
     for start, stop in _spans(mask):
         end = min(stop, len(time_s) - 1)
@@ -180,5 +186,5 @@ def _longest_s(time_s: FloatArray, mask: BoolArray) -> float:
 
 
 def _spans(mask: BoolArray) -> list[tuple[int, int]]:
-    """First row of each span of a mask, and the row after its last one."""
+    """First row of each run of (T,) flags, and the row after its last one."""
     return [(rows.start, rows.stop) for (rows,) in find_objects(label(mask)[0])]

@@ -1,4 +1,4 @@
-"""How well each joint's position follows each joint's command."""
+"""Compares each joint's position with each joint's command."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ from groundwalk.arrays import FloatArray
 _LONGEST_LAG_S = 0.25
 """Longest delay between command and position that is tried [s]."""
 _LAGS = 8
-"""Number of delays that are tried."""
+"""Number of delays between command and position that are tried."""
 _STILL_RAD = 2e-3
-"""A joint that moves less than this [rad] is taken as still."""
+"""A joint whose range of motion or of commands is at most this [rad] is left out."""
 _LEAST_ROWS = 50
-"""Fewest rows that a comparison must have."""
+"""Fewest rows from which commands and positions are compared."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,11 +25,12 @@ class Following:
     joint and the column the position's.
 
     Attributes:
-      columns: columns of these joints in the trace.
-      misfit: (m, m) rms of position less command, at the lag that fits best.
+      columns: indices of these joints in the trace.
+      misfit: (m, m) rms of position less command [rad], at the lag that fits best.
       correlation: (m, m) correlation, at the lag at which it is largest in size.
       slope: (m,) slope of each position over its own command.
-      flipped: (m,) rms of each position plus its own command, at the best lag.
+      flipped: (m,) rms of position plus own command [rad], at the best lag: small if
+        the sign of one is wrong.
     """
 
     columns: tuple[int, ...]
@@ -40,13 +41,10 @@ class Following:
 
 
 def following(trace: Trace) -> Following:
-    """Compare all commands with all positions, at lags of up to 0.25 s.
+    """Compare the commands with the positions of all joints, at lags of up to 0.25 s.
 
-    Args:
-      trace: a recording; rows in which a value is missing are left out.
-
-    Returns:
-      The comparison; without joints if there are no commands or nothing moves.
+    Rows in which a value is missing are left out. Without commands or motion the
+    comparison has no joints.
     """
     command, position = trace.command_rad, trace.position_rad
     nothing = Following((), *(np.zeros(shape) for shape in ((0, 0), (0, 0), 0, 0)))
@@ -80,7 +78,12 @@ def following(trace: Trace) -> Following:
 def _compare(
     command: FloatArray, position: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Misfit (m, m), flipped (m,), correlation (m, m) and slope (m,) at one lag."""
+    """Compare (rows, m) commands with (rows, m) positions at one lag.
+
+    Returns:
+      `misfit` (m, m), `flipped` (m,), `correlation` (m, m) and `slope` (m,) of
+      `Following`.
+    """
     there = np.isfinite(command).all(axis=1) & np.isfinite(position).all(axis=1)
     count = max(int(there.sum()), 1)
     c = command[there] - command[there].mean(axis=0) if there.any() else command[:0]

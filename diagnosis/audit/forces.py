@@ -9,15 +9,17 @@ from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 
 _ABOVE, _FAR_ABOVE = 1.5, 20.0
-"""Multiples of a servo's torque limit that are suspicious, and that are impossible."""
+"""Torques above the first multiple of the servo's limit are suspicious; above the
+second, their unit is wrong."""
 _IN_G = (0.7, 1.4)
-"""Median acceleration of a sensor that reports multiples of gravity."""
+"""A median size of the accelerometer's vector within this range, expected in m/s^2,
+shows that the sensor reports multiples of gravity."""
 _FASTEST_RAD_S = 35.0
-"""Upper end of robots' gyroscopes: 2000 degrees a second."""
+"""Largest rate [rad/s] that robots' gyroscopes can measure: 2000 degrees a second."""
 
 
 def torque_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Compare measured and commanded torques with the servos' limits.
+    """Find measured and commanded torques far above the servos' limits.
 
     Args:
       trace: a recording of the plant.
@@ -45,7 +47,7 @@ def torque_findings(trace: Trace, plant: Plant) -> list[Finding]:
 
 
 def imu_findings(trace: Trace) -> list[Finding]:
-    """Compare accelerations with gravity, and turning rates with gyroscopes' range."""
+    """Find accelerations in multiples of gravity, and turning rates in degrees."""
     found = []
     if trace.accelerometer_m_s2 is not None:
         norms = _sizes(np.linalg.norm(trace.accelerometer_m_s2, axis=1))
@@ -68,5 +70,5 @@ def imu_findings(trace: Trace) -> list[Finding]:
 
 
 def _sizes(values: FloatArray) -> FloatArray:
-    """Absolute values, missing ones left out."""
+    """(k,) absolute values of those that are not missing."""
     return np.asarray(np.abs(values[np.isfinite(values)]))

@@ -1,4 +1,4 @@
-"""Audits the excitation: how the joints moved, and which questions that leaves open."""
+"""Audits how the joints moved, and finds the questions that this leaves open."""
 
 from collections.abc import Sequence
 
@@ -13,18 +13,20 @@ _MOVES_NOISES, _MOVES_QUANTA, _MOVES_RAD = 8.0, 6.0, 1e-3
 """A joint moves if its range exceeds this many standard deviations of noise, this many
 quanta and this angle [rad]."""
 _FAST = 0.05
-"""Speeds below this share of the largest one count as standstill."""
+"""Speeds below this share of the largest one count as standstill when reversals are
+counted."""
 _LEAST_REVERSALS = 2
-"""Reversals that distinguish Coulomb friction from a constant torque."""
+"""Number of changes of direction needed to tell Coulomb friction from a constant
+torque."""
 
 
 def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointAudit:
     """Measure range, speed and reversals of one joint.
 
     Args:
-      joint: its name.
-      channel: audit of its position channel.
-      smoothed: its smoothed position.
+      joint: name of the joint.
+      channel: audit of the joint's position channel.
+      smoothed: the joint's smoothed position.
     """
     low, high = float(np.min(smoothed.value)), float(np.max(smoothed.value))
     noise = channel.noise
@@ -49,7 +51,7 @@ def stuck_findings(
 
     Args:
       trace: the recording.
-      joints: the robot model's.
+      joints: names of the robot model's joints.
       channels: audits of the trace's channels by name.
     """
     found, dead = [], []
@@ -79,7 +81,7 @@ def stuck_findings(
 
 
 def excitation_findings(traces: Sequence[TraceAudit]) -> list[Finding]:
-    """Find joints whose motion, in all traces together, leaves questions open."""
+    """Find joints that never move or hardly reverse in all traces together."""
     found = []
     for column, first in enumerate(traces[0].joints if traces else ()):
         joints = [trace.joints[column] for trace in traces]
@@ -102,7 +104,7 @@ def _left_open(name: str, moving: Sequence[JointAudit]) -> str:
 
 
 def _reversals(rate: FloatArray) -> int:
-    """Number of changes of direction between times of notable speed."""
+    """Number of changes of direction; rows that are almost still are left out."""
     fast = np.abs(rate) > _FAST * np.quantile(np.abs(rate), 0.995)
     direction = np.sign(rate[fast])
     return int(np.count_nonzero(np.diff(direction)))

@@ -17,7 +17,7 @@ class Finding:
     Attributes:
       severity: "note": for information; "limit": some effects cannot be judged with
         these data; "refuse": the recording cannot be used.
-      text: a plain sentence with trace, channel and number.
+      text: a sentence for the report, which names trace, channel and number.
       trace: name of the trace; empty if the finding is about all of them together.
       channel: such as "position.LKneePitch" or "time"; empty if the finding is about
         the whole trace.
@@ -38,7 +38,7 @@ class ChannelAudit:
     """Measurements of one channel of a trace, in the channel's unit.
 
     Attributes:
-      name: the recording's column.
+      name: name of the column in the recording, such as "position.LKneePitch".
       noise_std: standard deviation of white noise, rounding not included.
       quantum: step to which values are rounded; None if they are continuous.
       constant: whether all values are the same.
@@ -57,7 +57,7 @@ class ChannelAudit:
 
     @property
     def noise(self) -> Noise:
-        """White noise and rounding together."""
+        """White noise and quantum as one `Noise`."""
         return Noise(self.noise_std, self.quantum)
 
 
@@ -69,9 +69,9 @@ class JointAudit:
       name: the joint.
       low_rad: smallest smoothed position.
       high_rad: largest smoothed position.
-      speed_rad_s: 99 % of the rows are slower than this.
+      speed_rad_s: speed below which the joint is in 99 % of the rows.
       reversals: number of changes of direction.
-      moves: whether the range exceeds noise and quantum.
+      moves: whether the range exceeds noise and rounding.
     """
 
     name: str
@@ -90,7 +90,7 @@ class TraceAudit:
       name: the trace.
       rows: number of rows.
       duration_s: time from the first to the last row.
-      rate_hz: one over the median tick.
+      rate_hz: rows per second: one over the median tick (time between rows).
       jitter_s: standard deviation of the ticks that are no gaps.
       gaps: number of ticks longer than two and a half median ticks.
       longest_gap_s: length of the longest gap, 0 without any.

@@ -1,4 +1,4 @@
-"""Recordings that contradict the robot model: units, signs or joints mixed up."""
+"""Finds recordings that contradict the robot model: mixed up units, signs or joints."""
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -11,26 +11,30 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
 
 _FAR_BEYOND, _FAR_BEYOND_RAD = 1.0, 1.0
-"""Positions that leave a range by this multiple of its width and this many radians are
-taken to be in another unit."""
+"""Positions beyond a joint's range in the model, both by this multiple of its width and
+by this angle [rad], are taken to be in another unit."""
 _BEYOND = 0.05
-"""Positions that leave a range by this share of its width are worth a finding."""
+"""Positions beyond a joint's range in the model by this share of its width are worth a
+finding."""
 _NARROW = 3.0
-"""Motion this many times wider than the model's range shows a wrong range."""
+"""Motion this many times wider than a joint's range in the model shows that the range
+was converted to radians although it was in radians already."""
 _FAR_BETTER = 0.4
-"""Another joint's command must fit with this share of the own command's rms error."""
+"""Joints count as swapped if another joint's command fits a position with less than
+this share of the rms error of the joint's own command."""
 _ALIKE = 0.8
-"""Least size of a correlation for two signals to count as the same motion."""
+"""Smallest absolute correlation of two signals that count as the same motion."""
 _UNIT_SLACK = 1.4
-"""Factor by which a slope may differ from that of a wrong unit."""
+"""Largest factor between the slope of a position over its command and the factor of a
+confused unit, such as 57.3 for degrees, for which that unit is suspected."""
 _UNITS = {np.degrees(1): "degrees instead of radians", 1e3: "thousandths of the unit"}
-"""Factors between units that are often confused, and what to say then."""
+"""Factors between units that are often confused, and words for the wrong unit."""
 _RATE_SLACK = 2.0
-"""Factor by which a measured velocity may differ from the rate of the positions."""
+"""Largest factor between measured velocities and the rate of the positions."""
 
 
 def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Compare positions and commands with the joint ranges of the robot model.
+    """Find positions and commands beyond the joint ranges of the robot model.
 
     Args:
       trace: a recording of the plant.
@@ -95,12 +99,12 @@ def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
 def velocity_findings(
     trace: Trace, plant: Plant, smoothed: list[Smoothed], moves: list[bool]
 ) -> list[Finding]:
-    """Compare measured velocities with the rate of the positions.
+    """Find measured velocities that contradict the rate of the positions.
 
     Args:
       trace: a recording of the plant.
       plant: the robot model.
-      smoothed: the trace's positions, joint by joint.
+      smoothed: the trace's smoothed positions, joint by joint.
       moves: whether each joint moves.
     """
     found: list[Finding] = []
@@ -128,7 +132,7 @@ def velocity_findings(
 
 
 def drive_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Name what a replay needs and the trace lacks: a base's pose, a drive or gains.
+    """Find what a trace lacks to be replayed: a base's pose, commands or servo gains.
 
     Args:
       trace: a recording of the plant.
@@ -204,17 +208,17 @@ def _targets(trace: Trace) -> list[tuple[str, FloatArray]]:
 
 
 def _excess(values: FloatArray, low: float, high: float) -> float:
-    """How far values leave a range; 1 % at each end may be outliers."""
+    """Distance by which values leave a range; 1 % at each end are left out."""
     there = values[np.isfinite(values)]
     least, most = np.quantile(there, (0.01, 0.99)) if len(there) else (low, high)
     return float(max(most - high, low - least, 0.0))
 
 
 def _is_in_degrees(values: FloatArray, low: float, high: float) -> bool:
-    """Whether a range was converted to radians although it was in radians already.
+    """Whether a joint's range was converted to radians although it was in radians.
 
-    A joint that moves several times as far as its range, within 57.3 times the range,
-    cannot have stood at an end stop all the time.
+    This is so if the joint moves over more than three times its range, but within 57.3
+    times that range.
     """
     there = values[np.isfinite(values)]
     if len(there) == 0 or high <= low:
@@ -233,7 +237,7 @@ def _is_driven(trace: Trace, column: int) -> bool:
 
 
 def _follows_unknown(trace: Trace, column: int) -> bool:
-    """Whether only a position command drives a joint whose servo is unknown."""
+    """Whether the joint has no servo gains, and no torques instead of commands."""
     torques = (trace.command_torque_nm, trace.torque_nm)
     by_torque = any(
         values is not None and bool(np.isfinite(values[:, column]).any())

@@ -6,20 +6,20 @@ from diagnosis.audit.result import Finding, TraceAudit
 from diagnosis.traces.trace import Trace
 
 _LEAST_S, _LEAST_ROWS = 1.0, 50
-"""Shortest recording that can be used, in seconds and in rows."""
+"""Shortest recording that can be used: its duration [s] and its number of rows."""
 _GAP = 2.5
-"""Ticks longer than this many median ticks are gaps."""
+"""Ticks (times between rows) longer than this many median ticks are gaps."""
 _LONG_GAP_S = 0.1
-"""Gaps from this length on [s] limit conclusions: no simulation bridges them."""
+"""Gaps between rows limit conclusions if they are this long [s] or longer."""
 _SLOWEST_HZ, _SLOW_HZ = 5.0, 45.0
-"""Rates below which a recording is unusable, and below which fast effects are not
-visible."""
+"""Rows per second below which a recording is unusable, and below which delays, armature
+and elasticity cannot be estimated."""
 _UNEVEN = 0.1
-"""Jitter above this share of a tick is worth a finding."""
+"""Jitter (standard deviation of the ticks) above this share of a tick is a finding."""
 
 
 def audit_timing(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
-    """Measure rate, jitter and gaps of a trace, and word the findings about them."""
+    """Measure rate, jitter and gaps of a trace, and find those that limit its use."""
     name, time_s = trace.name, trace.time_s
     ticks = np.diff(time_s)
     if len(time_s) < 2 or (ticks <= 0).any() or not np.isfinite(time_s).all():

@@ -1,6 +1,6 @@
-"""The nominal robot model (the plant) that a diagnosis replays, and its servos.
+"""The plant: the nominal robot model with servos that a diagnosis simulates.
 
-`load_plant` makes one from a robot's name, an MJCF or a URDF.
+`load_plant` makes a plant from a robot's name, an MJCF or a URDF.
 """
 
 from diagnosis.plant.load import described_plant, load_plant

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import mujoco
 
 _LEVEL_M = 0.02
-"""Bodies whose lowest points differ by less than this [m] both count as feet."""
+"""A body reaching down to at most this [m] above the lowest one counts as a foot."""
 
 
 def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
@@ -25,7 +25,8 @@ def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
       base: "fixed" or "floating".
 
     Raises:
-      BadModelError: a floating base is asked for and it is unclear which body it is.
+      BadModelError: the base is to float, but several bodies are under the world, none
+        is, or a joint other than a free one holds it.
     """
     import mujoco
 
@@ -48,10 +49,10 @@ def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
 
 
 def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
-    """Remove all joints except some; the bodies that they carry are welded at zero.
+    """Remove all joints but those in `free`, as if they were locked at position 0.
 
-    Welded bodies become part of the body that carries them. Equalities, tendons and
-    sensors that refer to a removed joint are removed, too.
+    A body whose joint is removed becomes part of the body that carries it. Equalities,
+    tendons and sensors that refer to a removed joint are removed, too.
 
     Args:
       spec: the robot model, which is changed.
@@ -76,10 +77,10 @@ def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
 
 
 def standing_bodies(model: "mujoco.MjModel") -> tuple[str, ...]:
-    """Names of the bodies that stand on the ground, left before right.
+    """Names of the bodies taken as feet, left before right.
 
-    These are the bodies at the end of a chain, with shapes that can touch something,
-    whose lowest points are lowest with all joints at zero.
+    With all joints at zero they reach lowest, to within 2 cm, of all bodies that carry
+    no other body and have shapes that can touch something.
     """
     import mujoco
 

@@ -1,4 +1,4 @@
-"""Inverse dynamics: the torques that a motion needs, by the robot model."""
+"""Inverse dynamics: the joint torques that a motion of the robot model needs."""
 
 import copy
 from typing import TYPE_CHECKING
@@ -21,13 +21,13 @@ def inverse_dynamics(
 ) -> FloatArray:
     """Compute the joint torques that motions of a fixed-base robot need.
 
-    Constraints such as ties between joints are left out: they would turn sensor noise
-    into large torques.
+    MuJoCo's constraints, such as equalities between joints, are left out: they would
+    turn sensor noise into large torques.
 
     Args:
-      plant: the robot model; it gives the joints' places in MuJoCo's vectors.
+      plant: the robot model; it gives the joints' indices in MuJoCo's vectors.
       model: the compiled model to use: the plant's, or a copy with other numbers.
-      position_rad: (R, j) joint positions.
+      position_rad: (R, j) positions of the j joints in R rows.
       velocity_rad_s: (R, j) joint velocities.
       acceleration_rad_s2: (R, j) joint accelerations.
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _SUFFIXES = (".xml", ".urdf")
 _HELD_AT_M = 1.0
-"""Height at which a described robot with a fixed base hangs [m]."""
+"""Height [m] of the base of a robot that `robots` describes."""
 
 
 def load_plant(
@@ -38,25 +38,22 @@ def load_plant(
     joints: Sequence[str] | None = None,
     servo: Gains | None = None,
 ) -> Plant:
-    """Load the nominal robot model that a diagnosis replays.
+    """Load the nominal robot model that a diagnosis simulates.
 
-    Joints that the recordings lack are removed, so that the bodies they carry are
-    welded at zero. Contacts exist only with a floating base. The integrator is
-    implicitfast; the state of a simulation that diverges becomes NaN.
+    Joints that the recordings lack are locked at position 0. Contacts exist only with a
+    floating base. The integrator is MuJoCo's implicitfast; the state of a simulation
+    that diverges becomes NaN.
 
     Args:
       source: a robot of `robots`, a path to MJCF (.xml) or URDF (.urdf), or a robot
         of example-robot-data, such as "so101".
-      base: how the base is held.
+      base: "fixed" to the world or "floating".
       joints: joints that the recordings have; None for all hinges and slides.
-      servo: gains instead of the model's own.
-
-    Returns:
-      The plant; its servos are the model's own or those given.
+      servo: servo gains that replace the model's own; None for the model's own.
 
     Raises:
-      UnknownNameError: no such robot; the message has the nearest name.
-      BadModelError: the file is no model.
+      UnknownNameError: no robot has this name, or `servo` names an unknown joint.
+      BadModelError: the model file is missing, cannot be read or does not compile.
       BadRecordingError: the model lacks one of the joints.
 
     Example:
@@ -85,9 +82,9 @@ def described_plant(
     """Make the plant of a robot whose MuJoCo specification exists already.
 
     Args:
-      description: the robot.
+      description: the robot as data, as in `robots`.
       spec: its specification, with or without a ground; it is changed.
-      base: how the base is held.
+      base: "fixed" to the world or "floating".
 
     Example:
       See `diagnosis.corrected.sim.sim_plant`.
@@ -101,7 +98,7 @@ def described_plant(
 def _equip(
     spec: "mujoco.MjSpec", base: Base, joints: Sequence[str], servo: Servo
 ) -> None:
-    """Hold the base, lock the joints that were not recorded, and add the servos."""
+    """Fix or free the base, lock all joints but `joints`, and add their servos."""
     import mujoco
 
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -158,7 +155,7 @@ def _compiled(spec: "mujoco.MjSpec", name: str) -> "mujoco.MjModel":
 def _chosen(
     model: "mujoco.MjModel", joints: Sequence[str] | None, name: str
 ) -> tuple[str, ...]:
-    """The hinges and slides that recordings have, in the model's order."""
+    """Names of the hinges and slides, in the model's order; only `joints` if given."""
     import mujoco
 
     kinds = (mujoco.mjtJoint.mjJNT_HINGE.value, mujoco.mjtJoint.mjJNT_SLIDE.value)

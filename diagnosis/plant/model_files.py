@@ -29,7 +29,7 @@ def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
         touch only the ground.
 
     Raises:
-      BadModelError: it is no URDF.
+      BadModelError: the file cannot be read or is no URDF.
     """
     import mujoco
 
@@ -59,7 +59,7 @@ def mjcf_spec(path: Path) -> "mujoco.MjSpec":
     """Read an MJCF file as a MuJoCo specification.
 
     Raises:
-      BadModelError: MuJoCo cannot read it.
+      BadModelError: MuJoCo cannot read the file.
     """
     import mujoco
 
@@ -70,7 +70,10 @@ def mjcf_spec(path: Path) -> "mujoco.MjSpec":
 
 
 def _strip(link: ElementTree.Element, contacts: bool) -> None:
-    """Remove shapes that are not simulated, and inertials without a mass."""
+    """Remove a link's shapes that are not simulated, and inertials without mass.
+
+    An inertia that is not positive definite is replaced by a tiny one.
+    """
     for shape in [*link.findall("visual"), *link.findall("collision")]:
         is_mesh = shape.find("geometry/mesh") is not None
         if shape.tag == "visual" or is_mesh or not contacts:
@@ -86,7 +89,7 @@ def _strip(link: ElementTree.Element, contacts: bool) -> None:
 
 
 def _is_positive(inertia: ElementTree.Element) -> bool:
-    """Whether MuJoCo accepts an inertia: all of its eigenvalues are positive."""
+    """Whether all eigenvalues of a URDF inertia are positive, as MuJoCo demands."""
     xx, yy, zz, xy, xz, yz = (
         float(inertia.get(f"i{axes}", "0")) for axes in _INERTIA_AXES
     )

@@ -1,4 +1,4 @@
-"""The nominal robot model (the plant) that the diagnosis replays."""
+"""The plant: the nominal robot model that a diagnosis simulates."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import mujoco
 
 Base = Literal["fixed", "floating"]
-"""How a robot's base is held."""
+"""How a robot's base is held: welded to the world, or free to move."""
 ROOT = "root"
 """Name of a floating base's free joint."""
 _SLIDING = {
@@ -22,17 +22,17 @@ _SLIDING = {
     "N m s/rad": "N s/m",
     "kg m^2": "kg",
 }
-"""Units of sliding joints by those of turning joints."""
+"""Unit of a quantity at a sliding joint, by its unit at a turning joint."""
 
 
 @dataclass(frozen=True)
 class ModelOptions:
-    """Options of a model file that replays replace by their own.
+    """MuJoCo options of a model file that a diagnosis replaces by its own.
 
     Attributes:
-      timestep_s: of the physics.
-      integrator: MuJoCo's number of it.
-      disableflags: MuJoCo's bits of what is switched off, such as contacts.
+      timestep_s: time step of the physics.
+      integrator: number of the integrator in MuJoCo's `mjtIntegrator`.
+      disableflags: bits of `mjtDisableBit`: parts of the physics switched off.
     """
 
     timestep_s: float
@@ -41,7 +41,7 @@ class ModelOptions:
 
     @classmethod
     def of(cls, spec: "mujoco.MjSpec") -> "ModelOptions":
-        """The options that a specification has."""
+        """The three options of a MuJoCo specification."""
         option = spec.option
         return cls(option.timestep, int(option.integrator), int(option.disableflags))
 
@@ -60,8 +60,7 @@ class Plant:
       servo: servos of these joints, for recordings that state no gains.
       base: "fixed" or "floating".
       feet: names of the bodies that touch the ground, left before right.
-      options: of the file that the model was read from; None if the file has none, as
-        a URDF.
+      options: MuJoCo options of the model's file; None for a file without, as a URDF.
 
     Example:
       >>> load_plant("nao", base="floating").joints
@@ -92,7 +91,7 @@ class Plant:
 
     @cached_property
     def actuators(self) -> list[int]:
-        """Index of each joint's actuator."""
+        """Index of each joint's actuator in MuJoCo's control vector."""
         return [int(self.model.actuator(name).id) for name in self.joints]
 
     @cached_property
@@ -105,11 +104,11 @@ class Plant:
         return frozenset(name for name, kind in kinds.items() if kind == slide)
 
     def unit(self, unit: str, place: str) -> str:
-        """The unit of a quantity at a place; sliding joints have metres and newtons.
+        """The unit of a quantity at a joint: "N/m" for "N m/rad" if the joint slides.
 
         Args:
           unit: the unit for a joint that turns, such as "N m/rad".
-          place: name of a joint, or any other place, which keeps the unit.
+          place: name of a joint; for other names the unit stays as it is.
         """
         return _SLIDING.get(unit, unit) if place in self.slides else unit
 
@@ -124,7 +123,7 @@ class Plant:
         )
 
     def neighbours(self, body: str) -> frozenset[str]:
-        """Names of the bodies that carry a body, and of those that it carries."""
+        """Names of a body's ancestors and descendants in the kinematic tree."""
         model = self.model
         own = int(model.body(body).id)
         carried = [i for i in range(1, model.nbody) if _carries(model, own, i)]
@@ -132,7 +131,7 @@ class Plant:
         return frozenset(model.body(i).name for i in (*carried, *carrying))
 
     def at_rest(self, still: Collection[str]) -> frozenset[str]:
-        """Names of the bodies that stay at rest as long as the `still` joints do."""
+        """Names of the bodies that only the `still` joints, or none, could move."""
         if self.base == "floating":
             return frozenset()
         moved = [
@@ -149,7 +148,7 @@ class Plant:
 
 
 def _carries(model: "mujoco.MjModel", body: int, other: int) -> bool:
-    """Whether a body is between another one and the world."""
+    """Whether a body is an ancestor of another one in the kinematic tree."""
     while other > 0:
         other = int(model.body_parentid[other])
         if other == body:

@@ -22,14 +22,14 @@ def servo_torque(
     N for N m and m for rad.
 
     Args:
-      kp_nm_rad: stiffness.
-      kd_nm_s_rad: damping.
+      kp_nm_rad: stiffness kp.
+      kd_nm_s_rad: damping kd.
       max_torque_nm: torque limit; infinite where there is none.
-      error_rad: command less position.
+      error_rad: position command less measured position.
       velocity_rad_s: velocity of the joints.
 
     Returns:
-      Torques [N m], without the back-EMF of the motors.
+      Torques [N m], without the back-EMF of the motors, in the broadcast shape.
     """
     asked = kp_nm_rad * error_rad - kd_nm_s_rad * velocity_rad_s
     return np.asarray(np.clip(asked, -max_torque_nm, max_torque_nm))
@@ -39,18 +39,18 @@ def servo_torque(
 class Servo:
     """The servos of all j joints of a robot model.
 
-    Their torque is `servo_torque` - back_emf * velocity: the firmware limits what it
-    asks for, but not the torque that the turning motor induces. Sliding joints have N
-    for N m and m for rad.
+    Their torque is clip(kp error - kd velocity, +-max_torque) - back_emf velocity,
+    error being command less position: the firmware limits the torque that it asks for,
+    but not the back-EMF of the motor. Sliding joints have N for N m and m for rad.
 
     Attributes:
       kp_nm_rad: (j,) stiffness.
-      kd_nm_s_rad: (j,) damping, part of the limited torque.
+      kd_nm_s_rad: (j,) damping, inside the torque limit.
       max_torque_nm: (j,) torque limit; infinite where there is none.
-      back_emf_nm_s_rad: (j,) damping outside of the limit.
+      back_emf_nm_s_rad: (j,) damping outside the torque limit.
 
     Raises:
-      BadValueError: a value is negative or missing.
+      BadValueError: a value is negative or NaN, or the arrays differ in length.
 
     Example:
       >>> import numpy as np
@@ -77,7 +77,7 @@ class Servo:
         """(..., j) torques [N m] that the servos ask for, without back-EMF.
 
         Args:
-          error_rad: (..., j) command less position.
+          error_rad: (..., j) position commands less positions.
           velocity_rad_s: (..., j) velocities of the joints.
         """
         return servo_torque(
@@ -89,11 +89,11 @@ class Servo:
         )
 
     def of(self, columns: Sequence[int]) -> "Servo":
-        """The servos of the joints in some columns."""
+        """The servos of the joints with these indices."""
         return Servo(*(values[list(columns)] for values in vars(self).values()))
 
     @classmethod
     def ideal(cls, joints: int) -> "Servo":
-        """Servos without stiffness: `joints` joints that are driven by torques."""
+        """Servos of `joints` joints without stiffness, damping, limit and back-EMF."""
         zero = np.zeros(joints)
         return cls(zero, zero, np.full(joints, np.inf), zero)

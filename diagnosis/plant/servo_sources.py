@@ -1,4 +1,4 @@
-"""Reads servo gains from descriptions and models, and adds servos to models."""
+"""Reads servo gains from robot descriptions and models, and adds servos to models."""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     import mujoco
 
 Gains = Mapping[str, ServoGains] | ServoGains
-"""Servo gains by joint, or the same for all joints."""
+"""Servo gains by the joint's name, or one set of gains for all joints."""
 
 
 def described_servo(description: Description, joints: Sequence[str]) -> Servo:
-    """Servos of a described robot's joints; the motors' damping counts as back-EMF."""
+    """Servos of joints of a robot description; motor damping counts as back-EMF."""
     motors = [
         description.links[description.joints.index(name)].motor for name in joints
     ]
@@ -34,11 +34,11 @@ def described_servo(description: Description, joints: Sequence[str]) -> Servo:
 
 
 def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
-    """Read the servos that a compiled model has; joints without one get zero stiffness.
+    """Read the servos of a compiled model; joints without any get zero stiffness.
 
-    Position actuators (fixed gain, affine bias) give stiffness and damping, through
-    their gear. The torque limit is the tightest of those of the actuators and of the
-    joint (`actuatorfrcrange`, which is a URDF's effort).
+    Stiffness and damping are those of position actuators (fixed gain, affine bias)
+    times their gear squared. The torque limit is the tightest of the actuators' limits
+    and the joint's own (`actuatorfrcrange`, which is a URDF's effort).
 
     Args:
       model: the compiled model.
@@ -64,16 +64,16 @@ def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
 
 
 def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Servo:
-    """Replace the gains of some or all joints of a servo.
+    """Replace the servo gains of some or all joints.
 
-    A recording states one damping; it replaces the back-EMF where the servo has one,
-    otherwise the damping within the torque limit.
+    New gains have only one damping. At a joint whose servo has back-EMF it replaces the
+    back-EMF, at others the damping inside the torque limit.
 
     Args:
       servo: the servos of `joints`.
       joints: names of all joints.
       gains: new gains by joint, or the same for all joints; the largest float as
-        `max_torque` stands for no limit.
+        `max_torque` stands for no limit. None changes nothing.
 
     Raises:
       UnknownNameError: there are gains for a joint that does not exist.
@@ -96,7 +96,7 @@ def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Serv
 
 
 def remove_actuators(spec: "mujoco.MjSpec") -> None:
-    """Remove all actuators of a specification, their sensors and all keyframes."""
+    """Remove all actuators, sensors of actuators and keyframes from a model."""
     import mujoco
 
     kinds = (mujoco.mjtObj.mjOBJ_ACTUATOR,)
@@ -111,8 +111,8 @@ def remove_actuators(spec: "mujoco.MjSpec") -> None:
 def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> None:
     """Add one affine actuator for each joint, named as the joint.
 
-    Its force is clip(kp control - kp q - kd v, +-max); the back-EMF becomes damping of
-    the joint.
+    Its force is clip(kp (control - q) - kd v, +-max_torque) at joint position q and
+    velocity v; the back-EMF becomes damping of the joint.
 
     Args:
       spec: the robot model, which is changed.

@@ -1,8 +1,8 @@
-"""Recordings as traces in a robot model's order of joints, and their analysis.
+"""Traces: recordings as arrays in a robot model's order of joints, and their analysis.
 
-`read_traces` reads recordings and loads their robot model; `read_reference` reads those
-of the healthy robot. The other modules smooth, cut and divide traces, estimate sensor
-noise, and find stalls and pulses.
+`read_traces` reads recordings and loads their robot model; `read_reference` reads
+recordings of the healthy robot. The other modules smooth, cut and divide traces,
+estimate sensor noise, and find delays that jump and torques that no servo asked for.
 """
 
 from diagnosis.traces.read import read_reference, read_traces, trace_of

@@ -1,4 +1,4 @@
-"""The noise floor of a channel: its quantum and its white noise."""
+"""Estimates the noise of a recorded channel: white noise and the step of rounding."""
 
 from dataclasses import dataclass
 
@@ -9,21 +9,23 @@ from scipy.stats import chi2
 from groundwalk.arrays import BoolArray, FloatArray
 
 _ORDERS = (3, 5)
-"""Orders of the differences; the higher one cancels quick motion better."""
+"""Orders of the differences that noise is estimated from; the smaller result counts.
+The higher order cancels quick motion better."""
 _BLOCK = 40
-"""Rows of a block; each block is judged as quiet or moving."""
+"""Rows of a recording in one block; noise is estimated from the quietest blocks."""
 _QUIET = 0.25
-"""Quantile of the blocks' mean squares that stands for the quiet ones."""
+"""Quantile of the blocks' mean squares that stands for blocks without motion."""
 _FINEST = 1e-6
-"""Smallest quantum as a share of the range; smaller steps are rounding."""
+"""Smallest quantum (step of rounding) that is looked for, as a share of a channel's
+range; smaller steps come from floating-point numbers."""
 _ON_GRID = 0.1
-"""Largest distance from a multiple of the step, as a share of the step."""
+"""Largest distance of a value from a multiple of the quantum, as a share of it."""
 _NEARLY_ALL = 0.95
 """Share of the values that must be multiples of a quantum."""
 _CANDIDATES = (0.0, 0.02, 0.1, 0.25, 0.5, 0.75)
-"""Quantiles of the gaps between distinct values that are tried as quanta."""
+"""Quantiles of the gaps between distinct values; each one is tried as the quantum."""
 _GAP = 2.5
-"""Ticks longer than this many median ticks interrupt the differences."""
+"""Differences are not taken across ticks longer than this many median ticks."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class Noise:
 
     @property
     def step(self) -> float:
-        """Difference of two rows in a row that noise alone can make."""
+        """Difference of two successive values that noise or rounding alone can make."""
         return max(self.total, self.quantum or 0.0)
 
 
@@ -71,10 +73,10 @@ def noise_of(time_s: FloatArray, values: FloatArray) -> Noise:
 
 
 def quantum_of(values: FloatArray) -> float | None:
-    """Find the step to which values are rounded, whatever the origin of the steps.
+    """Find the step to which values are rounded, such as that of an encoder.
 
-    The largest step of which nearly all values are multiples counts, since all of its
-    fractions would fit, too.
+    It is the largest step such that nearly all values differ by multiples of it;
+    fractions of that step would fit, too.
 
     Args:
       values: (T,) NaN where missing.
@@ -103,7 +105,13 @@ def quantum_of(values: FloatArray) -> float | None:
 
 
 def _refined(levels: FloatArray, gaps: FloatArray, step: float) -> float:
-    """Refine a step: first by the median gap, then by a line through the levels."""
+    """Refine a rounding step by the median gap, then by a line through the levels.
+
+    Args:
+      levels: (n,) distinct values, increasing.
+      gaps: (n - 1,) their differences.
+      step: rough step.
+    """
     counts = np.maximum(np.round(gaps / step), 1.0)
     on_grid = np.abs(gaps / step - counts) < 2 * _ON_GRID
     if not on_grid.any():
@@ -117,11 +125,13 @@ def _refined(levels: FloatArray, gaps: FloatArray, step: float) -> float:
 def _differences(
     time_s: FloatArray, values: FloatArray, order: int
 ) -> tuple[FloatArray, BoolArray]:
-    """Divided differences over order + 1 rows, scaled to the noise's variance.
+    """Divided differences of a channel whose weights have unit length.
+
+    Their variance on white noise is therefore the noise's.
 
     Returns:
-      (T - order,) each, with weights of unit length; whether no gap is between their
-      rows.
+      (T - order,) differences over order + 1 rows each, and whether these rows have no
+      gap between them.
     """
     count, points = max(len(values) - order, 0), range(order + 1)
     if count == 0:
@@ -142,7 +152,7 @@ def _differences(
 
 
 def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
-    """Mean square of white noise, estimated from the differences in quiet blocks."""
+    """Variance of white noise, from differences of this order in quiet blocks."""
     differences, valid = _differences(time_s, values, order)
     squares = np.where(valid, differences**2, np.nan)
     whole = len(squares) // _BLOCK * _BLOCK
@@ -162,11 +172,11 @@ def _quiet_power(time_s: FloatArray, values: FloatArray, order: int) -> float:
 
 
 def _correlated(order: int) -> float:
-    """How many correlated differences of white noise count as one independent value.
+    """How many differences of white noise count as one independent value.
 
-    The correlation of those k rows apart is binom(2p, p + k) / binom(2p, p) for the
-    order p; a mean square of n correlated values has n / sum(correlation^2) degrees
-    of freedom.
+    Differences of order p whose rows are k apart have the correlation binom(2p, p + k)
+    / binom(2p, p), up to the sign; a mean square of n correlated values has
+    n / sum(correlation^2) degrees of freedom.
     """
     apart = np.arange(-order, order + 1)
     correlation = binom(2 * order, order + apart) / binom(2 * order, order)

@@ -1,7 +1,7 @@
-"""Finds out where pulses came in: at the actuator, a torque or a position sensor.
+"""Finds the source of a joint's pulses: actuator, torque sensor or position sensor.
 
-The signal that jumps at the edges of the pulses says so, and whether the motion obeys
-them.
+A pulse is a constant torque, for a while, that the servo did not ask for. The signal
+that jumps at its edges tells its source, and whether the joint moved accordingly.
 """
 
 from collections.abc import Sequence
@@ -19,17 +19,20 @@ Stretch = tuple[int, int]
 """First row of a pulse, and the row after its last one."""
 
 EDGE_ROWS, NEAR_ROWS = 4, 3
-"""Rows before and after an edge that are compared, and the uncertainty of an edge in
-rows."""
+"""Rows on each side of a pulse's edge that are compared to find the jump there, and
+the number of rows by which the edge itself may be off."""
 
 UNSURE_S = 0.02
-"""Time around an edge [s] in which smoothed speeds and accelerations are wrong."""
+"""Time before and after a pulse's edge [s] that is left out: smoothed speeds and
+accelerations are wrong there."""
 
 MOSTLY = 0.5
-"""Share of a pulse that the motion must obey for the pulse to be a real torque."""
+"""Share of a pulse's torque that must have moved the joint for it to be a real torque
+and no error of the torque sensor."""
 
 NEARLY_ALL = 0.7
-"""Share of the pulses' size that one signal must jump by to be their origin."""
+"""Smallest jump of a signal at the pulses' edges, as a share of the pulses' size, for
+which the signal can be their source."""
 
 
 def source_of(
@@ -39,18 +42,19 @@ def source_of(
     where: Sequence[Stretch],
     sizes: FloatArray,
 ) -> tuple[PulseSource | None, dict[str, float], float]:
-    """Find out in which signal a joint's pulses are.
+    """Find the source of a joint's pulses: an actuator or a sensor.
 
     Args:
       plant: the nominal robot model.
       trace: a whole recording with commands and measured torques.
-      column: the joint's.
-      where: rows of the pulses.
-      sizes: torque of each pulse [N m].
+      column: index of the joint.
+      where: rows of each pulse.
+      sizes: (pulses,) torques [N m].
 
     Returns:
-      The source, or None if no signal has them; the jumps at the edges by signal, as a
-      share of the pulses' sizes; and the share of the pulses that the motion obeys.
+      The source, or None if neither torque nor position jumps with the pulses; the mean
+      jump of each signal at their edges, as a share of their size; and the share of
+      their torque that moved the joint.
     """
     assert trace.torque_nm is not None
     assert trace.command_rad is not None
@@ -71,7 +75,7 @@ def source_of(
 
 
 def _jump(values: FloatArray, where: Sequence[Stretch], sizes: FloatArray) -> float:
-    """Mean jump of a signal at the pulses' edges, as a share of their sizes."""
+    """Mean jump of a signal [N m] at the pulses' edges, as a share of their sizes."""
     steps, wanted, margin = 0.0, 0.0, EDGE_ROWS + NEAR_ROWS
     for (first, last), size in zip(where, sizes, strict=True):
         for row, sign in ((first, 1.0), (last, -1.0)):
@@ -82,13 +86,13 @@ def _jump(values: FloatArray, where: Sequence[Stretch], sizes: FloatArray) -> fl
 
 
 def step_at(values: FloatArray, row: int) -> tuple[float, int]:
-    """Largest jump of a signal near a row, and the row where it is.
+    """Largest jump of a signal within 3 rows of a given row, and the row after it.
 
-    A line with a step is fitted to the rows before and after.
+    The jump is that of a line with a step, fitted to 4 rows on each side.
 
     Args:
       values: (T,) the signal.
-      row: where an edge is expected, to within `NEAR_ROWS`.
+      row: row at which a jump is expected.
     """
     time = np.arange(-EDGE_ROWS, EDGE_ROWS) + 0.5
     design = np.stack([np.ones_like(time), time, (time > 0).astype(float)], axis=1)
@@ -112,11 +116,11 @@ def _felt(
     where: Sequence[Stretch],
     sizes: FloatArray,
 ) -> float:
-    """Share of the measured pulses that the motion obeys.
+    """Share of the torque of a joint's measured pulses that moved the joint.
 
     The torque that the motion needs, by inverse dynamics, less the measured torque is
     regressed on friction and on the pulses. The pulses' coefficient is 0 if they were
-    real and -1 if the joint never felt them.
+    real torques, and -1 if only the torque sensor showed them.
     """
     assert trace.torque_nm is not None
     smoothed = [smooth(trace.time_s, own) for own in trace.position_rad.T]
@@ -137,7 +141,7 @@ def _felt(
 
 
 def _sure_rows(trace: Trace, where: Sequence[Stretch]) -> BoolArray:
-    """(T,) whether a row is so far from all edges that its smoothed speed holds."""
+    """(T,) whether a row is 20 ms or more away from the edges of all pulses."""
     edges = trace.time_s[[min(row, trace.ticks - 1) for one in where for row in one]]
     near = np.abs(trace.time_s[:, None] - edges) < UNSURE_S
     return np.asarray(~near.any(axis=1), bool)

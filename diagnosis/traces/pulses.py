@@ -1,11 +1,9 @@
-"""Finds pulses: constant offsets between a measured torque and what the servo asked.
+"""Finds pulses: torques that a joint's servo did not ask for, constant for a while.
 
-A servo's law says what torque it asks for. Where the torque was measured, the
-difference of the two is zero for a healthy joint. A pulse is a time span in which the
-difference is constant, between sharp edges. The signal that jumps at the edges, and
-whether the motion obeys the pulse, say where it came in. Such structured residuals
-distinguish the fault of an actuator from that of a sensor (Isermann 2005, "Model-based
-fault-detection and diagnosis").
+On a healthy joint the measured torque is the one that the servo's law asks for. A pulse
+is a time span in which the two differ by a constant, between sharp edges. The signal
+that jumps at the edges, and the motion, tell the fault of an actuator from that of a
+sensor (Isermann 2005, "Model-based fault-detection and diagnosis").
 """
 
 from collections.abc import Sequence
@@ -28,40 +26,44 @@ from diagnosis.verdict.parts import Pulse
 from groundwalk.arrays import FloatArray
 
 FILTER_S = 0.01
-"""Width of the median filter [s] that removes outliers of single rows."""
+"""Width of the median filter [s] that removes outliers before pulses are looked for."""
 
 SHORTEST_S, FEWEST = 0.03, 8
 """A pulse lasts at least this long [s] and at least this many rows."""
 
 QUIET = 0.2
-"""Largest rms difference between pulses, as a share of the smallest pulse."""
+"""Largest rms of measured less asked torque outside of the pulses, as a share of the
+smallest pulse; a joint with more has another fault."""
 
 FLAT = 0.3
-"""Largest standard deviation within a pulse, as a share of its size."""
+"""Largest standard deviation of measured less asked torque within a pulse, as a share
+of the pulse."""
 
 LEAST_OUTSIDE = 0.1
-"""Smallest share of the rows that must lie outside of all pulses."""
+"""Share of a recording's rows that must lie outside of all pulses."""
 
 LATE = (0.0, 0.5, 1.0)
-"""Delays [ticks] after which a recording may note a torque; all are tried."""
+"""Delays [ticks] of a servo's command that are tried: a recording may note a torque
+before its row's command took effect."""
 
 CALM = 0.2
-"""Quantile of the absolute difference by which the delays of `LATE` are compared."""
+"""Quantile of the absolute difference of measured and asked torque that is compared to
+choose among delays of the command."""
 
 _QUARTILES = 1.349
-"""Distance of the quartiles of normal noise, in standard deviations."""
+"""Distance of the two quartiles of a normal distribution, in standard deviations."""
 
 
 def pulses_of(plant: Plant, trace: Trace) -> tuple[Pulse, ...]:
-    """Find the pulses of a recording.
+    """Find the torques, constant for a while, that no servo of a recording asked for.
 
     Args:
       plant: the nominal robot model.
       trace: a whole recording.
 
     Returns:
-      The pulses in the order of time; none where there is no servo, no measured torque
-      or a floating base.
+      The pulses in the order of time; none without servos or measured torques, or with
+      a floating base.
     """
     if trace.torque_nm is None or trace.unheld or plant.base == "floating":
         return ()
@@ -76,11 +78,11 @@ def pulses_of(plant: Plant, trace: Trace) -> tuple[Pulse, ...]:
 
 
 def without_pulses(plant: Plant, trace: Trace, pulses: Sequence[Pulse]) -> Trace:
-    """Take the pulses out of a trace, so that they are not mistaken for physics.
+    """Take pulses out of a trace, so that they are not mistaken for missing physics.
 
-    A pulse at the actuator's input becomes a torque that acts on the joint in addition
-    to the servo's, and is subtracted from the measured torque. Values that a faulty
-    sensor reported become missing values.
+    A pulse at an actuator's input is subtracted from the measured torque and becomes a
+    torque that replays apply to the joint (`Trace.added_nm`). Values that a faulty
+    sensor reported during a pulse become NaN.
     """
     if not pulses:
         return trace
@@ -103,13 +105,13 @@ def without_pulses(plant: Plant, trace: Trace, pulses: Sequence[Pulse]) -> Trace
 def _of_joint(
     plant: Plant, trace: Trace, column: int, added: FloatArray
 ) -> list[Pulse]:
-    """The pulses of one joint.
+    """The pulses of the joint with index `column`.
 
     Args:
       plant: the nominal robot model.
       trace: a whole recording.
-      column: the joint's.
-      added: (T,) measured torque less what the servo asked for [N m].
+      column: index of the joint.
+      added: (T,) measured torque less the torque that the servo asked for [N m].
     """
     where = _flat_stretches(trace.time_s, added)
     if not where:
@@ -142,10 +144,14 @@ def _of_joint(
 
 
 def _flat_stretches(time_s: FloatArray, added: FloatArray) -> list[Stretch]:
-    """Time spans of constant difference; none if the difference between is not small.
+    """Rows of each pulse: `added` is constant in it, and small outside of all.
 
-    A wrong gain or a late command makes a difference in proportion to the servo's own
-    torque, which is neither constant nor small in between.
+    A wrong gain or a late command changes the torque in proportion to the servo's own,
+    which is neither.
+
+    Args:
+      time_s: (T,) times.
+      added: (T,) measured torque less the torque that the servo asked for [N m].
     """
     tick_s = float(np.median(np.diff(time_s)))
     width = 2 * round(FILTER_S / tick_s / 2) + 1
@@ -174,7 +180,7 @@ def _flat_stretches(time_s: FloatArray, added: FloatArray) -> list[Stretch]:
 
 
 def _spread(values: FloatArray) -> float:
-    """Standard deviation by the quartiles, which outliers do not change."""
+    """Standard deviation, from the quartiles so that outliers do not count."""
     low, high = np.quantile(values, (0.25, 0.75))
     return float(high - low) / _QUARTILES
 
@@ -183,9 +189,9 @@ def _asked_nm(trace: Trace, late: float) -> FloatArray:
     """(T, j) torques that the nominal servos ask for, without back-EMF.
 
     Args:
-      trace: with position commands.
-      late: when a torque was noted, in ticks: 0 after its row's command took effect, 1
-        before it did, between them the mean of both.
+      trace: a recording with position commands.
+      late: delay of the command [ticks]: at 0 a row's own command acts in its torque,
+        at 1 that of the row before, at 0.5 the mean of both.
     """
     assert trace.command_rad is not None
     command = filled(trace.command_rad)

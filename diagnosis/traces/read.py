@@ -1,4 +1,4 @@
-"""Reads recordings as traces, and makes the robot model that they belong to."""
+"""Reads recordings as traces (arrays), and loads the robot model they belong to."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -41,10 +41,10 @@ def read_traces(
     """Read recordings of one robot and make its nominal model.
 
     Args:
-      paths: recordings, or folders of them; all have the same joints and the same
+      paths: recordings, or folders of them; all must have the same joints and the same
         kind of base.
-      source: the robot, as for `load_plant`.
-      servo: gains for recordings that state none.
+      source: a robot's name, or a path to its MJCF (.xml) or URDF (.urdf).
+      servo: servo gains for recordings that state none.
 
     Raises:
       BadRecordingError: there is no recording, one cannot be read, they do not fit
@@ -88,9 +88,9 @@ def read_reference(
 
     Args:
       paths: the recordings; an empty list gives an empty list.
-      source: the robot, as for `load_plant`.
+      source: a robot's name, or a path to its MJCF (.xml) or URDF (.urdf).
       plant: robot model of the recordings that are diagnosed.
-      servo: gains for recordings that state none.
+      servo: servo gains for recordings that state none.
 
     Raises:
       BadRecordingError: one cannot be read, or it has other joints or another base
@@ -119,7 +119,7 @@ def read_reference(
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
-    """The recordings that paths name: a folder stands for all of those in it."""
+    """Paths of recordings, in which each folder is replaced by the recordings in it."""
     found = []
     for path in paths:
         inside = sorted(
@@ -132,7 +132,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
 
 def _gains(recording: Recording, servo: Gains | None) -> Gains:
-    """Gains by joint: the recording's own, or the given ones where it has none."""
+    """Servo gains by joint: the recording's own, or `servo` where it states none."""
     if isinstance(servo, ServoGains):
         servo = dict.fromkeys(recording.joints, servo)
     return {**(servo or {}), **(recording.metadata.servo or {})}
@@ -145,12 +145,12 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
     out unless the robot model has two feet.
 
     Args:
-      recording: with the same kind of base as the plant.
+      recording: a recording with the same kind of base as the plant.
       plant: a robot model with the joints of the recording.
-      name: the trace's.
+      name: name of the trace.
 
     Raises:
-      BadRecordingError: the joints or the base are not the plant's.
+      BadRecordingError: the recording's joints or base are not the plant's.
 
     Example:
       >>> trace = trace_of(read_recording(path), load_plant("nao", "fixed"), "a")
@@ -213,7 +213,7 @@ def _check_alike(paths: Sequence[Path], recordings: Sequence[Recording]) -> None
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
-    """File names without endings; with their folder where that is not enough."""
+    """File names without endings; with their folder where two would be the same."""
     stems = Counter(path.stem for path in paths)
     names = [
         path.stem if stems[path.stem] == 1 else f"{path.parent.name}/{path.stem}"

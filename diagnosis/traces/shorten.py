@@ -7,13 +7,12 @@ import numpy as np
 from diagnosis.traces.trace import Trace
 
 LEAST_S = 3.0
-"""Time [s] that is kept of each trace at least, if it is that long."""
+"""Time [s] that is kept at least of each recording, if it is that long."""
 
 LEAST_FLOATING_S = 1.5
-"""Time [s] that is kept of each trace of a robot with a floating base at least.
+"""Time [s] that is kept at least of each recording of a robot with a floating base.
 
-It is shorter than `LEAST_S` because such a robot is replayed in short windows without
-a warm-up."""
+It is short since such a robot is replayed in short windows without a warm-up."""
 
 
 def shortened(
@@ -24,7 +23,7 @@ def shortened(
     Every trace keeps the same share of its time, as each has a motion of its own.
 
     Args:
-      traces: to be cut; all of them stay whole if they are short enough together.
+      traces: recordings; they stay whole if together they last `longest_s` at most.
       longest_s: duration of all parts together [s].
       least_s: shortest duration of each part [s].
     """

@@ -11,12 +11,14 @@ from groundwalk.arrays import FloatArray
 
 _DEGREE = 5
 _ORDER = 3
-"""Order of the differences of coefficients that the penalty squares."""
+"""The smoothing penalty is the sum of squared differences, of this order, of the spline
+coefficients."""
 _LEAST_ROWS = 8
 _RIDGE = 1e-9
-"""Added to the diagonal, so that coefficients far from all values are defined."""
+"""Added to the diagonal of the normal equations, so that they can be solved for spline
+coefficients in gaps without values, too."""
 _STIFFNESS = np.logspace(-4, 10, 22)
-"""Weights of the penalty that are tried, for knots one tick apart."""
+"""Weights of the smoothing penalty that are tried, for spline knots one tick apart."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,17 +42,17 @@ def smooth(
     """Smooth one channel as much as its noise requires.
 
     A quintic P-spline with a knot each tick and a third-difference penalty (Eilers
-    and Marx 1996). Its penalty minimises Mallows' Cp: squared residual plus twice
-    the noise's variance for every degree of freedom, which for even samples is
+    and Marx 1996). The penalty's weight minimises Mallows' Cp: squared residual plus
+    twice the noise's variance for every degree of freedom, which for even samples is
     known in closed form (see `_freedom`). Missing values are filled by the spline.
 
     Args:
       time_s: (T,) increasing, may be uneven.
       values: (T,) NaN where missing.
-      noise_std: of one sample; None to estimate it.
+      noise_std: standard deviation of the noise of one value; None to estimate it.
 
     Returns:
-      The smoothed channel; all NaN where fewer than 8 values are there.
+      The smoothed channel; all NaN if there are fewer than 8 values.
     """
     valid = np.isfinite(values)
     if valid.sum() < _LEAST_ROWS:
@@ -70,7 +72,7 @@ def smooth(
 
 
 def _knots(time_s: FloatArray) -> FloatArray:
-    """Knots one median tick apart, beyond both ends as far as the degree needs."""
+    """Knots of a quintic spline, one median tick apart, five beyond each end."""
     tick = float(np.median(np.diff(time_s)))
     spans = max(int(np.ceil((time_s[-1] - time_s[0]) / tick)), 1)
     tick = (time_s[-1] - time_s[0]) / spans
@@ -82,7 +84,7 @@ def _knots(time_s: FloatArray) -> FloatArray:
 def _fit(
     time_s: FloatArray, values: FloatArray, noise_std: float, knots: FloatArray
 ) -> FloatArray:
-    """Spline coefficients for the penalty weight with the smallest Cp."""
+    """Spline coefficients for the penalty weight with the smallest Mallows' Cp."""
     design = BSpline.design_matrix(time_s, knots, _DEGREE)
     count = design.shape[1]
     gram = design.T @ design
@@ -108,10 +110,11 @@ def _fit(
 
 
 def _freedom(stiffness: float, rows: int) -> float:
-    """Degrees of freedom of the fit to evenly spaced samples, one for each knot.
+    """Degrees of freedom of a smoothing spline on evenly spaced rows, a knot each.
 
-    Far from the ends a frequency w per sample passes by 1 / (1 + stiffness w^6); the
-    trace is the mean of that over all frequencies, and three for the parabola.
+    Far from the ends a signal of w radians per row is multiplied by
+    1 / (1 + stiffness w^6). The degrees of freedom are the mean of that factor over w,
+    times the rows, plus three for the parabola that the penalty does not see.
     """
     frequency = (np.arange(512) + 0.5) * np.pi / 512
     # the difference operator's own response, exact for all frequencies
@@ -132,7 +135,7 @@ def _penalty_bands(count: int) -> FloatArray:
 
 
 def _upper_bands(diagonals: list[FloatArray], count: int) -> FloatArray:
-    """Diagonals as `solveh_banded` expects them: the main one in the last row."""
+    """Diagonals as rows of SciPy's `solveh_banded`, the main one in the last row."""
     bands = np.zeros((len(diagonals), count))
     for k, diagonal in enumerate(diagonals):
         bands[-1 - k, k:] = diagonal

@@ -12,32 +12,34 @@ from groundwalk.errors import BadRecordingError
 
 _LEAST_WHOLE, _LEAST_WHOLE_IF_LONG = 3, 6
 _LONG_S = 8.0
-"""Number of recordings from which on whole ones are set aside; the second holds if all
-of them last `_LONG_S` [s]. Fewer recordings are cut, since each may show a motion of
-its own, which must be fitted as well as judged and tested."""
+"""Number of recordings from which on whole ones are set aside for selection and test:
+usually the first, but the second if all last 8 s or more. Fewer recordings are each cut
+into parts, since each may show a motion of its own."""
 _SHARE = 0.25
-"""Share of the time that is set aside for selection, and for the test."""
+"""Share of the recordings' time that is set aside for selection; as much again is set
+aside for the test."""
 _GAP_S = 0.2
-"""Time between the parts of a recording [s] that is not used."""
+"""Time between two parts of a recording [s] that is left unused."""
 _TWICE_S = 20.0
 """Recordings of this length [s] are cut into eight parts instead of four."""
 _STROKE_S = 0.2
-"""Time between two positions whose difference stands for a joint's speed [s]."""
+"""Time [s] between the two positions by whose difference a joint's speed is judged."""
 _MANY = 12
-"""Up to this many recordings all choices are compared."""
+"""Of up to this many recordings all sets that may be set aside are compared; of more,
+only every second one, every third one and so on."""
 _LEAST_PART_ROWS = 8
-"""Fewest rows of a part."""
+"""Fewest rows that a part of a recording must have."""
 FIT, SELECT, TEST = 0, 1, 2
-"""Numbers of the three uses in the order of parts."""
+"""Numbers for the three uses of a part: fitting, selection and the final test."""
 
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Traces or parts of them by their use; no row has two uses.
+    """Traces, or parts of them, by their use; each row has at most one use.
 
     Attributes:
       fit: about half of the time; parameters are fitted to it.
-      select: about a quarter of the time; decides which fitted model is taken.
+      select: about a quarter of the time; decides between fitted models.
       test: about a quarter of the time, held out for the final errors.
 
     Example:
@@ -50,12 +52,13 @@ class Split:
 
 
 def split(traces: Sequence[Trace]) -> Split:
-    """Divide traces by their use; the same traces are always divided alike.
+    """Divide traces into data for fitting, for selection and for the final test.
 
-    Of six or more traces, or of three short ones, whole ones are set aside, chosen such
-    that every joint that moves in them moves in the others, too. Otherwise, or if there
-    is no such choice, each trace is cut into contiguous parts, 0.2 s apart, in the
-    order that leaves the most motion to fit; neighbouring traces are cut differently.
+    If there are six traces, or three of which one is shorter than 8 s, whole ones are
+    set aside for selection and test, such that all joints that move in them move in the
+    rest, too. Otherwise, or if that is impossible, each trace is cut into parts, 0.2 s
+    apart; their uses are ordered such that each use has as much motion as possible.
+    There is no randomness: the same traces are always divided alike.
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
@@ -92,10 +95,10 @@ def _travel(trace: Trace) -> FloatArray:
 
 
 def _motion(trace: Trace) -> FloatArray:
-    """(3 j,) travel of each joint, and its speed forward and backward.
+    """(3 j,) each joint's range, then its speeds forward and backward, in radians.
 
-    Both ways count, since only a joint that moved both ways distinguishes friction from
-    a constant force.
+    Speeds are distances in 0.2 s. Both ways count, since only a joint that moved both
+    ways distinguishes friction from a constant force.
     """
     apart = max(round(_STROKE_S / trace.tick_s), 1)
     position = trace.position_rad
@@ -109,13 +112,16 @@ def _motion(trace: Trace) -> FloatArray:
 def _aside(
     travel: FloatArray, seconds: FloatArray, left: list[int], wanted_s: float
 ) -> list[int]:
-    """Choose traces to set aside whose motion the remaining ones cover.
+    """Choose traces to set aside; the rest must move each joint half as far as they do.
 
     Args:
-      travel: (traces, j) range of each joint.
+      travel: (traces, j) range of each joint [rad].
       seconds: (traces,) duration of each trace.
-      left: traces to choose from; one of them stays at least.
-      wanted_s: duration of the chosen ones together.
+      left: indices of the traces to choose from; at least one of them stays.
+      wanted_s: duration that the chosen ones should have together.
+
+    Returns:
+      Indices of the chosen traces; empty if no choice fulfils this.
     """
     best, chosen = -np.inf, list[int]()
     for taken in _choices(left):
@@ -131,7 +137,7 @@ def _aside(
 
 
 def _choices(left: list[int]) -> list[tuple[int, ...]]:
-    """Sets of traces that may be set aside; only regular ones of many traces."""
+    """Sets of traces that may be set aside; of many, every second, third and so on."""
     most = len(left) - 1
     if len(left) <= _MANY:
         sizes = range(1, most // 2 + 1 if most > 1 else 2)
@@ -144,7 +150,12 @@ def _choices(left: list[int]) -> list[tuple[int, ...]]:
 
 
 def _covered(taken: FloatArray, rest: FloatArray) -> float:
-    """Smallest share, over the joints, of the travel in `taken` that `rest` has."""
+    """Smallest ratio, over the joints that move in `taken`, of motion in `rest` to it.
+
+    Args:
+      taken: (traces, k) ranges or speeds in the traces that are set aside.
+      rest: (other traces, k) the same in the other traces.
+    """
     most = np.maximum(taken.max(axis=0), rest.max(axis=0))
     moves = taken.max(axis=0) > 0.1 * most
     if not moves.any():

@@ -1,7 +1,7 @@
-"""Finds stalls: moments after which all joints follow their commands later.
+"""Finds stalls: moments after which all joints follow their commands later or earlier.
 
 A bus that loses ticks, or a clock that is set, shifts the measured positions against
-the commands, at all joints alike. A fit would mistake that for physics of the robot.
+the commands, by the same time at all joints. A fit would mistake that for physics.
 """
 
 from dataclasses import dataclass
@@ -12,33 +12,35 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 WINDOW_S, STEP_S, LONGEST_S = 1.0, 0.5, 0.3
-"""Length and distance of the windows in which lags are measured, and the longest lag
-that is looked for [s]."""
+"""Length [s] of the windows in which the lag of positions behind commands is measured,
+time from one window to the next, and longest lag that is looked for."""
 
 MOVES = 0.1
-"""Share of its range that a joint must move in a window for its lag to count."""
+"""Share of its range in the recording that a joint must move within 1 s for its lag
+behind the command to be measured there."""
 
 SURE = 0.97
-"""Least correlation of position and delayed command for a lag to count."""
+"""Correlation that position and delayed command must exceed for the delay to count."""
 
 APART = 4
-"""Distance in windows between the two lags that are compared."""
+"""Number of 0.5 s steps between the two windows whose lags are compared: 2 s."""
 
 LEAST_S, LEAST_TICKS, SPREAD_TICKS = 0.04, 3, 1.5
-"""Smallest jump of the lag in seconds and in ticks, and the largest spread of it over
-the joints in ticks."""
+"""Smallest jump of the lag behind commands that counts as a stall, in seconds and in
+ticks (both must be reached), and its largest spread over the joints in ticks."""
 
 FEWEST_JOINTS = 3
-"""Joints that must jump alike; friction changes the lag of single joints, too."""
+"""Number of joints whose lag must jump alike in a stall; friction can change the lag of
+single joints, too."""
 
 
 @dataclass(frozen=True)
 class LagJump:
-    """A moment after which a recording's joints follow their commands later.
+    """A moment after which all joints of a recording follow their commands later.
 
     Attributes:
       time_s: middle of the change in the recording's time [s].
-      later_s: change of the lag [s]; negative if the joints follow earlier.
+      later_s: change of the lag behind the commands [s]; negative for earlier.
     """
 
     time_s: float
@@ -46,7 +48,10 @@ class LagJump:
 
 
 def lag_jumps(trace: Trace) -> list[LagJump]:
-    """Find all jumps of the lag, in the order of time; none without commands."""
+    """Find the moments, in order of time, at which the lag behind commands jumps.
+
+    There are none without commands, or with fewer than three joints.
+    """
     if trace.command_rad is None or trace.position_rad.shape[1] < FEWEST_JOINTS:
         return []
     time_s, lag = _lags(trace)
@@ -75,7 +80,7 @@ def lag_jumps(trace: Trace) -> list[LagJump]:
 
 
 def said_of_stalls(trace: Trace) -> list[str]:
-    """Sentences for the report, one for each jump of a recording's lag."""
+    """Sentences for the report, one for each jump of the lag behind commands."""
     return [
         f"{trace.name}: from {jump.time_s:.1f} s on all joints follow their commands "
         f"{abs(jump.later_s):.2f} s {'later' if jump.later_s > 0 else 'earlier'}: the "
@@ -85,7 +90,7 @@ def said_of_stalls(trace: Trace) -> list[str]:
 
 
 def steady(trace: Trace) -> Trace:
-    """The longest part of a recording without a jump of its lag."""
+    """The longest part of a recording in which the lag behind commands is steady."""
     jumps = lag_jumps(trace)
     if not jumps:
         return trace
@@ -98,7 +103,12 @@ def steady(trace: Trace) -> Trace:
 
 
 def _lags(trace: Trace) -> tuple[FloatArray, FloatArray]:
-    """(W,) middles of windows [s], and (W, j) lags [ticks]; NaN where there is none."""
+    """Lags of the joints behind their commands in W windows of 1 s.
+
+    Returns:
+      (W,) middles of the windows [s], and (W, j) lags [ticks], NaN where a joint hardly
+      moves or does not follow its command.
+    """
     assert trace.command_rad is not None
     width = round(WINDOW_S / trace.tick_s)
     most, step = round(LONGEST_S / trace.tick_s), max(round(STEP_S / trace.tick_s), 1)
@@ -117,7 +127,13 @@ def _lags(trace: Trace) -> tuple[FloatArray, FloatArray]:
 
 
 def _lag(position: FloatArray, command: FloatArray, most: int) -> float:
-    """Ticks by which a position follows a command that begins `most` rows earlier."""
+    """Lag [ticks] of a position behind its command; NaN if it does not follow.
+
+    Args:
+      position: (rows,) positions in a window.
+      command: (most + rows,) commands from `most` rows before the window on.
+      most: lag that is too long to be believed.
+    """
     late = np.lib.stride_tricks.sliding_window_view(command, len(position))[::-1]
     late = late - late.mean(axis=1, keepdims=True)
     own = position - position.mean()

@@ -12,13 +12,14 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
 
 DriveBy = Literal["servos", "torques"]
-"""What drives the joints in a replay: simulated servos or the measured torques."""
+"""What drives the joints in a replay of a recording: simulated servos that follow the
+recorded commands, or the measured torques."""
 
 JOINT_WISE = (
     *("position_rad", "velocity_rad_s", "torque_nm", "added_nm"),
     *("command_rad", "command_torque_nm"),
 )
-"""Fields of a trace that have one column for each joint."""
+"""Fields of `Trace` that have one column for each joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +34,12 @@ class Trace:
     Attributes:
       name: name of the recording, with the time span if it is a part.
       time_s: (T,) increasing.
-      position_rad: (T, j) measured.
+      position_rad: (T, j) measured positions.
       servo: the servos of this recording; gains may differ between recordings.
-      velocity_rad_s: (T, j) measured.
+      velocity_rad_s: (T, j) measured velocities.
       command_rad: (T, j) position targets.
       command_torque_nm: (T, j) torque targets.
-      torque_nm: (T, j) measured.
+      torque_nm: (T, j) measured torques.
       added_nm: (T, j) torques that act on the joints in addition to the servos'.
       gyroscope_rad_s: (T, 3) in the sensor's frame.
       accelerometer_m_s2: (T, 3) in the sensor's frame.
@@ -87,11 +88,11 @@ class Trace:
 
     @property
     def unheld(self) -> bool:
-        """Whether no joint has a servo, so that torques drive all of them."""
+        """Whether no joint has a servo and a position command: torques drive them."""
         return self.command_rad is None or not self.servo.kp_nm_rad.any()
 
     def of(self, columns: Sequence[int]) -> "Trace":
-        """The trace with some joints' columns, and all channels that are no joint's."""
+        """The trace with only the joints of these indices; other channels all stay."""
         chosen = list(columns)
         changes = {
             name: values[:, chosen]
@@ -113,14 +114,14 @@ class Trace:
 
 
 def driven_by_torques(trace: Trace) -> Trace:
-    """The same trace without servos: the measured torques drive the joints.
+    """The same trace without servos, so that measured torques drive the joints.
 
     A servo hides much of what its joint lacks, and anything unknown about the servo,
     such as when it computes, is mistaken for physics of the joint. Replaying the
     torques depends on neither.
 
     Raises:
-      BadRecordingError: no torque was measured.
+      BadRecordingError: the recording has no measured torques.
 
     Example:
       >>> driven = driven_by_torques(trace)  # one of `read_traces`
@@ -137,10 +138,11 @@ def driven_by_torques(trace: Trace) -> Trace:
 
 
 def filled(values: FloatArray) -> FloatArray:
-    """Replace missing values by the last ones before them, leading ones by the first.
+    """Replace each missing value by the last one before it in its column.
 
     Args:
-      values: (T, j) NaN where missing. A column without any value becomes 0.
+      values: (T, j) NaN where missing. Missing values at the start become the first
+        value of their column; a column without any value becomes 0.
     """
     rows = np.arange(len(values))[:, None]
     last = np.maximum.accumulate(np.where(np.isnan(values), -1, rows), axis=0)

@@ -1,4 +1,4 @@
-"""How far, how fast and how strongly each joint moved in some traces."""
+"""Measures the range, speed and torque that each joint used in some recordings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,10 +10,11 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 _MOST = 0.99
-"""Quantile that stands for the largest value: single outliers do not count."""
+"""Quantile that is taken for the largest speed and torque, so that single outliers do
+not count."""
 
 _APART = 2
-"""Half width [rows] of the central difference for velocities."""
+"""Half width [rows] of the central difference by which velocities are estimated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,7 @@ class Usage:
 
 
 def _servo_nm(trace: Trace, command_rad: FloatArray) -> FloatArray:
-    """(T, j) sizes of the torques [N m] that the servos ask for."""
+    """(T, j) absolute torques [N m] that the servos ask for with (T, j) commands."""
     servo, position = trace.servo, trace.position_rad
     rows = np.arange(len(position))
     before = np.maximum(rows - _APART, 0)

@@ -1,4 +1,4 @@
-"""Windows of traces: the parts that are replayed, with their start states."""
+"""Windows: the parts of traces that are replayed from measured start states."""
 
 from dataclasses import dataclass
 
@@ -10,35 +10,38 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 HEAD_ROWS = 60
-"""Rows at the start of a whole trace from which its start state is smoothed."""
+"""Number of rows at a recording's start that are smoothed to get its start state."""
 
 UNHELD_WINDOW_S = 0.5
-"""Window [s] for joints without servos: nothing keeps their errors from growing."""
+"""Duration [s] after which a replay starts again from the measured state, for joints
+without servos: nothing else keeps its errors from growing."""
 
 FLOATING_WINDOW_S = 0.3
-"""Window [s] for a standing robot, an inverted pendulum: its errors double in it."""
+"""Duration [s] after which a replay of a robot with a floating base starts again from
+the measured state. A standing robot is an inverted pendulum: errors double in it."""
 
 EDGE_S = 0.05
-"""Time [s] at the start of a recording in which no window starts.
-
-Smoothed speeds are not accurate there."""
+"""Time [s] at the start of a recording in which no further window starts: smoothed
+speeds are not accurate there."""
 
 LEAST_WINDOW_S = 0.1
-"""Shortest window [s] of a floating base that is scored."""
+"""Windows of a robot with a floating base that are shorter than this [s] are not
+compared with the replay."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One trace, or a part of one, to be replayed from its first row on.
+    """One trace, or a window of one, to be replayed from its first row on.
 
     Attributes:
       trace: the rows that are replayed, with their commands and measurements.
       position_rad: (j,) smoothed positions at the start.
       velocity_rad_s: (j,) smoothed velocities at the start.
-      base: (13,) state of a floating base at the start: position (3), orientation (4),
-        linear velocity (3, world frame), angular velocity (3, body frame).
-      whole: the trace of which `trace` is a window, None if it is a whole one. With
-        late commands, those from before the window still act in it.
+      base: (13,) state of a floating base at the start: position (3) [m], orientation
+        (4, quaternion w, x, y, z), linear velocity (3, world frame) [m/s], angular
+        velocity (3, body frame) [rad/s]. None for a fixed base.
+      whole: the trace of which `trace` is a window; None if `trace` is a whole one.
+        Commands from before the window may still act in it if they take effect late.
     """
 
     trace: Trace
@@ -49,7 +52,7 @@ class Run:
 
     @classmethod
     def of(cls, trace: Trace) -> "Run":
-        """Replay all of a trace, from the smoothed state at its start."""
+        """A whole trace, to be replayed from the smoothed state at its start."""
         head = slice(0, min(trace.ticks, HEAD_ROWS))
         smoothed = [
             smooth(trace.time_s[head], column[head]) for column in trace.position_rad.T
@@ -62,14 +65,14 @@ class Run:
 
 
 def window_s(plant: Plant, trace: Trace) -> float | None:
-    """Longest replay of a trace [s]; None if it is replayed as a whole."""
+    """Length [s] of the windows in which a trace is replayed; None for all at once."""
     if plant.base == "floating":
         return FLOATING_WINDOW_S
     return UNHELD_WINDOW_S if trace.unheld else None
 
 
 def is_left_over(plant: Plant, trace: Trace) -> bool:
-    """Whether a floating base's window is only the short rest at a recording's end."""
+    """Whether a window of a robot with a floating base is too short to be compared."""
     return plant.base == "floating" and trace.duration_s < LEAST_WINDOW_S
 
 
@@ -126,7 +129,11 @@ def _bases(trace: Trace) -> FloatArray:
 def _with_measured(
     trace: Trace, rates: FloatArray, measured: FloatArray | None
 ) -> FloatArray:
-    """Mean of derived and measured rates, whose errors are independent."""
+    """(T, 3) mean of rates derived from positions and measured ones, if there are any.
+
+    Both are rates of change of a floating base. The mean is better than either one,
+    since their errors are independent.
+    """
     if measured is None or not np.isfinite(measured).all():
         return rates
     return np.asarray((rates + _smoothed(trace.time_s, measured)[0]) / 2)
@@ -140,7 +147,12 @@ def continuous(quaternion: FloatArray) -> FloatArray:
 
 
 def _body_rates(quaternion: FloatArray, rate: FloatArray) -> FloatArray:
-    """(T, 3) angular velocity in the body frame: the vector part of 2 q* q'."""
+    """(T, 3) angular velocity in the body frame [rad/s]: the vector part of 2 q* q'.
+
+    Args:
+      quaternion: (T, 4) unit quaternions q (w, x, y, z), base to world.
+      rate: (T, 4) their derivatives q' [1/s].
+    """
     w, v = quaternion[:, :1], quaternion[:, 1:]
     dw, dv = rate[:, :1], rate[:, 1:]
     return np.asarray(2 * (w * dv - dw * v - np.cross(v, dv)))

@@ -9,9 +9,10 @@ from groundwalk.json_data import check_number
 
 @dataclass(frozen=True, kw_only=True)
 class Errors:
-    """Rms errors on held-out recordings; None for those that were not computed.
+    """Rms errors of simulations on held-out recordings; None if not computed.
 
-    The last three are controls: they show what a wrong answer would have reached.
+    `without`, `wrong_place` and `wrong_effect` show the error of wrong answers; there,
+    the main effect is the found effect that reduces the error most.
 
     Attributes:
       nominal: error of the nominal sim.
@@ -19,9 +20,9 @@ class Errors:
       floor: noise floor: the measured noise, or the accuracy of simulation and clocks
         where that is larger.
       ceiling: error of a flexible regression without physics.
-      without: error with the effect left out that closes most, the others refitted.
-      wrong_place: error with that effect moved to the best other place.
-      wrong_effect: error with that effect replaced by another one, drawn at random.
+      without: error without the main effect, the others refitted.
+      wrong_place: error with the main effect moved to the best other place.
+      wrong_effect: error with the main effect replaced by one drawn at random.
 
     Example:
       >>> Errors(nominal=5.0, corrected=1.2, floor=1.0).closed(1.2)
@@ -45,20 +46,20 @@ class Errors:
 
     @property
     def excess(self) -> float:
-        """The nominal error in multiples of the floor."""
+        """The error of the nominal sim as a multiple of the noise floor."""
         if self.floor > 0:
             return self.nominal / self.floor
         return math.inf if self.nominal > 0 else 0.0
 
     def closed(self, error: float | None) -> float | None:
-        """Share of the nominal error above the noise floor that an error has closed.
+        """Share of the nominal sim's error above the noise floor that is removed.
 
         Args:
-          error: the remaining error, in the unit of the others.
+          error: the error that remains, in the unit of `nominal`; None if unknown.
 
         Returns:
-          1 if the error is down to the floor, 0 if it is as large as before; None if
-          the nominal sim was no worse than the noise, or there is no error.
+          1 if `error` is down to the noise floor, 0 if it equals the nominal sim's;
+          None if the nominal sim is no worse than the noise, or `error` is None.
         """
         if error is None or self.nominal <= self.floor:
             return None
@@ -67,10 +68,10 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelFit(Errors):
-    """The errors of one channel, in the channel's unit.
+    """Rms errors of simulations in one channel of held-out recordings.
 
     Attributes:
-      unit: the channel's.
+      unit: unit of the channel and of its errors, such as "rad".
 
     Example:
       See docs/diagnosis_json.md.
@@ -81,9 +82,9 @@ class ChannelFit(Errors):
 
 @dataclass(frozen=True, kw_only=True)
 class Fit(Errors):
-    """The errors of all channels together, in multiples of each channel's noise floor.
+    """Errors of simulations over all channels together, as multiples of noise floors.
 
-    They are the root of the mean over channels of (error / floor) squared.
+    An error is the root of the mean over channels of (rms error / noise floor) squared.
 
     Attributes:
       channels: the errors of each channel by its name.

@@ -68,7 +68,7 @@ class Amount:
 
 @dataclass(frozen=True)
 class PlacedEffect:
-    """An effect at a place, with or without values.
+    """An effect (physics that a sim may lack) at a place, with or without values.
 
     Example:
       >>> PlacedEffect("backlash", "LKneePitch", (0.02,)).key
@@ -77,10 +77,10 @@ class PlacedEffect:
       PlacedEffect(name='drag', place='torso', values=())
 
     Attributes:
-      name: of the effect.
+      name: name of the effect.
       place: joint, body, or the word for a place that exists once, such as "feet".
-      values: of all its parameters, in their order and in SI units; empty where only
-        effect and place matter. Not written to JSON.
+      values: values of the effect's parameters, in the order of its class and in SI
+        units; empty where only effect and place matter. Not written to JSON.
     """
 
     name: str
@@ -89,7 +89,7 @@ class PlacedEffect:
 
     @classmethod
     def parse(cls, key: str) -> "PlacedEffect":
-        """The effect without values whose `key` is given."""
+        """The effect, without values, of a key such as "backlash@LKneePitch"."""
         name, _, place = key.partition("@")
         return cls(name, place)
 
@@ -106,7 +106,7 @@ class When:
     Attributes:
       kind: "always", "burst" (for a while) or "drift" (growing).
       start_s: start of a burst or a drift in the recording's time; None for "always".
-      end_s: its end; None for "always".
+      end_s: end of the burst or drift; None for "always".
 
     Example:
       >>> When("burst", 1.0, 2.5).end_s
@@ -131,16 +131,16 @@ class When:
 
 @dataclass(frozen=True)
 class Found:
-    """An effect that the recordings show.
+    """An effect (physics that the sim lacks) that the recordings show.
 
     Attributes:
-      name: the effect's, such as "backlash".
+      name: name of the effect, such as "backlash".
       place: where it is: a joint, a body, "feet", "commands" or "world".
       parameters: the estimates by the parameters' names.
       probability: probability from 0 to 1 that this is the right effect at the right
         place, calibrated on concealed cases (`diagnosis.conclude.confidence`).
-      confusable_with: effects each of which explains the recordings about as well
-        instead of this one.
+      confusable_with: other effects, each of which could replace this one and explain
+        the recordings about as well.
       when: whether it acts always, for a while, or growing.
       native: whether MuJoCo can simulate it, so that the corrected MJCF contains it.
 
@@ -172,8 +172,8 @@ class MismatchCell:
         noise does not explain, with each channel in units of its noise.
       error_rms: rms difference of recording and sim.
       noise_rms: rms of the sensor's noise.
-      regimes: rms error as a multiple of the noise, in parts of the data such as
-        "reversals" or "fast".
+      regimes: rms error as a multiple of the noise in rows of one kind of motion, by
+        its name, such as "reversals" or "fast".
       bursts: times (start, end) [s] during which the error stands out.
 
     Example:
@@ -211,13 +211,13 @@ class Pulse:
       end_s: end of the pulse in the recording's time.
       torque: measured torque less the torque that the servo asked for.
       unit: unit of the torque.
-      source: where the pulse came in. "actuator input": a real torque, which the motion
-        obeys. "torque sensor": the joint never felt it. "position sensor": the measured
-        position jumped, so that the servo seems to have erred.
+      source: origin of the pulse. "actuator input": a real torque, which moves the
+        joint. "torque sensor": only the sensor showed it. "position sensor": the
+        measured position jumped, and the servo's expected torque with it.
       jumps: mean jump at the edges of the joint's pulses, as a share of the pulse, by
         signal ("torque", "position", "command").
-      felt: share of the measured torque that the motion obeys; 0 if the pulse is not in
-        the torque.
+      felt: share of the pulse's torque that, by inverse dynamics, moved the joint;
+        0 if the measured torque has no pulse.
 
     Example:
       See docs/diagnosis_json.md.
@@ -245,9 +245,9 @@ class Pulse:
 
 @dataclass(frozen=True)
 class Unexplained:
-    """The shape of an error that no effect of the library explains.
+    """The shape of an error that no known effect explains.
 
-    A curve shows the mean error of a channel over another quantity, bin by bin.
+    It is the curve of a channel's mean error over another quantity, in bins.
 
     Attributes:
       share: share of the squared error above the noise that remains, 0 to 1.
@@ -256,8 +256,8 @@ class Unexplained:
       against: the other quantity, such as "position.LKneePitch".
       against_unit: unit of the other quantity.
       at: middle of each bin.
-      mean: mean error of the corrected sim in each bin.
-      spread: standard error of each mean.
+      mean: mean of measured less simulated values in each bin, in `unit`.
+      spread: standard error of each mean, in `unit`.
 
     Example:
       See docs/diagnosis_json.md.
@@ -273,7 +273,7 @@ class Unexplained:
     spread: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Refuse curves of unequal lengths."""
+        """Refuse curves whose `at`, `mean` and `spread` differ in length."""
         check_number("share", self.share, 0.0, 1.0)
         if not len(self.at) == len(self.mean) == len(self.spread):
             raise BadValueError(

@@ -51,11 +51,11 @@ class Verdict:
       kind: "effects": the sim lacks the effects named. "none": the data show nothing
         missing. "unknown": an error remains that no effect of the library explains.
         "not_identifiable": something may be missing, but these data cannot name it.
-      effects: the effects found, the surest first; a verdict of kind "unknown" may
-        have some, too.
-      alternatives: other complete answers that these data do not rule out.
-      smallest_detectable: smallest size that these data could have shown, by
-        "effect@place".
+      effects: the effects found, the most probable first; a verdict of kind "unknown"
+        may have some, too.
+      alternatives: other sets of effects that these data do not rule out.
+      smallest_detectable: smallest size of each effect that these data could have
+        shown, by "effect@place".
       unexplained: the shape of an error that no effect explains.
       limits: sentences on what these data cannot show.
       mismatch: where and when the nominal sim errs, the worst channel first.
@@ -112,11 +112,11 @@ class Verdict:
 
     @classmethod
     def from_json(cls, text: str) -> "Verdict":
-        """Read what `to_json` has written.
+        """Read the JSON text of a verdict, as `to_json` writes it.
 
         Raises:
-          BadValueError: it is no JSON, of another format, a key is missing or unknown,
-            or a value is wrong.
+          BadValueError: the text is no JSON or has another format, a key is missing or
+            unknown, or a value is wrong.
         """
         plain = parse_object(text, "verdict", FORMAT)
         plain.setdefault("pulses", [])  # the first verdicts had no such key
