@@ -1,16 +1,17 @@
 """Grounding: makes a simulator behave like the real world, by changing its actions.
 
-GAT (Hanna and Stone 2017), SGAT (Desai et al. 2020) and variants of them. Models learn
-from real transitions what an action does in the real world; each action is then
-replaced by the one that has the same effect in the simulator. The shelves:
+Grounded action transformation (GAT, Hanna and Stone 2017), its stochastic version
+(SGAT, Desai et al. 2020) and variants. Models learn from real transitions what an
+action does in the real world; each action is then replaced by the one that has the same
+effect in the simulator. The subpackages:
 
 - `sgat.models`: forward and inverse models, small networks.
-- `sgat.transformers`: action transformers, and the groundings that make them.
-- `sgat.walks`: worlds in which robots walk, grounded.
-- `sgat.gym`: Gymnasium environments, grounded.
-- `sgat.tabular`: finite worlds, where every model is a table; needs NumPy only.
+- `sgat.transformers`: action transformers, which replace actions; methods to make them.
+- `sgat.walks`: grounding of worlds in which robots walk.
+- `sgat.gym`: grounding of Gymnasium environments.
+- `sgat.tabular`: grounding of finite worlds, where every model is a table.
 
-PyTorch is imported by the modules of `models` and by nothing before them.
+PyTorch is imported when a network is first used, not before.
 """
 
 from sgat.noise import NoiseLaw, NoiseStream, WhiteNoise

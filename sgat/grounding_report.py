@@ -1,4 +1,4 @@
-"""All measures of one grounding, before a policy is trained in it."""
+"""All measures of a grounding's forward model, before a policy is trained with it."""
 
 import json
 import math
@@ -22,32 +22,32 @@ from sgat.models.forward_model import ForwardModel
 from sgat.transitions import Transitions
 
 LEVELS = (0.5, 0.8, 0.9, 0.95, 0.99)
-"""Probabilities of the central intervals whose coverage is measured."""
+"""Probabilities of the central intervals in which residuals are counted."""
 LAGS = 10
-"""Largest lag [ticks] of the autocorrelation."""
+"""Largest lag [ticks] at which the autocorrelation of residuals is measured."""
 HORIZON = 10
-"""Ticks that are predicted without correction."""
+"""Ticks for which a model predicts from its own predictions, without measurements."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroundingReport:
-    """How good the forward model of a grounding is.
+    """How well a grounding's forward model predicts the next states of the real world.
 
-    Measured on transitions of the real world that the model has not seen; p is the
-    number of columns of a next state.
+    Measured on real transitions that the model was not fitted to; p is the number of
+    columns of a next state.
 
     Attributes:
       one_step_error: (p,) root mean square error, in the state's units.
       one_step_r_squared: (p,) share of the variance of the state's change that is
         predicted.
-      multi_step_error: (horizon, p) root mean square error of predictions without
-        correction, in the state's units.
-      log_likelihood: mean per transition and dimension.
-      levels: (levels,) probabilities of central intervals.
-      coverage: (levels, p) share of the residuals within each interval.
-      autocorrelation: (lags, p) of the residuals.
-      cross_correlation: (p, p) of the residuals.
-      excess_kurtosis: (p,) of the residuals.
+      multi_step_error: (horizon, p) root mean square error 1, 2 ... ticks ahead, if the
+        model predicts from its own predictions, in the state's units.
+      log_likelihood: mean log-likelihood per transition and column.
+      levels: (levels,) probabilities of central intervals of the normal distribution.
+      coverage: (levels, p) share of the standardised residuals within each interval.
+      autocorrelation: (lags, p) of the residuals, at lags of 1, 2 ... ticks.
+      cross_correlation: (p, p) of the residuals at the same tick.
+      excess_kurtosis: (p,) kurtosis of the residuals minus 3; 0 if they are normal.
 
     Example:
       >>> report = GroundingReport.of(forward, held_out, forward.predict)
@@ -78,8 +78,9 @@ class GroundingReport:
         Args:
           forward: model of the real world.
           held_out: transitions of the real world that the model was not fitted to.
-          advance: predicts the whole state one tick later; see `multi_step_error`.
-          horizon: ticks that are predicted without correction.
+          advance: predicts the whole state one tick later; `forward.predict` if a next
+            state has all columns of a state.
+          horizon: ticks that are predicted without measurements in between.
           lags: largest lag [ticks] of the autocorrelation.
         """
         residuals = forward.residuals(held_out)
@@ -98,7 +99,7 @@ class GroundingReport:
         )
 
     def to_json(self) -> str:
-        """One JSON object; null stands for undefined, as a constant's kurtosis is."""
+        """All attributes as a JSON object; null where undefined or infinite."""
         return json.dumps(
             {name: _plain(value) for name, value in vars(self).items()}, allow_nan=False
         )

@@ -1,7 +1,8 @@
-"""Measures of a grounding: functions on arrays, before any policy is trained in it.
+"""Functions on arrays that measure how well a model predicts a world's next states.
 
-Residuals are the standardised ones of `ForwardModel.residuals`, of transitions that the
-model was not fitted to.
+Residuals are differences between real and predicted next states, standardised by the
+predicted distribution as in `ForwardModel.residuals`. Measures mean something only for
+transitions that the model was not fitted to.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,14 +20,14 @@ tick later."""
 
 
 def root_mean_square(errors: FloatArray) -> FloatArray:
-    """(d,) root mean square of errors (N, d), in their units."""
+    """(d,) root mean square of each column of errors (N, d), in the column's unit."""
     return np.asarray(np.sqrt(np.mean(errors**2, axis=0)))
 
 
 def r_squared(predicted: FloatArray, actual: FloatArray) -> FloatArray:
     """(d,) share of the variance of actual values (N, d) that is predicted.
 
-    1 is perfect, 0 is no better than predicting the mean, NaN stands for constants.
+    1 is perfect, 0 is no better than predicting the mean; NaN for constant columns.
     """
     error = np.mean((predicted - actual) ** 2, axis=0)
     return np.asarray(1 - error / _variance(actual))
@@ -35,16 +36,17 @@ def r_squared(predicted: FloatArray, actual: FloatArray) -> FloatArray:
 def multi_step_error(
     advance: Advance, transitions: Transitions, horizon: int
 ) -> FloatArray:
-    """(horizon, p) root mean square error of predictions 1, 2 ... ticks ahead.
+    """(horizon, p) root mean square error of predictions 1 ... `horizon` ticks ahead.
 
     From every transition that has enough successors in its episode, the recorded
-    actions are replayed and the predicted states are fed back.
+    actions are replayed and the predicted states are fed back. Errors are of the p
+    columns of a next state, in their units.
 
     Args:
-      advance: predicts a whole state; where a next state has all columns of a state,
-        this can be `ForwardModel.predict`.
+      advance: predicts a whole state; `ForwardModel.predict` can do this if a next
+        state has all columns of a state.
       transitions: recorded in the real world.
-      horizon: ticks to predict.
+      horizon: number of ticks to predict.
 
     Raises:
       BadValueError: no episode is as long as the horizon.
@@ -63,11 +65,10 @@ def multi_step_error(
 
 
 def coverage(residuals: FloatArray, levels: Sequence[float]) -> FloatArray:
-    """(levels, d) share of the residuals within each central interval.
+    """(levels, d) share of residuals within the standard normal's central intervals.
 
-    The intervals are those of the standard normal distribution. Calibrated residuals
-    lie within the interval of level 0.9 nine times in ten. An over-confident model's
-    lie there less often; with heavy tails, this shows only at the high levels.
+    Nine in ten residuals of a calibrated model lie within the interval of level 0.9,
+    and fewer of an over-confident one. Heavy tails show only at the high levels.
 
     Args:
       residuals: (N, d) standardised.
@@ -82,7 +83,7 @@ def lagged_pairs(
 ) -> tuple[FloatArray, FloatArray]:
     """Rows (pairs, d) of values (N, d), and the rows `lag` ticks before them.
 
-    Both rows of a pair belong to the same episode.
+    Both rows of a pair belong to the same episode; `episode` (N,) holds its number.
 
     Raises:
       BadValueError: no episode is longer than the lag.
@@ -94,7 +95,10 @@ def lagged_pairs(
 
 
 def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> FloatArray:
-    """(lags, d) correlation of residuals (N, d) with those 1, 2 ... ticks before."""
+    """(lags, d) correlation of residuals (N, d) with those 1 ... `lags` ticks before.
+
+    Only rows with the same number in `episode` (N,) are paired.
+    """
     off = residuals - residuals.mean(axis=0)
     rows = []
     for lag in range(1, lags + 1):
@@ -104,14 +108,14 @@ def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> Floa
 
 
 def cross_correlation(residuals: FloatArray) -> FloatArray:
-    """(d, d) correlation of residuals (N, d) at the same tick; NaN for constants."""
+    """(d, d) correlation between the columns of residuals (N, d); NaN if constant."""
     off = residuals - residuals.mean(axis=0)
     spread = np.sqrt(_variance(off))
     return np.asarray(off.T @ off / len(off) / np.outer(spread, spread))
 
 
 def excess_kurtosis(residuals: FloatArray) -> FloatArray:
-    """(d,) kurtosis of residuals (N, d) minus 3: 0 is normal, above are heavy tails."""
+    """(d,) kurtosis of residuals (N, d) minus 3: 0 if normal, more with heavy tails."""
     off = residuals - residuals.mean(axis=0)
     return np.asarray(np.mean(off**4, axis=0) / _variance(off) ** 2 - 3)
 

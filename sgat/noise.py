@@ -1,8 +1,9 @@
 """Standardised noise, tick by tick, for n robots that are independent of each other.
 
-A noise law describes the noise of one robot: mean 0 and variance 1 in each dimension,
-with a memory, tails and correlations of the law's own. A law is a plain value, so it
-can be shared and sent to other processes. A stream draws from a law.
+SGAT samples next states with it. A noise law is the distribution of one robot's noise:
+mean 0 and variance 1 in each dimension; tails and correlations differ between laws. A
+law is a plain value, so it can be shared and sent to other processes. A noise stream
+draws the numbers of an episode from a law.
 """
 
 from collections.abc import Sequence
@@ -15,13 +16,13 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 
 CHUNK_TICKS = 64
-"""Ticks of noise that are drawn in one call: far cheaper than a call for each tick."""
+"""Ticks of noise drawn in one call, which is far cheaper than a call for each tick."""
 
 Generators = Sequence[np.random.Generator]
 
 
 class NoiseLaw(Protocol):
-    """Describes the noise of one robot; a law of your own needs these two members.
+    """The distribution of one robot's noise; a new law needs `dimensions` and `chunk`.
 
     Example:
       See `WhiteNoise`.
@@ -29,13 +30,13 @@ class NoiseLaw(Protocol):
 
     @property
     def dimensions(self) -> int:
-        """d, the numbers that are drawn for a robot at each tick."""
+        """d, how many numbers are drawn for a robot at each tick."""
 
     def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """Noise of the next ticks.
+        """Draw the noise of the next ticks.
 
-        A robot's noise depends only on its own generator and its own past, to the last
-        bit, and not on the number of other robots.
+        To the last bit, a robot's noise depends only on its own generator and its own
+        past, not on the other robots.
 
         Args:
           generators: n random generators, one for each robot.
@@ -51,7 +52,7 @@ class WhiteNoise:
     """Independent standard normal numbers, as the SGAT paper's model assumes.
 
     Attributes:
-      dimensions: d, the numbers that are drawn for a robot at each tick.
+      dimensions: d, how many numbers are drawn for a robot at each tick.
 
     Example:
       >>> noise, choice = NoiseStream(WhiteNoise(3), seeds).draw()
@@ -60,12 +61,12 @@ class WhiteNoise:
     dimensions: int
 
     def __post_init__(self) -> None:
-        """Refuse noise without dimensions."""
+        """Refuse fewer than one dimension."""
         if self.dimensions < 1:
             raise BadValueError(f"dimensions is {self.dimensions}; give at least 1")
 
     def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """The next `CHUNK_TICKS` ticks of noise; see `NoiseLaw.chunk`."""
+        """(CHUNK_TICKS, n, d) noise of the next ticks; `last` (n, d) is not used."""
         shape = (CHUNK_TICKS, self.dimensions)
         return np.stack([g.standard_normal(shape) for g in generators], axis=1)
 
@@ -81,8 +82,8 @@ class NoiseStream:
         """Start an episode.
 
         Args:
-          law: describes the noise of each robot.
-          seeds: n, one for each robot.
+          law: distribution of the noise of each robot.
+          seeds: n seeds, one for each robot.
         """
         self._law = law
         self._generators = [np.random.default_rng(seed) for seed in seeds]
@@ -99,7 +100,7 @@ class NoiseStream:
     def draw(self) -> tuple[FloatArray, FloatArray]:
         """Noise (n, d) of the next tick, and (n,) uniform numbers from 0 to 1.
 
-        The uniform numbers choose among the components of a mixture.
+        If a model predicts a mixture, the uniform numbers choose a component.
         """
         if self._tick == len(self._noise):
             last = self._noise[-1] if len(self._noise) else None
@@ -111,20 +112,20 @@ class NoiseStream:
         return self._noise[self._tick - 1], self._choice[self._tick - 1]
 
     def member(self) -> FloatArray:
-        """(n,) uniform numbers, constant for the episode, that choose a network.
+        """(n,) uniform numbers from 0 to 1 that are constant during an episode.
 
-        An ensemble lets each robot keep one of its networks for a whole episode.
+        With them, an ensemble assigns each robot one of its networks for the episode.
         """
         return self._member
 
 
 def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
-    """A seed for one use, always the same for the same parent and number.
+    """A child seed for one use; the same parent and number always give the same child.
 
-    `SeedSequence.spawn` would count up in the parent and answer differently each time.
+    `SeedSequence.spawn` changes its parent, and so gives another child at each call.
 
     Args:
-      seed: the parent, which stays as it is.
+      seed: the parent, which is not changed.
       use: number of the use, 0 or more.
 
     Example:

@@ -67,11 +67,11 @@ class Transitions:
 
     @property
     def change(self) -> FloatArray:
-        """(N, p) change of the state's first p columns."""
+        """(N, p) change of the state's first p columns in one tick."""
         return self.next_state - self.state[:, : self.outcomes]
 
     def joined(self, other: Self) -> "Transitions":
-        """These transitions, then the others, whose episodes get new numbers."""
+        """These transitions, then those of `other`, whose episodes get new numbers."""
         theirs = other.episode - other.episode.min() + self.episode.max() + 1
         return Transitions(
             np.concatenate([self.state, other.state]),
@@ -81,7 +81,7 @@ class Transitions:
         )
 
     def subset(self, mask: BoolArray) -> "Transitions":
-        """The rows that a mask (N,) selects; each episode's stay consecutive."""
+        """The transitions that a mask (N,) selects, in the same order."""
         return Transitions(
             self.state[mask],
             self.action[mask],
@@ -92,7 +92,10 @@ class Transitions:
     def split(
         self, share: float, rng: np.random.Generator
     ) -> tuple["Transitions", "Transitions"]:
-        """Most of the episodes, and a random share of them that is held out."""
+        """Transitions to learn from, and those of a random share of episodes, held out.
+
+        The share is between 0 and 1; at least one episode is on either side.
+        """
         held_out = held_out_rows(self.episode, share, rng)
         return self.subset(~held_out), self.subset(held_out)
 
@@ -100,14 +103,14 @@ class Transitions:
 def held_out_rows(
     episode: IntArray, share: float, rng: np.random.Generator
 ) -> BoolArray:
-    """(N,) mask of the rows of randomly chosen episodes: at least one, never all.
+    """(N,) mask of the rows of random episodes to hold out: at least one, never all.
 
     Whole episodes are chosen, because rows of the same episode are too similar to
     separate what is learned from what is tested.
 
     Args:
       episode: (N,) number of the episode of each row.
-      share: of the episodes to choose, between 0 and 1.
+      share: fraction of the episodes that is chosen, between 0 and 1.
       rng: chooses the episodes.
 
     Raises:

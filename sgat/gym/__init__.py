@@ -1,4 +1,4 @@
-"""Grounding of Gymnasium environments."""
+"""Gymnasium environments: recording transitions, and transforming actions."""
 
 from sgat.gym.collect import collect
 from sgat.gym.grounded_env import GroundedEnv

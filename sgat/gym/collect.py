@@ -1,8 +1,8 @@
 """Transitions of a Gymnasium environment, with the true last state of each episode.
 
 An environment that resets itself returns, for an episode's last step, the first
-observation of the next episode. Used as a next state, that is a jump that no dynamics
-has made. A forward model would learn too wide a spread exactly where episodes fail.
+observation of the next episode. That is a jump which does not come from the dynamics: a
+model that learned from it would predict too wide a spread where episodes fail.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 
 
 class _Rows:
-    """Collects transitions of one environment."""
+    """Transitions of one environment, added one by one."""
 
     def __init__(self) -> None:
         self.state: list[FloatArray] = []
@@ -34,7 +34,7 @@ class _Rows:
     def add(
         self, state: FloatArray, action: FloatArray, next_state: FloatArray, end: bool
     ) -> None:
-        """Add one transition; arrays are copied, since environments may reuse them."""
+        """Add a copy of one transition; `end` says whether it ends the episode."""
         self.state.append(np.array(state, float))
         self.action.append(np.array(action, float))
         self.next_state.append(np.array(next_state, float))
@@ -54,11 +54,11 @@ class _Rows:
 def collect(
     env: Environment, policy: Policy, steps: int, rng: np.random.Generator
 ) -> Transitions:
-    """Run a policy for an exact number of steps.
+    """Run a policy for an exact number of steps, and return the transitions.
 
     Args:
-      env: plain or wrapped. It is reset here after each episode, even if a wrapper does
-        so, too.
+      env: plain or wrapped. It is reset here after each episode, even if a wrapper
+        resets it as well.
       policy: gives the actions; they are clipped to the action space, also in the data.
       steps: number of transitions; the last episode may be incomplete.
       rng: gives the seed of the first episode, from which the others follow.

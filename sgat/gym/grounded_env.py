@@ -14,15 +14,15 @@ from sgat.transformers.transformer import Transformer
 Wrapper: TypeAlias = gym.Wrapper[FloatArray, FloatArray, FloatArray, FloatArray]
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 RewardOf = Callable[[float, FloatArray, FloatArray], float]
-"""A function that corrects a reward, of: the environment's reward, the policy's
-action (a,), and the transformed action (a,)."""
+"""A function that gives a corrected reward, from the environment's reward, the
+policy's action (a,) and the transformed action (a,)."""
 
 
 class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
-    """A wrapper that passes each action through a transformer.
+    """An environment's wrapper that passes each action through an action transformer.
 
-    The transformer's state is the observation. `info["transformed_action"]` is the
-    action (a,) that the environment was given.
+    The transformer sees the observation as the state. `info["transformed_action"]` is
+    the action (a,) that the environment was given.
 
     Example:
       >>> env = GroundedEnv(gymnasium.make("InvertedPendulum-v5"), transformer)
@@ -38,14 +38,14 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
 
         Args:
           env: with Box actions and Box observations of one axis each.
-          transformer: of one robot's actions. It must belong to this environment alone;
-            an environment that is made again from its `spec` gets a copy.
-          reward_of: corrects the reward. If None, the reward stays the environment's
-            own, which charges control costs for the transformed action; the SGAT
-            paper's reward is that of the policy's action.
+          transformer: changes the actions. No other environment may use it; an
+            environment that is made again from its `spec` gets a copy.
+          reward_of: corrects the reward. If None, the reward is the environment's own,
+            which charges control costs for the transformed action; the SGAT paper
+            charges them for the policy's action.
 
         Raises:
-          BadValueError: a space is of another kind.
+          BadValueError: the actions or observations are no Box with one axis.
         """
         gym.utils.RecordConstructorArgs.__init__(
             self, transformer=transformer, reward_of=reward_of
@@ -73,7 +73,7 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     def step(
         self, action: FloatArray
     ) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
-        """One step of the environment with the transformed action (a,)."""
+        """Advance by one step: the environment gets the transformed action (a,)."""
         asked = np.array(action, dtype=float)
         given = self._transformer(self._state, asked[None])[0]
         given = given.astype(self.env.action_space.dtype)

@@ -1,6 +1,7 @@
-"""What models learn from transitions: what actions do, and which action does a thing.
+"""Models that learn what an action does, and which action has a wanted effect.
 
-The names of this face need PyTorch, so they are imported when they are first used.
+Forward models predict next states, inverse models actions. The names in `__all__` need
+PyTorch, so their modules are imported when they are first used.
 """
 
 from typing import TYPE_CHECKING

@@ -11,13 +11,13 @@ from sgat.models.forward_model import ForwardModel
 from sgat.transitions import Transitions
 
 _ROUNDS = 3
-"""Gauss-Newton steps towards the wanted mean; three are enough since models are
-smooth."""
+"""Gauss-Newton steps to the wanted mean; three are enough for smooth networks."""
 _FREEDOM = 10.0
-"""Weak prior on an action's change, in standard deviations of the training actions:
-directions that no next state depends on stay as the policy wants them."""
+"""Weak prior on the change of an action: its standard deviation, in those of the
+training actions. Components that no next state depends on stay as the policy's."""
 _FINEST = 1e-4
-"""Errors of a next state below this share of its standard deviation do not count."""
+"""Errors of a next state below this share of its standard deviation do not count, which
+keeps the matrices of weights invertible."""
 
 
 class ActionDistribution(NamedTuple):
@@ -32,7 +32,7 @@ class ActionDistribution(NamedTuple):
     covariance: FloatArray
 
     def sample(self, z: FloatArray) -> FloatArray:
-        """(n, a) actions made of standard normal numbers z (n, a)."""
+        """(n, a) sampled actions, made of standard normal numbers z (n, a)."""
         values, vectors = np.linalg.eigh(self.covariance)
         root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
         return np.asarray(self.mean + (root @ z[..., None])[..., 0])
@@ -67,7 +67,7 @@ class DistributionalInverse:
         )
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn from at least two episodes of the sim; the seed decides every bit."""
+        """Learn from at least two episodes of the sim; equal seeds give equal bits."""
         self.sim.fit(transitions, seed)
         return self
 
@@ -100,16 +100,16 @@ class DistributionalInverse:
         return ActionDistribution(found, _positive(pull @ (covariance - own) @ pull.mT))
 
     def score(self, transitions: Transitions) -> float:
-        """Mean log-likelihood under the sim's model; see `ForwardModel.score`."""
+        """Mean log-likelihood of the sim's next states, per transition and column."""
         return self.sim.score(transitions)
 
     def save(self, path: Path) -> None:
-        """Write the model to one file."""
+        """Write the fitted model to one file."""
         self.sim.save(path)
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file of `save`; every answer is equal to the last bit."""
+        """Read a file that `save` wrote; BadModelError if it holds no such model."""
         inverse = cls()
         inverse.sim = ForwardModel.load(path)
         return inverse
@@ -117,7 +117,10 @@ class DistributionalInverse:
     def _pull(
         self, state: FloatArray, action: FloatArray, precision: FloatArray
     ) -> FloatArray:
-        """(n, a, p) change of the action per error of the next state."""
+        """(n, a, p) change of the action that corrects an error of the next state by 1.
+
+        Errors (p) are weighted by `precision` (n, p, p).
+        """
         effect = self.sim.action_effect(state, action)
         weighted = effect.mT @ precision
         free = np.diag((_FREEDOM * self.sim.action_scale(action.shape[1])) ** -2.0)

@@ -21,8 +21,8 @@ class ForwardConfig(NetworkConfig):
         "full" or "low-rank": normal with a covariance; "mixture": several normal
         distributions, for dynamics with more than one outcome.
       components: number of components of a mixture.
-      rank: number of columns of the low-rank part of a covariance.
-      beta: exponent of the beta-NLL loss of the Gaussian head. 0 is the plain
+      rank: number of columns of U, for "low-rank" with the covariance U U^T + D.
+      beta: exponent of the beta-NLL loss of the head "gaussian". 0 is the plain
         likelihood; with 0.5 the mean is learned as well where the spread is large
         (Seitzer et al. 2022).
       members: number of networks in the ensemble, each fitted to its own bootstrap
@@ -58,7 +58,7 @@ class ForwardConfig(NetworkConfig):
             )
 
     def make_head(self, dimensions: int) -> Head:
-        """The family of distributions over this number of dimensions."""
+        """The family of distributions over next states with this number of columns."""
         match self.head:
             case "gaussian":
                 return GaussianHead(dimensions, self.beta)

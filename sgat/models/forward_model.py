@@ -22,13 +22,14 @@ from sgat.transitions import Transitions
 
 _KIND = "forward"
 _GOLDEN = (5**0.5 - 1) / 2
-"""Golden ratio minus 1: its multiples modulo 1 are evenly spread from 0 to 1."""
+"""Golden ratio minus 1: its multiples modulo 1 are evenly spread from 0 to 1, which
+replaces random numbers where a result must not be random."""
 
 
 class ForwardModel:
-    """p(s' | s, a), learned from transitions.
+    """p(s' | s, a), the distribution of the next state, learned from transitions.
 
-    The network predicts the change of the state, scaled in each dimension. GAT and SGAT
+    Its networks predict the change of the state, scaled in each column. GAT and SGAT
     fit it to the real world.
 
     Example:
@@ -37,7 +38,7 @@ class ForwardModel:
     """
 
     def __init__(self, config: ForwardConfig | None = None) -> None:
-        """Choose network and distribution; `fit` or `load` sets the numbers."""
+        """Choose network and distribution; `fit` or `load` sets the weights."""
         self.config = ForwardConfig() if config is None else config
         self._fitted: ScaledNetwork | None = None
 
@@ -63,7 +64,7 @@ class ForwardModel:
 
     @property
     def scalings(self) -> tuple[Scaling, Scaling]:
-        """Scalings of the (s + a) inputs and of the (p) changes of the state."""
+        """Scalings of the s + a input columns, and of the p changes of the state."""
         return self._network.inputs, self._network.targets
 
     @property
@@ -85,9 +86,7 @@ class ForwardModel:
     ) -> tuple[FloatArray, FloatArray]:
         """Mean (n, p) and covariance (n, p, p) of the next state, over all networks.
 
-        Args:
-          state: (n, s) states.
-          action: (n, a) actions.
+        States are (n, s), actions (n, a).
         """
         head, every = self._head, list(self._each(state, action))
         means = np.array([head.mean(raw, np) for raw in every], dtype=float)
@@ -101,12 +100,10 @@ class ForwardModel:
     def sample(
         self, state: FloatArray, action: FloatArray, stream: NoiseStream
     ) -> FloatArray:
-        """(n, p) one sampled next state for each robot, as SGAT uses it.
+        """(n, p) one sampled next state for each robot, as in SGAT.
 
-        Args:
-          state: (n, s) states.
-          action: (n, a) actions.
-          stream: noise of the n robots, with as many dimensions as a next state.
+        States are (n, s), actions (n, a). `stream` draws the noise of the n robots,
+        with p dimensions.
         """
         z, choice = stream.draw()
         member = (stream.member() * self.config.members).astype(np.intp)
@@ -128,7 +125,7 @@ class ForwardModel:
     def scaled_change(self) -> Callable[[Tensor], Tensor]:
         """The mean change of the state as a function that torch can differentiate.
 
-        It gives the scaled change (n, p) for scaled states beside actions (n, s + a).
+        It gives scaled changes (n, p) for scaled states and actions, joined (n, s + a).
         """
         network = self._network.network
         layers = zip(network.weights, network.biases, strict=True)
@@ -141,9 +138,9 @@ class ForwardModel:
         return change
 
     def score(self, transitions: Transitions) -> float:
-        """Mean log-likelihood per transition and dimension; larger is better.
+        """Mean log-likelihood of next states per transition and column.
 
-        A density has the inverse of the state's unit, so positive values are possible.
+        Larger is better. It is the logarithm of a density, so it can be positive.
         """
         head = self._head
         y = torch.tensor(self._network.targets.to_scaled(transitions.change))
@@ -158,11 +155,12 @@ class ForwardModel:
         return (float(mixture.mean()) - float(units)) / self.outcomes
 
     def residuals(self, transitions: Transitions) -> FloatArray:
-        """(N, p) standardised residuals, the noise that `sample` would have needed.
+        """(N, p) standardised residuals: the noise for which `sample` gives the data.
 
-        White and standard normal if the model is right. In an ensemble each episode
-        belongs to one network, as in sampling. Which component of a mixture a next
-        state is assigned to follows a fixed sequence that is evenly spread.
+        They are white and standard normal if the model is right. In an ensemble, each
+        episode is assigned one network. In a mixture, each next state is assigned a
+        component by its probability, with evenly spread numbers in place of random
+        ones.
         """
         _, index = np.unique(transitions.episode, return_inverse=True)
         member = index % self.config.members
@@ -173,15 +171,15 @@ class ForwardModel:
         return self._head.residuals(parts, y, choice)
 
     def save(self, path: Path) -> None:
-        """Write the model to one file."""
+        """Write the fitted model to one file."""
         write_model(path, _KIND, self.config, self._network)
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file of `save`; every answer is equal to the last bit.
+        """Read a file that `save` wrote; the model predicts the same to the last bit.
 
         Raises:
-          BadModelError: the file holds no forward model.
+          BadModelError: the file cannot be read, or holds no forward model.
         """
         config, network = read_model(path, _KIND, ForwardConfig)
         model = cls(config)
@@ -221,10 +219,10 @@ class ForwardModel:
 
 
 def _stages(head: Head) -> list[Stage]:
-    """Three stages of training: the mean, the likelihood, the same more finely.
+    """Three stages of training: mean, likelihood, likelihood at a tenth of the rate.
 
-    A likelihood that starts with a wrong mean explains the error by a large spread, and
-    the large spread then keeps the mean from improving.
+    If the likelihood were maximised from a wrong mean, a large spread would explain the
+    error, and would then keep the mean from improving.
     """
 
     def loss(raw: Tensor, y: Tensor) -> Tensor:

@@ -1,8 +1,9 @@
 """Heads: how a network's raw outputs become the parameters of a distribution.
 
-All numbers are in scaled units. The parameters are computed with torch during training
-and with NumPy afterwards: the argument `xp` is one of the two modules, and only
-functions that both have under the same name are used.
+All numbers are scaled to mean 0 and standard deviation 1 of the training data. The
+parameters are computed with torch during training and with NumPy afterwards: the
+argument `xp` is one of the two modules, and only functions that both have under the
+same name are used.
 """
 
 from abc import ABC, abstractmethod
@@ -17,19 +18,19 @@ from groundwalk.arrays import FloatArray
 from sgat.models.network import Float32Array
 
 Parts: TypeAlias = tuple[Any, ...]
-"""The parameters of n distributions, as arrays or tensors; see `parts` of each head."""
+"""The parameters of n distributions, as arrays or tensors; each head has its own."""
 
 LOG_VARIANCE = (-7.0, 4.0)
 """Bounds of a log-variance in scaled units: standard deviations from 0.03 to 7.
 
-Without bounds a network extrapolates to any spread away from its data, and a sampled
-state could be anything. A smaller least variance makes nearly singular covariances so
-stiff that large variances are learned badly: with -10 the standard deviation of noise
-on a single action was learned a third too large."""
+Without bounds, a network can predict any spread away from its data. With a lower bound,
+nearly singular covariances are so stiff that large variances are learned badly: with
+-10, the standard deviation of noise on a single action was learned a third too large.
+"""
 
 
 def bounded(raw: Any, xp: Any) -> Any:
-    """Softly limit raw numbers to `LOG_VARIANCE`; `xp` is numpy or torch."""
+    """Softly limit raw numbers to the bounds `LOG_VARIANCE`; `xp` is numpy or torch."""
     low, high = LOG_VARIANCE
     middle, half = (low + high) / 2, (high - low) / 2
     return middle + half * xp.tanh((raw - middle) / half)
@@ -37,11 +38,7 @@ def bounded(raw: Any, xp: Any) -> Any:
 
 @dataclass(frozen=True)
 class Head(ABC):
-    """A family of distributions over d numbers.
-
-    Attributes:
-      dimensions: d.
-    """
+    """A family of distributions over d numbers, where d is `dimensions`."""
 
     dimensions: int
 
@@ -52,22 +49,28 @@ class Head(ABC):
 
     @abstractmethod
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """The parameters that raw outputs (..., width) of the module `xp` stand for."""
+        """A distribution's parameters from raw outputs (..., width).
+
+        `xp` is the module of `raw`: numpy or torch.
+        """
 
     @abstractmethod
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) log p(y) of values y (..., d), by torch's own distributions."""
+        """(...) logarithm of the density of values y (..., d), computed with torch."""
 
     def loss(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) the training loss of y (..., d): the negative log-likelihood."""
+        """(...) training loss of values y (..., d): the negative log-likelihood."""
         return -self.log_density(parts, y)
 
     def mean(self, raw: Any, xp: Any) -> Any:
-        """(..., d) mean for raw outputs (..., width); usually the first d of them."""
+        """(..., d) mean from raw outputs (..., width); usually the first d of them."""
         return raw[..., : self.dimensions]
 
     def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """(n, d, a) derivative of the mean by actions, from (n, width, a) raw."""
+        """(n, d, a) derivative of the mean by actions.
+
+        `slope` (n, width, a) is the derivative of `raw` (n, width).
+        """
         return slope[:, : self.dimensions]
 
     @abstractmethod
@@ -79,7 +82,7 @@ class Head(ABC):
         """(n, d) samples made of standard noise.
 
         Args:
-          parts: parameters of n distributions, as arrays.
+          parts: parameters of n distributions, as NumPy arrays.
           z: (n, d) standardised noise.
           choice: (n,) uniform numbers from 0 to 1 that choose a mixture's component.
         """
@@ -103,21 +106,21 @@ class GaussianHead(Head):
 
     @property
     def width(self) -> int:
-        """Raw outputs: d means and d log-variances."""
+        """Number of raw outputs: d means and d log-variances."""
         return 2 * self.dimensions
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Means and standard deviations, (..., d) each; see `Head.parts`."""
+        """Means and standard deviations, (..., d) each, from raw outputs (..., 2 d)."""
         mean, log_variance = raw[..., : self.dimensions], raw[..., self.dimensions :]
         return mean, xp.exp(bounded(log_variance, xp) / 2)
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) sum of the dimensions' log-densities; see `Head.log_density`."""
+        """(...) log-density of values y (..., d): the sum over the d dimensions."""
         density: Tensor = self._log_densities(parts, y).sum(dim=-1)
         return density
 
     def loss(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) negative log-likelihood, weighted as `beta` says; see `Head.loss`."""
+        """(...) negative log-likelihood of y (..., d), weighted by variance^beta."""
         weight = parts[1].detach() ** (2 * self.beta)
         loss: Tensor = -(weight * self._log_densities(parts, y)).sum(dim=-1)
         return loss
@@ -130,28 +133,28 @@ class GaussianHead(Head):
         return densities
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) diagonal covariances."""
+        """(n, d, d) diagonal covariances of n distributions."""
         return np.asarray(parts[1][..., None] ** 2 * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) mean plus noise times standard deviation; see `Head.sample`."""
+        """(n, d) samples: mean plus noise z (n, d) times standard deviation."""
         return np.asarray(parts[0] + parts[1] * z)
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) deviation from the mean over its spread; see `Head.residuals`."""
+        """(n, d) values y (n, d) minus the mean, divided by the standard deviation."""
         return np.asarray((y - parts[0]) / parts[1])
 
 
 class FullHead(Head):
-    """One normal distribution with any covariance L L^T, L lower triangular."""
+    """A normal distribution with any covariance L L^T, where L is lower triangular."""
 
     @property
     def width(self) -> int:
-        """Raw outputs: means, log-variances for L's diagonal, entries below it."""
+        """Number of raw outputs: means, log-variances for L's diagonal, L's others."""
         return self.dimensions * (self.dimensions + 3) // 2
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Means (..., d) and lower triangles L (..., d, d); see `Head.parts`."""
+        """Means (..., d) and lower triangles L (..., d, d), from raw (..., width)."""
         d = self.dimensions
         factor = xp.zeros((*raw.shape[:-1], d, d), dtype=raw.dtype)
         diagonal, (row, column) = np.arange(d), np.tril_indices(d, -1)
@@ -160,47 +163,48 @@ class FullHead(Head):
         return raw[..., :d], factor
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) log-density with the covariance L L^T; see `Head.log_density`."""
+        """(...) log-density of values y (..., d) with the covariance L L^T."""
         mean, factor = parts
         normal = td.MultivariateNormal(mean, scale_tril=factor, validate_args=False)
         return normal.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) covariances L L^T."""
+        """(n, d, d) covariances L L^T of n distributions."""
         return np.asarray(parts[1] @ parts[1].swapaxes(-1, -2))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) mean plus L z; see `Head.sample`."""
+        """(n, d) samples: mean plus L times noise z (n, d)."""
         return np.asarray(parts[0] + (parts[1] @ z[..., None])[..., 0])
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) solution z of L z = y - mean; see `Head.residuals`."""
+        """(n, d) noise z that solves L z = y - mean, for values y (n, d)."""
         return np.linalg.solve(parts[1], (y - parts[0])[..., None])[..., 0]
 
 
 @dataclass(frozen=True)
 class LowRankHead(Head):
-    """One normal distribution with the covariance U U^T + D, D diagonal.
+    """A normal distribution with the covariance U U^T + D, where D is diagonal.
 
     Attributes:
-      rank: number of columns of U: disturbances that move all dimensions at once.
+      rank: number of columns of U, each a disturbance that moves all dimensions at
+        once.
     """
 
     rank: int = 2
 
     @property
     def width(self) -> int:
-        """Raw outputs: means, log-variances of D, and the entries of U."""
+        """Number of raw outputs: means, logarithms of D, and the entries of U."""
         return self.dimensions * (2 + self.rank)
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Means (..., d), U (..., d, rank) and D's diagonal (..., d)."""
+        """Means (..., d), U (..., d, rank), D's diagonal (..., d), from raw outputs."""
         d = self.dimensions
         factor = raw[..., 2 * d :].reshape((*raw.shape[:-1], d, self.rank))
         return raw[..., :d], factor, xp.exp(bounded(raw[..., d : 2 * d], xp))
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) log-density with this covariance; see `Head.log_density`."""
+        """(...) log-density of values y (..., d) with the covariance U U^T + D."""
         mean, factor, variance = parts
         normal = td.LowRankMultivariateNormal(
             mean, factor, variance, validate_args=False
@@ -208,18 +212,18 @@ class LowRankHead(Head):
         return normal.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) covariances U U^T + D."""
+        """(n, d, d) covariances U U^T + D of n distributions."""
         _, factor, variance = parts
-        factor = factor.astype(float)  # the triangle of a nearly singular matrix
+        factor = factor.astype(float)  # the Cholesky factor needs float64
         shared = factor @ factor.swapaxes(-1, -2)
         return np.asarray(shared + variance[..., None] * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) mean plus a Cholesky factor times z; see `Head.sample`."""
+        """(n, d) samples: mean plus the covariance's Cholesky factor times z (n, d)."""
         return FullHead(self.dimensions).sample(self._triangular(parts), z, choice)
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) noise by a Cholesky factor; see `Head.residuals`."""
+        """(n, d) noise z with y - mean = L z, where L is the Cholesky factor."""
         return FullHead(self.dimensions).residuals(self._triangular(parts), y, choice)
 
     def _triangular(self, parts: Parts) -> Parts:

@@ -18,11 +18,11 @@ _KIND = "inverse"
 
 
 class InverseModel:
-    """a = f(s, s') of a deterministic sim, by least squares.
+    """a = f(s, s'): the action of a deterministic sim, fitted by least squares.
 
-    The network sees the state and its change. Where several actions lead to the same
-    next state, or the sim is noisy, it answers their mean, which is smaller than each
-    of them: give it data with varied actions.
+    The network sees the state and its change. If several actions lead to the same next
+    state, or the sim is noisy, it predicts their mean, which may be too small an
+    action: give it data with varied actions.
 
     Example:
       >>> inverse = InverseModel().fit(sim_transitions, seed)
@@ -30,12 +30,12 @@ class InverseModel:
     """
 
     def __init__(self, config: NetworkConfig | None = None) -> None:
-        """Choose shape and training; `fit` or `load` sets the numbers."""
+        """Choose the network's shape and training; `fit` or `load` sets the weights."""
         self.config = NetworkConfig() if config is None else config
         self._fitted: ScaledNetwork | None = None
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
-        """Learn from at least two episodes; the same seed gives the same bits."""
+        """Learn from at least two episodes of the sim; equal seeds give equal bits."""
         self._fitted = ScaledNetwork.fit(
             np.hstack([transitions.state, transitions.change]),
             transitions.action,
@@ -60,12 +60,12 @@ class InverseModel:
         return r_squared(predicted, transitions.action)
 
     def save(self, path: Path) -> None:
-        """Write the model to one file."""
+        """Write the fitted model to one file."""
         write_model(path, _KIND, self.config, self._network)
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file of `save`; every answer is equal to the last bit."""
+        """Read a file that `save` wrote; BadModelError if it holds no such model."""
         config, network = read_model(path, _KIND, NetworkConfig)
         if network.network.outputs != len(network.targets.mean):
             raise BadModelError(f"{path} is no model file, or a damaged one")

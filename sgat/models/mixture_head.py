@@ -12,15 +12,13 @@ from sgat.models.heads import Head, Parts, bounded
 from sgat.models.network import Float32Array
 
 _LARGEST_LOGIT = 8.0
-"""Bound of the logits: weights differ by at most e^16, so that no component is lost for
-good during training."""
+"""Bound of a component's logit: weights differ by a factor of at most e^16, so that
+training can bring back a component that has hardly any weight."""
 
 
 @dataclass(frozen=True)
 class MixtureHead(Head):
     """Mixture of normal distributions with independent dimensions (Bishop 1994).
-
-    The SGAT paper mentions it in a footnote.
 
     Attributes:
       components: k, the number of normal distributions.
@@ -30,11 +28,11 @@ class MixtureHead(Head):
 
     @property
     def width(self) -> int:
-        """Raw outputs: k logits, then k means and k log-variances of d numbers."""
+        """Number of raw outputs: k logits, then k times d means and log-variances."""
         return self.components * (1 + 2 * self.dimensions)
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Weights (..., k), means and standard deviations (..., k, d)."""
+        """Weights (..., k), means and deviations (..., k, d each), from raw outputs."""
         k, d = self.components, self.dimensions
         logits = _LARGEST_LOGIT * xp.tanh(raw[..., :k] / _LARGEST_LOGIT)
         weights = xp.exp(logits)
@@ -43,7 +41,7 @@ class MixtureHead(Head):
         return weights, rest[..., 0, :, :], xp.exp(bounded(rest[..., 1, :, :], xp) / 2)
 
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
-        """(...) log-density of the mixture; see `Head.log_density`."""
+        """(...) log-density of values y (..., d) in the mixture."""
         weights, means, deviations = parts
         mixture = td.MixtureSameFamily(
             td.Categorical(weights, validate_args=False),
@@ -53,12 +51,12 @@ class MixtureHead(Head):
         return mixture.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
     def mean(self, raw: Any, xp: Any) -> Any:
-        """(..., d) weighted mean of the components' means; see `Head.mean`."""
+        """(..., d) weighted mean of the components' means, from raw outputs."""
         weights, means, _ = self.parts(raw, xp)
         return (weights[..., None] * means).sum(-2)
 
     def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """(n, d, a) derivative through weights and means; see `Head.mean_slope`."""
+        """(n, d, a) derivative of the mean by actions, from that of raw outputs."""
         k, d = self.components, self.dimensions
         weights, means, _ = self.parts(raw, np)
         logits = slope[:, :k] / np.cosh(raw[:, :k, None] / _LARGEST_LOGIT) ** 2
@@ -69,7 +67,7 @@ class MixtureHead(Head):
         return np.asarray(by_weight + by_mean)
 
     def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) covariance within the components plus that of their means."""
+        """(n, d, d) mean covariance of the components plus the covariance of means."""
         weights, means, deviations = parts
         off = means - (weights[..., None] * means).sum(axis=-2, keepdims=True)
         between = np.einsum("...k,...ki,...kj->...ij", weights, off, off)
@@ -77,16 +75,17 @@ class MixtureHead(Head):
         return np.asarray(between + within[..., None] * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) sample of the component that `choice` picks; see `Head.sample`."""
+        """(n, d) samples of the components that `choice` (n,) from 0 to 1 picks."""
         weights, means, deviations = parts
         chosen = _pick(weights, choice)
         return _rows(means, chosen) + _rows(deviations, chosen) * z
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) noise of one component for each row; see `Head.residuals`.
+        """(n, d) noise for which `sample` gives the values y (n, d).
 
-        The component is drawn by its probability of having produced y. Taking the most
-        probable one would make the residuals of overlapping components look too small.
+        The component of each row is drawn, with `choice` (n,), by its probability of
+        having produced y. With the most probable one instead, the residuals of
+        overlapping components would be too small.
         """
         weights, means, deviations = parts
         z = (y[..., None, :] - means) / deviations
@@ -97,11 +96,11 @@ class MixtureHead(Head):
 
 
 def _pick(weights: FloatArray, choice: FloatArray) -> IntArray:
-    """(n,) components, drawn by weights (n, k) with uniform numbers (n,)."""
+    """(n,) indices of components, drawn by weights (n, k) with uniform numbers (n,)."""
     passed = np.cumsum(weights, axis=-1) <= choice[:, None]
     return np.asarray(np.minimum(passed.sum(axis=-1), weights.shape[-1] - 1))
 
 
 def _rows(values: FloatArray, chosen: IntArray) -> FloatArray:
-    """(n, d) values (n, k, d) of the chosen component (n,)."""
+    """(n, d) entries of values (n, k, d), of each row's component `chosen` (n,)."""
     return values[np.arange(len(values)), chosen]

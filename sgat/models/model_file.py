@@ -26,9 +26,9 @@ def write_model(
 
     Args:
       path: the file; its folder is made if it does not exist.
-      kind: name of the kind of model, for which `read_model` must ask.
+      kind: name of the kind of model, which `read_model` checks.
       config: settings with which the network was made.
-      network: the fitted numbers.
+      network: the fitted network.
     """
     header = {"format": _FORMAT, "kind": kind, "config": asdict(config)}
     content = io.BytesIO()
@@ -39,13 +39,13 @@ def write_model(
 def read_model(
     path: Path, kind: str, config_type: type[Config]
 ) -> tuple[Config, ScaledNetwork]:
-    """Read a file of `write_model`; the numbers are equal to the last bit.
+    """Read a file that `write_model` wrote; all numbers are equal to the last bit.
 
-    Only tensors and plain values are read (torch's `weights_only`). Nothing else that a
-    file may contain is run.
+    Only tensors and plain values are read (torch's `weights_only`), so no code of the
+    file is run.
 
     Raises:
-      BadModelError: the file is missing, damaged, or holds another kind of model.
+      BadModelError: the file cannot be read, is damaged, or has another kind of model.
     """
     try:
         file = io.BytesIO(path.read_bytes())
@@ -59,7 +59,7 @@ def read_model(
             network = ScaledNetwork.from_tensors(content["tensors"])
             config = from_plain(config_type, header["config"], "config", False)
             return config, network
-    except Exception as error:  # a foreign file fails in any way it likes
+    except Exception as error:  # a file of another program can fail in any way
         raise BadModelError(f"{path} is no model file, or a damaged one") from error
     raise BadModelError(
         f"{path} holds a model of kind {found[1]!r}, format {found[0]}; wanted is "

@@ -13,7 +13,7 @@ Float32Array = npt.NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """Networks of equal shape (members), each a chain of tanh layers and a linear one.
+    """Networks of equal shape (members), each of tanh layers and a last linear one.
 
     Attributes:
       weights: for each layer (members, inputs, outputs).
@@ -39,7 +39,7 @@ class Network:
         return int(self.weights[-1].shape[2])
 
     def member(self, which: int, x: FloatArray) -> Float32Array:
-        """(n, outputs) answers of network number `which` for inputs x (n, inputs)."""
+        """(n, outputs) of network number `which` for inputs x (n, inputs)."""
         values: Any = x.astype(np.float32)
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             values = np.tanh(values @ weight[which] + bias[which])
@@ -47,7 +47,10 @@ class Network:
         return last
 
     def slope(self, which: int, x: FloatArray, inputs: int) -> Float32Array:
-        """(n, outputs, inputs) derivative of one network by its last inputs."""
+        """(n, outputs, inputs) derivative of network number `which` at x.
+
+        It is taken by the last `inputs` columns of x (n, all inputs).
+        """
         values: Any = x.astype(np.float32)
         slope: Any = np.eye(self.inputs, dtype=np.float32)[-inputs:]
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
@@ -57,7 +60,7 @@ class Network:
         return last
 
     def mixed(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs) answers for x (n, inputs); `member` (n,) numbers networks."""
+        """(n, outputs) for x (n, inputs); `member` (n,) is the network of each row."""
         if self.members == 1:
             return self.member(0, x)
         result = np.empty((len(x), self.outputs), np.float32)

@@ -1,4 +1,4 @@
-"""Shape and training of a network."""
+"""Settings of a network's shape and training."""
 
 from dataclasses import dataclass
 
@@ -7,14 +7,14 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True)
 class NetworkConfig:
-    """Shape and training of a network.
+    """Settings of a network's shape and training.
 
     Attributes:
       hidden: width of each hidden layer; two of 64 in the SGAT paper.
       epochs: largest number of passes through the data at each learning rate.
       batch: transitions in one step of the optimiser.
-      learning_rate: first learning rate of Adam; a tenth of it refines the result.
-      weight_decay: decoupled from the gradient, as in AdamW.
+      learning_rate: first learning rate of AdamW; a tenth of it refines the result.
+      weight_decay: weight decay of AdamW, which is decoupled from the gradient.
       patience: epochs without a better held-out loss after which training stops.
       validation_share: share of the episodes that is held out to decide when to stop.
 

@@ -19,12 +19,12 @@ from sgat.transitions import held_out_rows
 
 @dataclass(frozen=True, eq=False)
 class ScaledNetwork:
-    """A network whose inputs are in their own units; its outputs are raw.
+    """A network with scaled inputs and targets.
 
     Attributes:
       inputs: scaling of the inputs.
       targets: scaling of the values that the network was trained to predict.
-      network: computes with scaled numbers.
+      network: takes scaled inputs; its raw outputs describe scaled targets.
     """
 
     inputs: Scaling
@@ -45,17 +45,17 @@ class ScaledNetwork:
     ) -> Self:
         """Train networks to predict y from x.
 
-        Several members differ in their first weights and in their data: each learns
-        from its own bootstrap sample of the episodes.
+        If there are several, they differ in their first weights and in their data: each
+        learns from its own bootstrap sample of the episodes.
 
         Args:
-          x: (N, inputs).
-          y: (N, d).
+          x: (N, inputs) in their own units.
+          y: (N, d) targets in their own units.
           episode: (N,) number of the episode of each row.
           outputs: number of raw outputs of a network.
           stages: losses to train with; they define what the raw outputs mean.
-          config: shape and training.
-          seed: of everything random; the same seed gives the same bits.
+          config: shape and training of each network.
+          seed: seed of everything random; the same seed gives the same bits.
           members: number of networks.
         """
         rng = np.random.default_rng(seed)
@@ -75,7 +75,10 @@ class ScaledNetwork:
         return cls(inputs, targets, network)
 
     def raw(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs) raw answers for x (n, inputs), each row by its own network."""
+        """(n, outputs) raw outputs for x (n, inputs) in their own units.
+
+        `member` (n,) is the number of the network that computes a row.
+        """
         if x.ndim != 2 or x.shape[1] != self.network.inputs:
             raise BadValueError(
                 f"a model of {self.network.inputs} inputs was given the shape {x.shape}"
@@ -83,7 +86,7 @@ class ScaledNetwork:
         return self.network.mixed(self.inputs.to_scaled(x), member)
 
     def to_tensors(self) -> dict[str, Tensor]:
-        """All numbers as tensors by name, for a file."""
+        """Weights, biases and scalings as tensors by name, for a file."""
         arrays = {
             f"{name}.{field}": value
             for name in ("inputs", "targets")
@@ -96,7 +99,7 @@ class ScaledNetwork:
 
     @classmethod
     def from_tensors(cls, tensors: dict[str, Tensor]) -> Self:
-        """The network of `to_tensors`; ValueError if the shapes do not fit together."""
+        """Undo `to_tensors`; ValueError if the shapes do not fit together."""
         arrays = {name: tensor.numpy() for name, tensor in tensors.items()}
         inputs, targets = (
             Scaling(
@@ -123,9 +126,9 @@ class ScaledNetwork:
 def _sample_weights(
     episode: IntArray, members: int, rng: np.random.Generator
 ) -> FloatArray:
-    """(members, N) how often each bootstrap sample contains each row's episode.
+    """(members, N) how often each network's bootstrap sample contains a row's episode.
 
-    A single member learns from all episodes once.
+    A single network learns from every episode once.
     """
     names, index = np.unique(episode, return_inverse=True)
     if members == 1:

@@ -9,20 +9,20 @@ from groundwalk.arrays import BoolArray, FloatArray
 from sgat.models.network import Float32Array
 
 _CONSTANT = 1e-9
-"""A column whose spread is below this share of its largest value is constant: the
-spread is rounding."""
+"""A column is constant if its standard deviation is below this share of its largest
+value: then the deviation is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scaling:
     """Mean and scale of each column.
 
-    A constant column keeps the scale 1: divided by its tiny spread, any later change
-    would become huge. Since its variation is unknown, scaled numbers are turned back
-    into the constant.
+    A constant column has the scale 1: divided by a tiny standard deviation, any later
+    change would become huge. Its scaled numbers are turned back into the constant,
+    since how it varies is unknown.
 
     Attributes:
-      mean: (d,) of each column.
+      mean: (d,) mean of each column.
       scale: (d,) standard deviation of each column, 1 where it is constant.
       varies: (d,) whether a column is not constant.
     """
@@ -40,11 +40,11 @@ class Scaling:
         return cls(mean, np.where(varies, spread, 1.0), varies)
 
     def to_scaled(self, values: FloatArray) -> FloatArray:
-        """(n, d) scaled numbers of (n, d) values in their units."""
+        """(n, d) scaled numbers from values (n, d) in their units."""
         return (values - self.mean) / self.scale
 
     def from_scaled(self, scaled: FloatArray | Float32Array) -> FloatArray:
-        """(n, d) values in their units of (n, d) scaled numbers."""
+        """(n, d) values in their units from scaled numbers (n, d)."""
         return np.asarray(self.mean + self.spread * scaled)
 
     @property

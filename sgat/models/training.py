@@ -14,12 +14,11 @@ from sgat.models.network_config import NetworkConfig
 
 Loss = Callable[[Tensor, Tensor], Tensor]
 """A function of raw outputs (members, n, outputs) and targets (n, d) that gives losses
-(members, n).
-"""
+(members, n)."""
 
 _LARGEST_GRADIENT = 10.0
-"""Norm to which a member's gradient is cut, so that one outlier cannot undo an
-epoch."""
+"""Largest norm of a network's gradient in scaled units; longer ones are shortened, so
+that one outlier cannot undo an epoch."""
 
 
 def squared_error(raw: Tensor, y: Tensor) -> Tensor:
@@ -31,9 +30,9 @@ class Stage(NamedTuple):
     """A part of training; each stage starts from the best weights of the one before.
 
     Attributes:
-      loss: is minimised.
-      score: is watched on held-out episodes: the loss without terms that only help
-        learning.
+      loss: loss that is minimised.
+      score: loss on held-out episodes that decides when to stop: without terms that
+        only help learning.
       rate: factor on the learning rate.
     """
 
@@ -46,8 +45,8 @@ class Examples(NamedTuple):
     """Training data in scaled units.
 
     Attributes:
-      x: (n, inputs).
-      y: (n, d).
+      x: (n, inputs) inputs.
+      y: (n, d) targets.
     """
 
     x: Tensor
@@ -75,7 +74,7 @@ def train(
 
     Args:
       outputs: width of the last layer.
-      stages: losses, one after the other.
+      stages: stages of training, each with its loss.
       examples: n rows to learn from.
       weights: (members, n) weight of each row in each network's loss.
       held_out: rows that decide when a stage ends; the weights that are best for them
@@ -114,7 +113,10 @@ def one_thread() -> Iterator[None]:
 def _first_parameters(
     sizes: list[int], members: int, generator: torch.Generator
 ) -> list[Tensor]:
-    """Weight, bias, weight, bias ...; weights after Glorot and Bengio 2010, eq. 16."""
+    """Random weights (Glorot and Bengio 2010, eq. 16) and zero biases of all layers.
+
+    The list alternates: weight, bias, weight, bias ...; `sizes` are the layers' widths.
+    """
     parameters = []
     for inputs, outputs in itertools.pairwise(sizes):
         bound = (6 / (inputs + outputs)) ** 0.5
@@ -126,7 +128,10 @@ def _first_parameters(
 
 
 def raw_outputs(parameters: Sequence[Tensor], x: Tensor) -> Tensor:
-    """(members, n, outputs) answers of networks to x (n, inputs), with gradients."""
+    """(members, n, outputs) raw outputs of networks for x (n, inputs), with gradients.
+
+    Parameters alternate: weight, bias, weight, bias ...
+    """
     values = x.expand(len(parameters[0]), *x.shape)
     for weight, bias in zip(parameters[:-2:2], parameters[1:-2:2], strict=True):
         values = torch.tanh(torch.baddbmm(bias, values, weight))
@@ -141,7 +146,10 @@ def _epochs(
     config: NetworkConfig,
     generator: torch.Generator,
 ) -> Iterator[None]:
-    """Each step of this iterator is one pass through the examples in random order."""
+    """Train by one epoch at each step of the iterator, in random order of the rows.
+
+    `minds` (members, n) are the weights of the rows in each network's loss.
+    """
     rate = stage.rate * config.learning_rate
     optimiser = torch.optim.AdamW(
         parameters, lr=rate, weight_decay=config.weight_decay, fused=True
@@ -162,7 +170,7 @@ def _epochs(
 
 
 def _cut_gradients(parameters: list[Tensor]) -> None:
-    """Shorten each member's gradient to the largest norm; members stay independent."""
+    """Shorten each network's gradient to `_LARGEST_GRADIENT`, each on its own."""
     gradients = [p.grad for p in parameters if p.grad is not None]
     squares = torch.stack([g.square().sum(dim=(1, 2)) for g in gradients])
     norm = squares.sum(dim=0).sqrt()
@@ -173,12 +181,12 @@ def _cut_gradients(parameters: list[Tensor]) -> None:
 
 @torch.no_grad()
 def _means(score: Loss, parameters: list[Tensor], examples: Examples) -> Tensor:
-    """(members,) mean score over the examples."""
+    """(members,) mean score of each network over the examples."""
     return score(raw_outputs(parameters, examples.x), examples.y).mean(dim=1)
 
 
 class _BestWeights:
-    """Keeps each member's parameters of its own best epoch."""
+    """Keeps the parameters of each network's own best epoch, during one stage."""
 
     def __init__(self, parameters: list[Tensor]) -> None:
         self._parameters = parameters
@@ -187,7 +195,7 @@ class _BestWeights:
         self.epochs_without_better = 0
 
     def look(self, score: Tensor) -> None:
-        """Keep the parameters of those members whose score has become better."""
+        """Keep the parameters of networks whose `score` (members,) is a new minimum."""
         better = score < self._score
         self._score = torch.where(better, score, self._score)
         for best, now in zip(self._best, self._parameters, strict=True):

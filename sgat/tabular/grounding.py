@@ -1,4 +1,4 @@
-"""GAT and SGAT in finite worlds, where a grounded simulator is a table."""
+"""GAT and SGAT in finite worlds, where a grounded simulator is a transition table."""
 
 import dataclasses
 
@@ -10,10 +10,10 @@ from sgat.tabular.models import NONE, inverse_model
 
 
 def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMdp:
-    """The simulator behind an action transformer, as a world of its own.
+    """The simulator behind an action transformer, as a finite world of its own.
 
     Args:
-      sim: a deterministic simulator.
+      sim: a deterministic simulator with S states and A actions.
       forward: (S, A, S) forward model: probabilities of the real next states.
       samples: whether the transformer samples next states (SGAT) or takes the most
         likely one (GAT).
@@ -32,11 +32,12 @@ def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMd
 def action_transformer(
     sim: FiniteMdp, forward: FloatArray, samples: bool
 ) -> FloatArray:
-    """(S, A, A) probability that an action becomes another; see `grounded_sim`.
+    """(S, A, A) probability that, in a state, an action is replaced by each action.
 
-    g(s, a) = f_inv(s, f_real(s, a)). For finite states, GAT's deterministic forward
-    model is the most likely next state (the first of equally likely ones), since a mean
-    of states has no meaning. Next states that no action of the sim leads to cannot be
+    The transformer is g(s, a) = f_inv(s, f_real(s, a)), with the real world's forward
+    model (`forward`) and the sim's inverse model. If `samples` is False (GAT), f_real
+    takes the most likely next state, the first of equally likely ones, since a mean of
+    states has no meaning. Next states that no action of the sim leads to cannot be
     imitated: the probabilities of the other ones are scaled up. If none is left, the
     action stays as it is.
     """

@@ -20,8 +20,8 @@ class TabularLoop:
     Attributes:
       episodes: real episodes in each grounding step; the data of all steps are kept.
       exploration: probability of a random action at each step of these episodes.
-      known_after: number of real transitions of a state and action from which its
-        counted probabilities are used; see `counted_forward_model`.
+      known_after: least number of real transitions of a state and action with which
+        their counted probabilities are used, instead of the sim's.
       gain: a new policy is an improvement if its return in the grounded sim is larger
         by more than this.
       calm_steps: the loop ends after this number of grounding steps in a row without an
@@ -40,7 +40,7 @@ class TabularLoop:
     most_steps: int = 100
 
     def __post_init__(self) -> None:
-        """Refuse loops that cannot run."""
+        """Refuse counts below 1, and an exploration that is no probability."""
         for name in ("episodes", "known_after", "calm_steps", "most_steps"):
             if getattr(self, name) < 1:
                 raise BadValueError(
@@ -54,10 +54,10 @@ class TabularLoop:
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """Result of the loop.
+    """Result of `ground_until_calm`.
 
     Attributes:
-      policy: (S,) action in each state: the last policy.
+      policy: (S,) action of the last policy in each of the S states.
       steps: number of grounding steps.
       transitions: number of real transitions in all steps.
       calm: whether the loop ended because nothing improved any more.
@@ -79,14 +79,13 @@ def ground_until_calm(
     loop: TabularLoop,
     generator: np.random.Generator,
 ) -> Settled:
-    """Ground the sim with real data and plan in it, until nothing improves.
+    """Ground the sim with real data and plan in it, until policies stop improving.
 
     The inverse model needs no data: a deterministic sim's table contains it.
 
     Args:
-      sim: a deterministic simulator; its optimal policy is the first one.
-      real: the world in which episodes are played. Its table is not looked at
-        otherwise.
+      sim: a deterministic simulator; the loop begins with its optimal policy.
+      real: the world in which episodes are played; its table is not used otherwise.
       samples: True for SGAT, False for GAT; see `grounded_sim`.
       loop: how much data is collected, and when to stop.
       generator: draws the real world's outcomes.

@@ -8,7 +8,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 
 ROUNDING = 1e-9
-"""Largest error of a sum of probabilities that counts as rounding."""
+"""Largest difference of a sum of probabilities from 1 that counts as rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +19,7 @@ class FiniteMdp:
       transition: (S, A, S) probability of each next state. Rows of states that end an
         episode are never used.
       reward: (S,) reward for entering a state, costs of the step included. It is the
-        paper's R(a, s') without the action, which the paper's examples do not need.
+        SGAT paper's R(a, s') without the action, which its examples do not need.
       ends: (S,) whether an episode ends in a state.
       start: state in which episodes begin.
 

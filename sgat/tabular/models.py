@@ -7,25 +7,24 @@ from groundwalk.errors import BadValueError
 from sgat.tabular.mdp import FiniteMdp
 
 NONE = -1
-"""In an inverse model: no action leads to this state."""
+"""Entry of an inverse model's table if no action leads to the next state."""
 
 
 def counted_forward_model(
     counts: IntArray, sim: FiniteMdp, known_after: int = 1
 ) -> FloatArray:
-    """(S, A, S) probabilities of the real next states: the observed shares.
+    """(S, A, S) probabilities of the real next states, estimated by observed shares.
 
-    This maximises the likelihood of a categorical distribution. Where too few
-    transitions were seen, the sim's table is used, which means that actions are not
-    transformed there. If the sim is too optimistic there, policies planned in it go to
-    these states and collect the missing data (like the known states of R-max: Brafman
-    and Tennenholtz 2002).
+    The shares maximise the likelihood. If too few transitions of a state and action
+    were seen, the sim's probabilities are used, which leaves the action as it is. Where
+    the sim is too optimistic, policies planned in it go to these states and collect the
+    missing data (like the known states of R-max: Brafman and Tennenholtz 2002).
 
     Args:
       counts: (S, A, S) number of times that each transition was seen in the real world.
-      sim: the simulator.
-      known_after: number of transitions of a state and action from which the shares are
-        used.
+      sim: the simulator, with S states and A actions.
+      known_after: least number of transitions of a state and action with which their
+        shares are used.
     """
     seen = counts.sum(axis=-1, keepdims=True)
     shares: FloatArray = np.where(
@@ -35,9 +34,9 @@ def counted_forward_model(
 
 
 def inverse_model(sim: FiniteMdp) -> IntArray:
-    """(S, S) the sim's action that leads from a state to another one.
+    """(S, S) the sim's action that leads from a state (row) to another one (column).
 
-    The first one if several do; `NONE` if none does.
+    It is the first one if several do, and `NONE` (-1) if none does.
 
     Raises:
       BadValueError: the sim is not deterministic.

@@ -17,20 +17,22 @@ low, but finite. Policies that end are hardly affected: a return of 100 after 20
 steps changes by 2e-4."""
 
 TIE = 1e-8
-"""Actions are equally good if their values differ by less than this share."""
+"""Actions are equally good if their values differ by less than this share of the best
+value (or of 1, if that is less than 1)."""
 
 
 def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray:
-    """(S,) an optimal policy, by Howard's policy iteration with exact solutions.
+    """(S,) actions of an optimal policy, by Howard's policy iteration.
 
     An action changes only if another one is better by more than rounding, so each round
     improves the policy and the search ends. Of equally good actions the first is taken.
-    Steps should cost something; otherwise staying forever can be as good as anything.
+    Steps should cost something; otherwise never ending can be as good as reaching a
+    goal.
 
     Args:
       mdp: the world to plan in.
-      policy: (S,) where to start, by default the first action in every state. The
-        result does not depend on it.
+      policy: (S,) actions to start from, by default the first action in every state.
+        The result does not depend on it.
 
     Example:
       >>> policy_iteration(stay_or_go)
@@ -53,7 +55,8 @@ def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray
 def policy_values(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
     """(S,) expected sum of rewards from each state on; 0 where episodes end.
 
-    Solves v = P (r + g v), where the rows of P belong to the policy's actions (S,).
+    Solves v = P (r + g v): P holds the transition probabilities of the policy's actions
+    (S,), r the rewards, and g is `GOES_ON`.
     """
     steps = _steps(mdp, policy)
     system = np.eye(mdp.states) - GOES_ON * steps
@@ -61,7 +64,7 @@ def policy_values(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
 
 
 def action_values(mdp: FiniteMdp, values: FloatArray) -> FloatArray:
-    """(S, A) value of an action now, if the states after it have the values (S,)."""
+    """(S, A) expected sum of rewards after an action, from the states' values (S,)."""
     after: FloatArray = mdp.transition @ (mdp.reward + GOES_ON * values)
     after[mdp.ends] = 0
     return after
@@ -85,6 +88,6 @@ def expected_return(mdp: FiniteMdp, policy: IntArray, step_limit: int) -> float:
 
 
 def _steps(mdp: FiniteMdp, policy: IntArray) -> FloatArray:
-    """(S, S) probabilities of next states; 0 from states that end an episode."""
+    """(S, S) a policy's transition probabilities; rows of ending states are 0."""
     steps = mdp.transition[np.arange(mdp.states), policy]
     return np.where(mdp.ends[:, np.newaxis], 0, steps)

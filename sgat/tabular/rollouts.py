@@ -13,7 +13,7 @@ STEP_LIMIT = 1000
 
 @dataclass(frozen=True, eq=False)
 class TabularRollouts:
-    """Results of n episodes.
+    """Results of n episodes in a finite world with S states and A actions.
 
     Attributes:
       returns: (n,) sum of rewards of each episode.
@@ -27,7 +27,7 @@ class TabularRollouts:
 
     @property
     def mean(self) -> float:
-        """Mean return."""
+        """Mean return of the episodes."""
         return float(self.returns.mean())
 
     @property
@@ -44,11 +44,11 @@ def roll_out(
     exploration: float = 0.0,
     step_limit: int = STEP_LIMIT,
 ) -> TabularRollouts:
-    """Play episodes side by side.
+    """Play episodes of a policy side by side.
 
-    Policies that are given generators of the same state have common random numbers:
-    step k of episode i uses the same numbers whatever happened before, and equal
-    probabilities of next states lead to equal next states.
+    Two policies whose generators are in the same state share their random numbers: step
+    k of episode i uses the same ones whatever happened before, so equal probabilities
+    of next states lead to equal next states.
 
     Args:
       mdp: the world.

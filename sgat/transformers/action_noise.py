@@ -12,9 +12,9 @@ from sgat.noise import NoiseStream, WhiteNoise
 class ActionNoise:
     """Adds normal noise to actions and clips the sum; used like an action transformer.
 
-    Around a sim this is the action noise envelope (Jakobi 1995), which needs no data
-    but a guess of the deviation. Around a copy of the sim it makes the SGAT paper's
-    NoisySim and NoisyReal, for which the ideal transformed action is then known.
+    A sim with it is the action noise envelope (Jakobi 1995), a baseline that needs no
+    data but a guess of the deviation. A copy of the sim with it stands for the real
+    world in the SGAT paper (NoisySim, NoisyReal).
 
     Example:
       >>> noisy = GroundedEnv(env, ActionNoise(0.1, low, high))

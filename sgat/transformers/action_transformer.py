@@ -1,4 +1,4 @@
-"""g(s, a) through two models: the transformer of GAT and SGAT."""
+"""The action transformer of GAT and SGAT: a forward and an inverse model in a row."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,17 +15,18 @@ from sgat.noise import NoiseLaw, NoiseStream, WhiteNoise
 from sgat.transformers.catalogue import file_kind
 
 FORWARD, INVERSE = "forward.pt", "inverse.pt"
-"""Files of the two models in a transformer's folder."""
+"""Names of the two models' files in a transformer's folder."""
 
 
 @file_kind
 class ActionTransformer:
     """g(s, a) = f_inv(s, f_real(s, a)) for n robots in one call.
 
-    g gives the action that makes the sim do what the real world would do. Without
-    noise, f_real predicts the mean next state: GAT (Hanna and Stone 2017). With noise
-    it predicts a sample: SGAT (Desai et al. 2020). The result is clipped to the
-    action's bounds, because the models have learned nothing about actions beyond them.
+    g gives the action that makes the sim do what the real world would do: f_real
+    predicts the real next state, f_inv finds the sim's action that leads there. Without
+    noise, f_real predicts the mean: GAT (Hanna and Stone 2017). With noise it predicts
+    a sample: SGAT (Desai et al. 2020). The result is clipped to the action's bounds,
+    because the models have learned nothing about actions beyond them.
 
     Example:
       >>> noise = WhiteNoise(forward.outcomes)
@@ -55,15 +56,16 @@ class ActionTransformer:
           low: (a,) least action.
           high: (a,) largest action.
           noise: None for GAT. For SGAT the law of the standardised noise, with as many
-            dimensions as a next state, or as an action if the inverse model is
-            distributional.
+            dimensions as a next state, or as an action if the inverse model is a
+            `DistributionalInverse`.
           smoothing: share of the transformed action in the result, from 0 to 1; the
             remainder is the policy's action.
-          inverse_columns: number of first columns of a state that the inverse model
-            sees; all if None.
+          inverse_columns: how many of a state's first columns the inverse model sees;
+            all if None.
 
         Raises:
-          BadValueError: smoothing or the noise's dimensions do not fit.
+          BadValueError: smoothing is not from 0 to 1, or the noise has the wrong number
+            of dimensions.
         """
         if not 0 <= smoothing <= 1:
             raise BadValueError(f"smoothing is {smoothing}; it must be from 0 to 1")
@@ -88,7 +90,7 @@ class ActionTransformer:
 
     @property
     def inverse_columns(self) -> int | None:
-        """Number of state columns that the inverse model sees; None for all."""
+        """How many of a state's first columns the inverse model sees; None for all."""
         columns: int | None = self._columns.stop
         return columns
 
@@ -98,16 +100,16 @@ class ActionTransformer:
             self._stream = NoiseStream(self.noise, seeds)
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) actions for the sim, of states (n, s) and the policy's actions (n, a).
+        """(n, a) actions for the sim, from states (n, s) and a policy's actions (n, a).
 
-        With noise, each call is one tick.
+        With noise, each call draws the noise of one tick.
         """
         found = self._find(state, action)
         found = action + self.smoothing * (found - action)
         return np.clip(found, self._low, self._high)
 
     def save(self, folder: Path) -> dict[str, Any]:
-        """Write both models into a folder; see `KeptTransformer`.
+        """Write both models into a folder, and return what `load` needs besides.
 
         Raises:
           BadValueError: the noise is not white; other laws hold data.
@@ -129,7 +131,7 @@ class ActionTransformer:
     def load(
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
-        """Read both models back; see `KeptTransformer`."""
+        """Read what `save` wrote; `header` is what it returned, bounds are (a,)."""
         kind = DistributionalInverse if header["distributional"] else InverseModel
         white = header["noise_dimensions"]
         return cls(

@@ -1,4 +1,4 @@
-"""Noise made of recorded residuals: blocks of consecutive ticks."""
+"""Noise made of a model's recorded residuals, in blocks of consecutive ticks."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from sgat.noise import CHUNK_TICKS, Generators
 
 
 class BlockNoise:
-    """Blocks of consecutive standardised residuals, all dimensions together.
+    """Noise law: blocks of consecutive standardised residuals, all dimensions together.
 
-    This is the moving block bootstrap (Kuensch 1989). Memory, tails and correlations
-    across dimensions are those of the data. Nothing is remembered from one block to the
-    next: a correlation over k ticks shrinks by the factor 1 - k / block.
+    This is the moving block bootstrap (Kuensch 1989). Tails and correlations are those
+    of the data, except that blocks are independent of each other: a correlation over k
+    ticks shrinks by the factor 1 - k / (length of a block).
 
     Example:
       >>> law = BlockNoise(forward.residuals(real), real.episode, ticks=50)
@@ -22,10 +22,10 @@ class BlockNoise:
         """Find all blocks; none goes beyond the end of an episode.
 
         Args:
-          residuals: (N, d) of a forward model, preferably on data that it was not
-            fitted to.
-          episode: (N,) number of the episode of each row; see `Transitions`.
-          ticks: length of a block.
+          residuals: (N, d) standardised residuals of a forward model, preferably on
+            data that it was not fitted to.
+          episode: (N,) number of the episode of each row.
+          ticks: length of a block [ticks].
 
         Raises:
           BadValueError: no episode is as long as a block.
@@ -44,11 +44,11 @@ class BlockNoise:
 
     @property
     def dimensions(self) -> int:
-        """d, the numbers that are drawn for a robot at each tick."""
+        """d, how many numbers are drawn for a robot at each tick."""
         return int(self._residuals.shape[1])
 
     def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """Noise of the next ticks, in whole blocks; see `NoiseLaw.chunk`."""
+        """(ticks, n, d) noise of the next ticks, in whole blocks; `last` is unused."""
         blocks = -(-CHUNK_TICKS // self.ticks)
         picks = [g.integers(len(self._starts), size=blocks) for g in generators]
         starts = self._starts[np.stack(picks, axis=1)]
@@ -57,9 +57,10 @@ class BlockNoise:
 
 
 def _standardised(residuals: FloatArray, starts: IntArray, ticks: int) -> FloatArray:
-    """(N, d) residuals with mean 0 and variance 1, as blocks draw them.
+    """(N, d) residuals whose mean is 0 and variance 1 when they are drawn in blocks.
 
-    Rows near the end of an episode are contained in fewer blocks than the others.
+    Rows near either end of an episode are drawn less often, since fewer blocks contain
+    them; `starts` holds the first row of each block.
     """
     edges = np.zeros(len(residuals) + 1)
     np.add.at(edges, starts, 1.0)

@@ -1,7 +1,7 @@
-"""All groundings and all kinds of transformer files that this folder defines.
+"""Look-up of all groundings, and of all transformer classes that have files.
 
 A new grounding is one new file in this folder. It registers its `Grounding` with
-`add_grounding` and, if it brings an own class of transformer, that class with
+`add_grounding` and, if it defines a new class of transformer, that class with
 `@file_kind`. All files of the folder are imported before the first look-up, so no list
 needs another entry.
 """
@@ -24,7 +24,7 @@ _KINDS: dict[str, type[KeptTransformer]] = {}
 
 
 def add_grounding(grounding: "Grounding") -> None:
-    """Make a grounding known by its name and by its title.
+    """Register a grounding, so that it can be looked up by its name and its title.
 
     Raises:
       BadValueError: another grounding has this name already.
@@ -52,7 +52,7 @@ def grounding(name: str) -> "Grounding":
     """One grounding, looked up by its name or its title.
 
     Raises:
-      UnknownNameError: there is none; the message has the nearest name.
+      UnknownNameError: there is no such grounding; the message has the nearest name.
 
     Example:
       >>> grounding("SGAT, uneven sim").name
@@ -65,7 +65,7 @@ def grounding(name: str) -> "Grounding":
 
 
 def file_kind(cls: T) -> T:
-    """Class decorator: folders whose header names `cls.kind` are read by this class.
+    """Class decorator: this class reads transformer folders of the kind `cls.kind`.
 
     Example:
       See `sgat.transformers.direct_transformer.DirectTransformer`.
@@ -75,10 +75,10 @@ def file_kind(cls: T) -> T:
 
 
 def kind_of_file(kind: str) -> type[KeptTransformer]:
-    """The class of transformers whose folders have this kind in their header.
+    """The transformer class that reads folders whose header names this kind.
 
     Raises:
-      UnknownNameError: no class has registered it.
+      UnknownNameError: no class has registered this kind.
     """
     _import_shelf()
     if kind not in _KINDS:
@@ -88,7 +88,7 @@ def kind_of_file(kind: str) -> type[KeptTransformer]:
 
 @cache
 def _import_shelf() -> None:
-    """Import every file of this folder once: each registers what it defines."""
+    """Import every file of this folder once, so that it registers what it defines."""
     package = __name__.rpartition(".")[0]
     for module in pkgutil.iter_modules(import_module(package).__path__):
         import_module(f"{package}.{module.name}")

@@ -1,4 +1,4 @@
-"""g(s, a) in one network, without an inverse model, and the grounding that uses it."""
+"""An action transformer in one network, without an inverse model, and its grounding."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -29,26 +29,26 @@ from sgat.transformers.grounding_base import (
 from sgat.transitions import Transitions, held_out_rows
 
 DIRECT = "direct.pt"
-"""File of the network in a transformer's folder."""
+"""Name of the network's file in a transformer's folder."""
 
 _KIND = "direct transformer"
 
 
 @file_kind
 class DirectTransformer:
-    """A network that gives the action after which the sim does what real did.
+    """A network that gives the action with which the sim does what the real world did.
 
     Let f be a forward model of the sim, r the standard deviation of its residuals and
     (s, a, s') a transition of the real world. The network g minimises
 
         mean over all dimensions and transitions of ((f(s, g(s, a)) - s') / r)^2.
 
-    An `ActionTransformer` uses an inverse model f_inv instead. That is inaccurate where
+    GAT and SGAT use an inverse model f_inv of the sim instead, which is inaccurate if
     the action of a single tick moves the state little. First, f_inv is a regression on
-    next states: its answers are biased towards the actions that were common in the
-    sim's data, and away from those that reproduce the real world's latency. Second, it
-    magnifies errors of the predicted next state. Here the noise of s' averages out, and
-    if both worlds have the same sensor noise, f has the same bias in both.
+    next states: it prefers actions that were common in the sim's data to those that
+    reproduce the real world's latency. Second, it magnifies errors of the predicted
+    next state. Here the noise of s' averages out, and if both worlds have the same
+    sensor noise, f has the same bias in both.
 
     The transformer is deterministic. Use it with a sim that is as random as the real
     world, or in place of GAT.
@@ -62,7 +62,7 @@ class DirectTransformer:
     def __init__(
         self, low: FloatArray, high: FloatArray, config: NetworkConfig | None = None
     ) -> None:
-        """Choose the action's bounds (a,), and shape and training of the network."""
+        """Choose the action's bounds (a,), and the network's shape and training."""
         self.config = NetworkConfig() if config is None else config
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
         self._fitted: ScaledNetwork | None = None
@@ -78,14 +78,11 @@ class DirectTransformer:
 
         Args:
           real: transitions of the real world, of at least two episodes.
-          sim: forward model of the sim, whose next states are as wide as those of
+          sim: forward model of the sim, whose next states have the columns of those of
             `real`.
-          tried: transitions that `sim` was fitted to; their states are the first
-            columns of those of `real`.
+          tried: the sim's transitions that `sim` was fitted to; their states have only
+            the first columns of those of `real`.
           seed: of the training.
-
-        Returns:
-          This transformer.
         """
         rng = np.random.default_rng(seed)
         held_out = held_out_rows(real.episode, self.config.validation_share, rng)
@@ -112,17 +109,17 @@ class DirectTransformer:
         return self._low, self._high
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode; the seeds are not used, since nothing here is random."""
+        """Start an episode; seeds are not used, since this transformer has no noise."""
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) actions for the sim, of states (n, s) and asked actions (n, a)."""
+        """(n, a) actions for the sim, from states (n, s) and asked actions (n, a)."""
         network = self._network
         member = np.zeros(len(state), np.intp)
         raw = network.raw(np.hstack([state, action]), member)
         return np.clip(network.targets.from_scaled(raw), self._low, self._high)
 
     def save(self, folder: Path) -> dict[str, Any]:
-        """Write the network into a folder; see `KeptTransformer`."""
+        """Write the network into a folder; `load` needs nothing besides it."""
         write_model(folder / DIRECT, _KIND, self.config, self._network)
         return {}
 
@@ -130,7 +127,7 @@ class DirectTransformer:
     def load(
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
-        """Read the network back; see `KeptTransformer`."""
+        """Read what `save` wrote; the least and largest action are (a,) each."""
         path = folder / DIRECT
         config, network = read_model(path, _KIND, NetworkConfig)
         if network.network.outputs != len(network.targets.mean):
@@ -147,7 +144,10 @@ class DirectTransformer:
 
 
 def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArray:
-    """(N, columns + p) states and changes of `real`, scaled as the sim's model does."""
+    """(N, columns + p) states and changes of `real`, scaled as in the sim's model.
+
+    Columns are those that a state of `tried` has, p those of a next state.
+    """
     inputs, targets = sim.scalings
     columns = slice(tried.state.shape[1])
     state = real.state[:, columns] - inputs.mean[columns]
@@ -155,7 +155,11 @@ def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArra
 
 
 def _loss(sim: ForwardModel, tried: Transitions, outputs: Scaling) -> Loss:
-    """The loss of g: squared misses of the sim's model, in units of its residuals."""
+    """Training loss of the transformer's network g.
+
+    It is the squared difference between the next state that the sim's model predicts
+    after g's action and the real one, in standard deviations of the model's residuals.
+    """
     inputs, targets = sim.scalings
     columns, actions = tried.state.shape[1], tried.action.shape[1]
     off = sim.predict(tried.state, tried.action) - tried.next_state
@@ -177,7 +181,7 @@ def _tensor(values: FloatArray) -> Tensor:
 
 
 class UnevenSim(Grounding):
-    """A direct transformer before a sim with uneven ground and noisy sensors."""
+    """Grounding by a `DirectTransformer` before a sim with lumps and noisy sensors."""
 
     name = "sgat-uneven"
     title = "SGAT, uneven sim"
@@ -192,10 +196,10 @@ class UnevenSim(Grounding):
     )
 
     def transformer(self, data: GroundingData) -> DirectTransformer:
-        """The transformer, fitted at the first call; see `Grounding`.
+        """The transformer, fitted at the first call for these data.
 
-        It learns from the directly moved columns of next states, such as the joints':
-        the sim's own lumps move the torso.
+        It learns only from the columns of next states that an action moves directly,
+        such as joint positions: the torso is moved by the sim's own lumps.
         """
         return data.once(self.name, lambda: _fit_direct(data))
 

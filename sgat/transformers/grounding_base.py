@@ -1,4 +1,4 @@
-"""What a grounding is: a way from transitions of two worlds to a transformer."""
+"""Base class of groundings: methods that learn a transformer from two worlds' data."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable
@@ -18,25 +18,25 @@ from sgat.transitions import Transitions
 T = TypeVar("T")
 
 OF_ENSEMBLE, OF_SIM_MODEL, OF_DIRECT = 2, 3, 4
-"""Numbers of the random streams, see `child_of`, for trainings that only some
-groundings need: an ensemble, a forward model of the sim, a direct transformer. 0 and 1
-belong to the inverse and the forward model where a study derives their seeds, too."""
+"""Numbers by which `child_of` derives the seeds of trainings that only some groundings
+need: an ensemble, a forward model of the sim, a direct transformer. Some studies use 0
+and 1 for the inverse and the forward model."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroundingData:
-    """What groundings learn from, and the models that several of them share.
+    """Data that groundings learn from, and the models that several of them share.
 
     Attributes:
       real: transitions of the real world.
       sim: transitions of the deterministic sim.
       low: (a,) least action.
       high: (a,) largest action.
-      inverse_seed: of the inverse model's training.
-      forward_seed: of the training of a forward model that is a single network.
-      seed: all other trainings get children of it.
-      network: shape and training of forward models; a grounding sets the head and the
-        number of members.
+      inverse_seed: seed of the inverse model's training.
+      forward_seed: seed of the training of a forward model that is a single network.
+      seed: parent of the seeds of all other trainings.
+      network: shape and training of forward models; a grounding replaces the family of
+        distributions and the number of networks.
       uneven: transitions of a sim whose ground and sensors are as random as the real
         world's, for groundings with `uneven_sim`.
       sim_columns: how many of a state's first columns matter in the sim; all if None.
@@ -58,7 +58,7 @@ class GroundingData:
     _fitted: dict[Hashable, Any] = field(default_factory=dict, init=False)
 
     def once(self, key: Hashable, fit: Callable[[], T]) -> T:
-        """What `fit` returned when it was called with this key for the first time."""
+        """The result of `fit`, which is called only at the first use of a key."""
         if key not in self._fitted:
             self._fitted[key] = fit()
         fitted: T = self._fitted[key]
@@ -70,7 +70,7 @@ class GroundingData:
         return self.once("inverse", lambda: InverseModel().fit(sim, self.inverse_seed))
 
     def forward(self, config: ForwardConfig) -> ForwardModel:
-        """A forward model of the real world; fitted at the first call for a config."""
+        """A forward model of the real world; fitted at the first call with a config."""
         seed = self.forward_seed
         if config.members > 1:
             seed = child_of(self.seed, OF_ENSEMBLE)
@@ -81,12 +81,12 @@ class Grounding(ABC):
     """A named way to make an action transformer.
 
     Attributes:
-      name: on command lines and in result files, for example "sgat-full".
-      title: in tables and on pages, for example "SGAT, uneven sim".
-      means: lines of Markdown that explain on pages how it differs from the SGAT
-        paper's methods; empty for the paper's own.
+      name: name on command lines and in result files, for example "sgat-full".
+      title: name in tables and on pages, for example "SGAT, uneven sim".
+      means: lines of Markdown for result pages that explain how it differs from the
+        SGAT paper's methods; empty for the paper's own.
       uneven_sim: whether the sim behind the transformer has uneven ground and noisy
-        sensors of its own, for which `GroundingData.uneven` is needed.
+        sensors; if so, it learns from `GroundingData.uneven`.
     """
 
     name: str
@@ -96,9 +96,9 @@ class Grounding(ABC):
 
     @property
     def is_random(self) -> bool:
-        """Whether rollouts of one policy differ in a grounded sim, if seeds do."""
+        """Whether rollouts of a policy in the grounded sim depend on the seed."""
         return True
 
     @abstractmethod
     def transformer(self, data: GroundingData) -> KeptTransformer:
-        """A new transformer; models that `data` holds already are not fitted again."""
+        """A new transformer; models that `data` already holds are not fitted again."""

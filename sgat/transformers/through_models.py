@@ -12,22 +12,25 @@ from sgat.transformers.catalogue import add_grounding
 from sgat.transformers.grounding_base import Grounding, GroundingData
 
 BLOCK_TICKS = 50
-"""Length of a block of residuals [ticks of 10 ms]: two to three steps of a walk, since
-a bump pushes all joints one way for several ticks."""
+"""Length of a block of residuals [ticks of 10 ms]: two to three steps of a walk. Blocks
+keep the correlation over time: a bump pushes all joints one way for several ticks."""
 
 MEMBERS = 4
-"""Networks in the ensemble, so that a search cannot exploit the errors of one."""
+"""Number of networks in an ensemble, so that a search cannot exploit one's errors."""
 
 
 @dataclass(frozen=True)
 class ThroughModels(Grounding):
-    """Grounding by g(s, a) = f_inv(s, f_real(s, a)); see also `Grounding`.
+    """Grounding by g(s, a) = f_inv(s, f_real(s, a)): a forward and an inverse model.
 
     Attributes:
-      noise: "none": f_real answers its mean, as in GAT; "white": it answers a sample,
+      name: name on command lines and in result files.
+      title: name in tables and on pages.
+      noise: "none": f_real predicts the mean, as in GAT; "white": it predicts a sample,
         as in SGAT; "blocks": a sample made of consecutive residuals of real data.
       head: family of the distributions that f_real predicts.
       members: number of networks in f_real.
+      means: lines of Markdown for result pages on how it differs from the SGAT paper.
     """
 
     name: str
@@ -39,11 +42,11 @@ class ThroughModels(Grounding):
 
     @property
     def is_random(self) -> bool:
-        """Whether f_real answers samples; see `Grounding`."""
+        """Whether f_real predicts samples, so that rollouts depend on the seed."""
         return self.noise != "none"
 
     def transformer(self, data: GroundingData) -> ActionTransformer:
-        """A new transformer from shared models; see `Grounding`."""
+        """A new transformer; models that `data` already holds are not fitted again."""
         beta = data.network.beta if self.head == "gaussian" else 0.0
         forward = data.forward(
             replace(data.network, head=self.head, members=self.members, beta=beta)

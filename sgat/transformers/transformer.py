@@ -1,4 +1,4 @@
-"""What an action transformer must be able to do."""
+"""Interfaces of action transformers: plain ones, and those that have files."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -22,11 +22,9 @@ class Transformer(Protocol):
         """Start an episode of n robots, each with its own seed."""
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) actions that the world is given, in the unit of the policy's.
+        """(n, a) actions that the world is given, from a policy's actions (n, a).
 
-        Args:
-          state: (n, s) states of the robots.
-          action: (n, a) actions that the policy asks for.
+        `state` (n, s) holds the states of the robots.
         """
 
 
@@ -34,7 +32,7 @@ class KeptTransformer(Transformer, Protocol):
     """A transformer that can be written into a folder and read back.
 
     Attributes:
-      kind: what the folder's header calls this class.
+      kind: name of this class in the folder's header, by which the reader finds it.
 
     Example:
       See `write_transformer`.
@@ -57,4 +55,4 @@ class KeptTransformer(Transformer, Protocol):
     def load(
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
-        """Read back what `save` has written, with the least and largest action (a,)."""
+        """Read what `save` wrote; the least and largest action are (a,) each."""

@@ -18,13 +18,9 @@ _FORMAT = 1
 def write_transformer(folder: Path, transformer: KeptTransformer) -> None:
     """Write a transformer into a folder, which is made if it does not exist.
 
-    Args:
-      folder: gets a header and a file for each model.
-      transformer: a fitted one. If it adds noise, the noise must be white: other laws
-        hold data.
-
     Raises:
-      BadValueError: the transformer cannot be written.
+      BadValueError: the transformer is not fitted, or has other noise than white noise,
+        whose data the files cannot hold.
 
     Example:
       See docs/python.md, "Learn with Gymnasium".
@@ -36,10 +32,12 @@ def write_transformer(folder: Path, transformer: KeptTransformer) -> None:
 
 
 def read_transformer(folder: Path) -> KeptTransformer:
-    """Read a folder of `write_transformer`; every answer is equal to the last bit.
+    """Read a folder that `write_transformer` wrote.
+
+    The transformer gives the same actions as the one that was written, to the last bit.
 
     Raises:
-      BadModelError: the folder holds no action transformer.
+      BadModelError: the folder cannot be read, or holds no action transformer.
 
     Example:
       >>> transformer = read_transformer(Path("runs/sgat"))

@@ -1,4 +1,4 @@
-"""Random gaits around a given one: the gaits whose walks a grounding learns from."""
+"""Random gaits around a given one, whose walks a grounding learns from."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -30,17 +30,17 @@ class GaitCloud:
 
     @classmethod
     def near(cls, gait: Gait) -> Self:
-        """Gaits close to a tuned one, from half to 1.1 times its speed."""
+        """Gaits close to a tuned one: 0.5 to 1.1 times its speed, at most 0.45 m/s."""
         fastest_m_s = gait["max_forward"]
         return cls(0.06, 0.5 * fastest_m_s, min(1.1 * fastest_m_s, 0.45))
 
     def draw(
         self, around: Gait, count: int, seed: np.random.SeedSequence
     ) -> FloatArray:
-        """Draw gaits.
+        """Draw random gaits.
 
         Args:
-          around: the gait in the middle.
+          around: the gait that the others vary.
           count: number of gaits.
           seed: the same seed gives the same gaits.
 

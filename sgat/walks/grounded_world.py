@@ -12,9 +12,9 @@ from worlds import Observation, World
 
 
 class GroundedWorld(WorldWrapper):
-    """A world that behaves like the one that the transformer has learned.
+    """A sim that behaves like the real world, because its commands are transformed.
 
-    Each command passes through the transformer before the world inside gets it.
+    Each command passes through an action transformer before the sim gets it.
 
     Example:
       >>> senses = leg_senses(robots.get("nao"))
@@ -32,9 +32,9 @@ class GroundedWorld(WorldWrapper):
 
         Args:
           world: the sim, with n robots.
-          senses: make the states that the transformer's models see.
-          transformer: changes actions as `WalkSenses.action` defines them.
-          seeds: n seeds of the transformer's noise.
+          senses: makes the states and actions that the transformer sees.
+          transformer: changes the actions.
+          seeds: n seeds of the transformer's noise, one for each robot.
         """
         super().__init__(world)
         self._senses, self._transformer = senses, transformer
@@ -48,7 +48,7 @@ class GroundedWorld(WorldWrapper):
         return observation
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance by one tick with commands (n, joints) [rad], transformed."""
+        """Transform commands (n, joints) [rad], then advance the sim by one tick."""
         senses = self._senses
         action = self._transformer(senses.state(), senses.action(command_rad))
         transformed_rad = senses.command(action, command_rad)

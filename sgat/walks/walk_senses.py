@@ -1,8 +1,8 @@
-"""States of a walking robot as the models of a grounding see them.
+"""States and actions of a walking robot, as the models of a grounding see them.
 
-All columns come from sensors on board. The ground disturbs the torso first, so
-gyroscope and tilt are predicted, too; the commands of the last ticks let a model learn
-the latency.
+All columns come from sensors on board. Joint positions, gyroscope and tilt are
+predicted, since the ground disturbs the torso first. The commands of the last ticks are
+inputs as well: from them a model learns the latency.
 """
 
 from collections import deque
@@ -15,41 +15,41 @@ from robots import Description, biped
 from worlds import TICK_S, Observation
 
 HISTORY_TICKS = 5
-"""Number of commands in a state and action, the newest included: 50 ms, more than
-the real world's latency of 36 ms."""
+"""Number of past commands that a model sees, one a tick, the newest included. They
+span 50 ms, more than the real world's latency of 36 ms."""
 
 ACCELEROMETER_WEIGHT = 0.002
-"""Weight of the accelerometer in the tilt at every tick, which gives a time constant
-of 5 s. With half a second, the accelerations of the steps cause errors as large
-as the tilt."""
+"""Weight of the accelerometer at every tick of the filter that estimates the tilt. At
+10 ms a tick it gives a time constant of 5 s; with 0.5 s, the accelerations of the steps
+would cause errors as large as the tilt."""
 
 
 class WalkSenses:
     """Turns the measurements of n robots into states and actions, tick by tick.
 
-    For j grounded joints, a state has these columns. Outcomes, which a next state has
-    as well: joint positions (j) [rad], gyroscope (3) [rad/s] and tilt (2), the first
-    two components of the up axis in the torso frame. Context: the last change of the
-    joint positions (j) [rad], and the HISTORY_TICKS - 1 commands before the newest,
-    oldest first, relative to the present joint positions (j each) [rad]. An action is
-    the newest command, relative to the present joint positions (j) [rad].
+    Only j of the robot's joints are grounded: those whose commands are transformed.
+    The first columns of a state are those that a next state has, too: joint positions
+    (j) [rad], gyroscope (3) [rad/s] and tilt (2), the first two components of the
+    world's up axis in the torso frame. Then follow the last change of the joint
+    positions (j) [rad], and the HISTORY_TICKS - 1 commands before the newest, oldest
+    first, relative to the present joint positions (j each) [rad]. An action is the
+    newest command, relative to the present joint positions (j) [rad].
 
     Attributes:
-      joints: columns of (n, joints) arrays that are grounded.
+      joints: indices of the grounded joints among all joints.
       outcomes: number of columns of a next state.
-      sim_columns: number of first columns that matter in a world without latency: all
-        but the commands.
+      sim_columns: how many of a state's first columns matter in a world without
+        latency: all but the commands.
 
     Example:
       See `leg_senses`.
     """
 
     def __init__(self, joints: Sequence[int]) -> None:
-        """Choose the columns of (n, joints) arrays that are grounded."""
+        """Choose the grounded joints, by their indices among all joints."""
         self.joints = list(joints)
         self.outcomes = len(self.joints) + 5
         self.sim_columns = self.outcomes + len(self.joints)
-        """State columns that matter in a world without latency: no commands."""
 
     def reset(self, observation: Observation) -> None:
         """Start a rollout with robots that stand upright and still."""
@@ -60,7 +60,7 @@ class WalkSenses:
         self.observe(observation)
 
     def observe(self, observation: Observation) -> None:
-        """Use the measurements of a tick."""
+        """Update the states with the measurements of a tick."""
         self._change_rad = observation.position_rad[:, self.joints] - self._last_rad
         self._last_rad = observation.position_rad[:, self.joints]
         self._rate_rad_s = observation.gyroscope_rad_s
@@ -69,12 +69,15 @@ class WalkSenses:
         )
 
     def state(self) -> FloatArray:
-        """(n, s) states at the last observed tick, with the columns of `WalkSenses`."""
+        """(n, s) states at the last observed tick; `WalkSenses` lists the columns."""
         past = [command - self._last_rad for command in self._past]
         return np.hstack([self.outcome(), self._change_rad, *past])
 
     def outcome(self) -> FloatArray:
-        """(n, p) the first columns of the states, which models predict."""
+        """(n, p) joint positions, gyroscope and tilt at the last observed tick.
+
+        They are the first columns of a state, and all columns of a next state.
+        """
         return np.hstack([self._last_rad, self._rate_rad_s, self._up[:, :2]])
 
     def advanced(
@@ -92,11 +95,14 @@ class WalkSenses:
         return np.hstack([outcome, moved, *later])
 
     def action(self, command_rad: FloatArray) -> FloatArray:
-        """(n, j) actions that commands (n, joints) stand for, both in rad."""
+        """(n, j) actions [rad]: commands (n, joints) [rad] minus joint positions."""
         return np.asarray(command_rad[:, self.joints] - self._last_rad)
 
     def command(self, action: FloatArray, command_rad: FloatArray) -> FloatArray:
-        """Commands (n, joints) [rad], changed to carry out actions (n, j) [rad]."""
+        """(n, joints) commands [rad]: as given, but grounded joints follow the action.
+
+        Actions (n, j) [rad] are relative to the present joint positions.
+        """
         changed = command_rad.copy()
         changed[:, self.joints] = action + self._last_rad
         return changed
@@ -107,7 +113,7 @@ class WalkSenses:
 
 
 def leg_senses(description: Description) -> WalkSenses:
-    """Senses that ground the two legs of a robot.
+    """States and actions that ground the joints of a robot's two legs.
 
     Arms hardly matter to a walk, and grounding them would need more data.
 
@@ -125,10 +131,10 @@ def leg_senses(description: Description) -> WalkSenses:
 def tilted(
     up: FloatArray, rate_rad_s: FloatArray, force_m_s2: FloatArray
 ) -> FloatArray:
-    """(n, 3) up axis of the world in the torso frame, one tick later.
+    """(n, 3) estimates of the world's up axis in the torso frame, one tick later.
 
     A complementary filter: d(up)/dt = up x rate, corrected towards the direction of the
-    accelerometer where that measures anything.
+    accelerometer unless that is almost zero.
 
     Args:
       up: (n, 3) unit vectors.

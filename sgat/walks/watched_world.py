@@ -11,18 +11,19 @@ from worlds import End, Observation, World
 
 EXPLORATION_MEMORY = 0.9
 """Correlation of the exploration noise from one tick to the next: it lasts about ten
-ticks, long enough to move the torso."""
+ticks (0.1 s), long enough to move the torso."""
 
 SETTLING_TICKS = 5
-"""Ticks at the start that are not recorded, because the history of commands is made
-up there."""
+"""Ticks at the start that are not recorded. A state contains the commands of the ticks
+before, and there are none yet."""
 
 
 class WatchedWorld(WorldWrapper):
     """Records transitions of the world inside, with noise on the commands if asked.
 
-    Data of a gait alone hardly show the effect of an action, because every action comes
-    at its own phase of the step. Noise that lasts for several ticks shows it.
+    The walks of a gait alone hardly show the effect of an action, because a gait always
+    gives the same action at the same phase of a step. Noise that lasts for several
+    ticks shows the effect.
 
     Example:
       >>> world = WatchedWorld(sim, leg_senses(robots.get("nao")))
@@ -41,10 +42,11 @@ class WatchedWorld(WorldWrapper):
 
         Args:
           world: the world to learn about, with n robots.
-          senses: make the states and actions that are recorded.
+          senses: makes the states and actions that are recorded.
           exploration_rad: standard deviation [rad] of the noise on the commands of the
-            grounded joints: one number, or (n, 1). The noise grows to it from zero.
-          seed: of that noise.
+            grounded joints: one number, or (n, 1). The noise starts at zero and grows
+            to this deviation.
+          seed: seed of that noise.
 
         Raises:
           BadValueError: exploration is negative, or has no seed.
@@ -88,7 +90,7 @@ class WatchedWorld(WorldWrapper):
         """All transitions since the last reset, robot by robot.
 
         Raises:
-          BadValueError: the walk was no longer than `SETTLING_TICKS`.
+          BadValueError: the walk was no longer than `SETTLING_TICKS` (5 ticks).
         """
         noted = self._rows[SETTLING_TICKS:]
         if not noted:

@@ -6,14 +6,16 @@ from worlds import End, Observation, Truth, World, WorldOptions
 
 
 class WorldWrapper:
-    """Passes every call on to the world inside; subclasses override what they change.
+    """A world that passes every call on to another one, the world inside.
+
+    Subclasses override the calls that they change.
 
     Example:
       See `GroundedWorld`.
     """
 
     def __init__(self, world: World) -> None:
-        """Wrap a world."""
+        """Choose the world inside."""
         self.world = world
 
     @property
@@ -50,11 +52,11 @@ class WorldWrapper:
         return self.world.step(command_rad)
 
     def stop(self, robots: BoolArray) -> None:
-        """Take the robots of a mask (n,) out of the batch."""
+        """End the rollouts of the robots in a mask (n,)."""
         self.world.stop(robots)
 
     def truth(self) -> Truth:
-        """True poses and contacts of the robots; see `World.truth`."""
+        """True poses, velocities and contacts of the robots, which no gait sees."""
         return self.world.truth()
 
     def close(self) -> None:
