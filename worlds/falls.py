@@ -75,9 +75,9 @@ class EndRule:
         }
 
     def _above_ground(self, truth: Truth) -> tuple[FloatArray, BoolArray]:
-        """(n,) height of each torso over its ground [m], and (n,) whether one is there.
+        """(n,) height of each torso over its ground [m], and whether it is above any.
 
-        A torso may be beyond the edge of its ground; then its height means nothing.
+        Beyond the ground, the height of the nearest point of its edge counts.
         """
         x, y, z = truth.base_position_m.T
         height_m, on_ground = z.copy(), np.ones(len(z), bool)

@@ -1,4 +1,4 @@
-"""Recordings, format 1: their columns and metadata, in memory and in files.
+"""Recordings of rollouts, in memory and in Parquet or CSV files.
 
 Example:
   >>> from pathlib import Path

@@ -1,4 +1,4 @@
-"""The column names of a recording: which exist, and which belong together."""
+"""Column names of a recording: those that format 1 allows, and checks of a set."""
 
 import difflib
 from collections import Counter
@@ -11,7 +11,8 @@ SUPPORT = "support"
 ORIENTATION = "base.orientation"
 POSITION = "position"
 DRIVES = ("command", "command_torque", "torque")
-"""Quantities that say what drove a joint: a recording has a column of one at least."""
+"""Prefixes of the columns that drive a joint or measure its torque; a recording has at
+least one such column."""
 JOINT_QUANTITIES = (POSITION, "velocity", *DRIVES)
 VECTORS = {
     "base.position": ("x", "y", "z"),
@@ -27,7 +28,11 @@ VECTORS = {
 
 
 def vector_columns(vector: str) -> tuple[str, ...]:
-    """Names of the columns that make up one of `VECTORS`, in its order."""
+    """Column names of a vector, such as gyroscope.x, gyroscope.y, gyroscope.z.
+
+    Args:
+      vector: a key of `VECTORS`, such as "gyroscope".
+    """
     return tuple(f"{vector}.{component}" for component in VECTORS[vector])
 
 
@@ -39,21 +44,18 @@ FIXED = (
 
 
 def joints_with(quantity: str, names: Iterable[str]) -> tuple[str, ...]:
-    """Joints that have a column of this quantity, in the order of the columns.
+    """Names of the joints that have a column `<quantity>.<joint>`, in column order.
 
     Args:
-      quantity: one of `JOINT_QUANTITIES`.
-      names: column names.
+      quantity: one of `JOINT_QUANTITIES`, such as "position".
+      names: column names of a recording.
     """
     prefix = f"{quantity}."
     return tuple(name[len(prefix) :] for name in names if name.startswith(prefix))
 
 
 def check_names(names: Sequence[str]) -> None:
-    """Check that these columns, together, can be a recording.
-
-    Args:
-      names: every column name, in order.
+    """Check that columns with these names can make up a recording.
 
     Raises:
       BadRecordingError: a column is unknown, there twice or missing.
@@ -65,7 +67,7 @@ def check_names(names: Sequence[str]) -> None:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """A hint to append to a message: the known name nearest to a wrong one, if any."""
+    """Hint for an error message: "; did you mean 'x'?", or "" if no name is similar."""
     close = difflib.get_close_matches(name, list(known), n=1)
     return f"; did you mean {close[0]!r}?" if close else ""
 

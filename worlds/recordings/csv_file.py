@@ -1,4 +1,4 @@
-"""Reads and writes a recording's columns as CSV."""
+"""Reads and writes the columns of a recording as CSV."""
 
 import csv
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,19 +15,22 @@ from worlds.recordings.parquet_file import from_table, to_table
 from worlds.recordings.values import bad_value
 
 _OTHER_SEPARATORS = (";", "\t", "|")
-"""Characters that other programs write between columns."""
+"""Characters other than the comma that programs write between the columns of a CSV."""
 
 
 def read_csv(path: Path) -> dict[str, FloatArray]:
-    """Read the columns; an empty cell, like `nan`, is a missing value.
+    """Read the columns of a recording; an empty cell or `nan` is a missing value.
 
     Args:
-      path: the file: UTF-8, commas, column names in the first line.
+      path: a CSV file in UTF-8, with commas and with column names in the first line.
+
+    Returns:
+      Values (rows,) by column name; NaN where one is missing.
 
     Raises:
-      BadRecordingError: it is no such file, its columns are not those of a recording,
-        or a cell holds no number.
-      OSError: the file system does not give it.
+      BadRecordingError: the text is no such CSV, its columns are not those of a
+        recording, or a cell holds no number.
+      OSError: the file cannot be read.
     """
     names = _header(path)
     separator = next((one for one in _OTHER_SEPARATORS if one in "".join(names)), "")
@@ -43,10 +46,10 @@ def read_csv(path: Path) -> dict[str, FloatArray]:
 
 
 def csv_bytes(columns: Mapping[str, FloatArray]) -> bytes:
-    """Columns as CSV, with the fewest digits from which each float is read back.
+    """Turn columns into CSV, with just enough digits to read back the same floats.
 
     Args:
-      columns: values by name, of equal length.
+      columns: values (rows,) by column name; all of the same length.
     """
     sink = pa.BufferOutputStream()
     pa.csv.write_csv(to_table(columns), sink)
@@ -63,11 +66,11 @@ def _header(path: Path) -> list[str]:
 
 
 def _batches(file: BinaryIO, names: Sequence[str]) -> Iterator[pa.RecordBatch]:
-    """Read blocks of rows as text first, so that errors can name a bad cell.
+    """Read a CSV file in blocks of rows; text first, so that errors can name a cell.
 
     Args:
-      file: open for reading bytes.
-      names: column names, from the first line.
+      file: open in binary mode, at its start.
+      names: column names; the first line, which holds them, is skipped.
     """
     uneven: list[pa.csv.InvalidRow] = []
 
@@ -106,7 +109,7 @@ def _unreadable(
 
 
 def _numbers(batch: pa.RecordBatch, start: int) -> pa.RecordBatch:
-    """Turn a batch of text into numbers; its first row is row `start` of the file."""
+    """Turn a batch of text into floats; its first row is row `start` of the file."""
     columns = []
     for name, cells in zip(batch.schema.names, batch.columns, strict=True):
         try:

@@ -1,4 +1,4 @@
-"""Recordings in files: Parquet, or CSV with its metadata in a JSON file beside it."""
+"""Reads and writes recordings: Parquet, or CSV with metadata in a .json file beside."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,11 +18,12 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
     Args:
       path: a `.parquet` or a `.csv` file. A CSV file has an empty cell (or `nan`)
         where a value is missing, and its metadata in a `.json` file of the same name.
-      metadata: replaces the metadata of the file, which are then not read.
+      metadata: used instead of the file's own metadata; None to read those.
 
     Raises:
-      BadRecordingError: names the file and, where there is one, the column and the row
-        of the first fault. The first row of values is row 0.
+      BadRecordingError: the file cannot be read or is no recording. The message names
+        the file and, where it applies, the column and row of the first fault; the
+        first row of values is row 0.
     """
     is_csv = _is_csv(path)
     with _naming(path):
@@ -39,10 +40,10 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
 
 
 def write_recording(recording: Recording, path: Path) -> None:
-    """Write a recording; the file appears whole, and has the same bytes each time.
+    """Write a recording into a file, atomically; equal recordings give equal bytes.
 
-    Missing values become nulls (Parquet) or empty cells (CSV); all others are read
-    back bit by bit as they were.
+    Missing values (NaN) become nulls (Parquet) or empty cells (CSV); all other values
+    are read back bit by bit.
 
     Args:
       recording: the recording.
@@ -69,7 +70,7 @@ def _is_csv(path: Path) -> bool:
 
 @contextmanager
 def _naming(path: Path) -> Iterator[None]:
-    """Put the file's name in front of the text of every error."""
+    """Put the file's path in front of the message of an error raised inside."""
     try:
         yield
     except BadRecordingError as error:

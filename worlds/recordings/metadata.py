@@ -1,4 +1,4 @@
-"""What a recording says about itself, besides its columns."""
+"""Metadata of a recording: its robot, base and source, and servo gains if known."""
 
 import json
 import sys
@@ -17,17 +17,17 @@ _REQUIRED = ("robot", "base", "source")
 
 @dataclass(frozen=True)
 class ServoGains:
-    """The law by which a joint follows its command: kp * error - kd * velocity."""
+    """Gains of a joint's position servo: torque = kp * error - kd * velocity."""
 
     kp: float
-    """Stiffness [N m/rad; N/m for a sliding joint]."""
+    """Stiffness of the servo [N m/rad; N/m for a sliding joint]."""
     kd: float
-    """Damping [N m s/rad; N s/m for a sliding joint]."""
+    """Damping of the servo [N m s/rad; N s/m for a sliding joint]."""
     max_torque: float
-    """Largest torque [N m; a force in N for a sliding joint]."""
+    """Largest torque of the servo [N m; N for a sliding joint]; above 0."""
 
     def __post_init__(self) -> None:
-        """Check the gains and turn them into floats."""
+        """Check that the gains are finite and not negative; turn them into floats."""
         for item in fields(self):
             value = getattr(self, item.name)
             number = isinstance(value, Real) and not isinstance(value, bool)
@@ -42,7 +42,7 @@ class ServoGains:
 
 @dataclass(frozen=True)
 class _Terrain:
-    """How a recording words what was walked on: enough to make a terrain again."""
+    """Schema of the metadata `terrain`: enough to make the same terrain again."""
 
     name: str
     parameters: Mapping[str, object] = field(default_factory=dict)
@@ -56,34 +56,34 @@ class _Terrain:
 
 @dataclass(frozen=True)
 class RecordingMetadata:
-    """Where a recording comes from; the JSON of format 1.
+    """Metadata of a recording, stored as JSON beside its columns.
 
-    The optional parts are None (or empty) where they are not known. Everything is
-    kept as JSON would give it back: lists for tuples, text for keys.
+    Optional fields are None (or empty) if unknown. Values are kept as they would be
+    read back from JSON: tuples become lists, keys text.
     """
 
     robot: str
-    """Name of a description, or a model file."""
+    """Name of the robot, such as "nao", or a model file."""
     base: str
     """How the base is held: "fixed" or "floating"."""
     source: str
-    """Free text: who or what made the recording."""
+    """Free text: the person, robot or program that made the recording."""
     servo: Mapping[str, ServoGains] = field(default_factory=dict)
-    """Gains by joint, for the joints of which they are known."""
+    """Servo gains by joint name; joints whose gains are unknown are left out."""
     terrain: Mapping[str, object] | None = None
-    """What was walked on: `name` of a terrain, its `parameters` and its `seed`."""
+    """The terrain under the robot: its `name`, `parameters` and `seed`."""
     gait: Mapping[str, object] | None = None
-    """The gait parameters by name."""
+    """The gait's parameters by name."""
     world: str | None = None
-    """The world that was recorded: "sim", "real" or another word."""
+    """The world that was recorded: "sim", "real" or free text."""
     end: str | None = None
-    """Why the rollout ended, as a world words it."""
+    """Why the rollout ended, such as "fall" or "left the ground"."""
 
     def __post_init__(self) -> None:
-        """Check everything and copy what could be changed from outside.
+        """Check all fields, and copy the mappings so that later changes do not matter.
 
         Raises:
-          BadRecordingError: a part is of the wrong kind.
+          BadRecordingError: a field has a wrong type or value.
         """
         for key in ("robot", "base", "source", "world", "end"):
             value = getattr(self, key)
@@ -105,7 +105,7 @@ class RecordingMetadata:
             _check_terrain(self.terrain)
 
     def to_json(self) -> str:
-        """The metadata as JSON text; the same metadata gives the same text."""
+        """The metadata as JSON text, with sorted keys; unknown fields are left out."""
         plain = to_plain(self)
         plain["servo"] = plain["servo"] or None
         known = {key: part for key, part in plain.items() if part is not None}
@@ -113,14 +113,14 @@ class RecordingMetadata:
 
     @classmethod
     def from_json(cls, text: str | bytes) -> "RecordingMetadata":
-        """Read what `to_json` or another writer of format 1 has written.
+        """Read metadata from the JSON of a recording of format 1.
 
         Args:
-          text: JSON; a key with the value null counts as left out.
+          text: a JSON object; a key with the value null counts as left out.
 
         Raises:
-          BadRecordingError: it is no JSON, of another format, or a part is missing,
-            unknown or of the wrong kind.
+          BadRecordingError: the text is no JSON object, its `format` is not 1, or a key
+            is missing, unknown or has a wrong value.
         """
         try:
             plain = parse_object(text, "metadata", FORMAT)

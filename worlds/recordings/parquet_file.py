@@ -1,4 +1,4 @@
-"""Reads and writes a recording's columns and metadata as Parquet."""
+"""Reads and writes the columns and metadata of a recording as Parquet."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,18 +14,16 @@ _KEY = b"groundwalk"
 
 
 def read_parquet(path: Path) -> tuple[dict[str, FloatArray], bytes | None]:
-    """Read the columns and the metadata text.
-
-    Args:
-      path: the file.
+    """Read the columns and the metadata of a recording from a Parquet file.
 
     Returns:
-      The columns, and the text or None where there is none.
+      Values (rows,) by column name, NaN where one is missing; and the metadata as JSON
+      text, None if the file has none.
 
     Raises:
-      BadRecordingError: it is no whole Parquet file, or its columns are not those of
-        a recording.
-      OSError: the file system does not give it.
+      BadRecordingError: the file is damaged or no Parquet file, or its columns are not
+        those of a recording.
+      OSError: the file cannot be read.
     """
     with path.open("rb") as file:
         try:
@@ -40,10 +38,10 @@ def read_parquet(path: Path) -> tuple[dict[str, FloatArray], bytes | None]:
 
 
 def parquet_bytes(columns: Mapping[str, FloatArray], metadata: str) -> bytes:
-    """The content of a Parquet file.
+    """Turn columns and metadata into the content of a Parquet file.
 
     Args:
-      columns: values by name, of equal length.
+      columns: values (rows,) by column name; all of the same length.
       metadata: JSON text.
     """
     table = to_table(columns).replace_schema_metadata({_KEY: metadata})
@@ -54,16 +52,16 @@ def parquet_bytes(columns: Mapping[str, FloatArray], metadata: str) -> bytes:
 
 
 def to_table(columns: Mapping[str, FloatArray]) -> pa.Table:
-    """The columns as an Arrow table; a NaN becomes a null."""
+    """Turn columns (rows,) by name into an Arrow table; a NaN becomes a null."""
     return pa.table(
         {name: pa.array(values, from_pandas=True) for name, values in columns.items()}
     )
 
 
 def from_table(table: pa.Table) -> dict[str, FloatArray]:
-    """The columns of a table of numbers of any kind; a null becomes a NaN.
+    """Turn an Arrow table of numbers into float columns (rows,) by name.
 
-    Integers that no float equals are rounded.
+    A null becomes a NaN; an integer that no float equals is rounded.
     """
     return {
         name: values.cast(pa.float64(), safe=False).to_numpy()

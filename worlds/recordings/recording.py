@@ -1,13 +1,13 @@
-"""A recording: one rollout written down, in memory.
+"""`Recording`: one rollout written down, in memory.
 
-Format 1. One row a tick, SI units and radians, joint names as in the model.
+Format 1 has one row a tick, SI units and radians, joint names as in the model.
 
 | column | meaning |
 |---|---|
 | `time` | [s], increasing, never missing; steps may be uneven |
 | `position.<joint>` | measured; every joint that appears at all has it |
 | `command.<joint>` | position target |
-| `command_torque.<joint>` | torque target |
+| `command_torque.<joint>` | commanded torque |
 | `torque.<joint>` | measured torque |
 | `velocity.<joint>` | measured |
 | `base.position.{x,y,z}` | of the base's link frame, in the world frame |
@@ -17,7 +17,7 @@ Format 1. One row a tick, SI units and radians, joint names as in the model.
 | `gyroscope.{x,y,z}`, `accelerometer.{x,y,z}` | measured, in the sensor's frame |
 | `foot_force.{left,right}` | [N], one sum a foot |
 | `foot_force.{left,right}.{front,rear}_{left,right}` | [N], each sensor |
-| `support` | the gait's own idea: -1 right leg, 0 both, 1 left leg |
+| `support` | leg on which the gait means to stand: -1 right, 0 both, 1 left |
 
 At least one column of `command`, `command_torque` or `torque` is there. Every other
 column but `time` and `position` is optional, but a vector comes whole. Values may
@@ -52,10 +52,10 @@ from worlds.recordings.values import check_values, frozen_columns
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """One rollout: columns of equal length and where they come from.
+    """One rollout as columns of equal length, with metadata about its origin.
 
-    Construction checks everything and refuses what format 1 does not allow. The
-    arrays are read-only.
+    The constructor checks all columns and metadata against format 1, and raises
+    `BadRecordingError` at the first fault. The arrays are read-only.
     """
 
     columns: dict[str, FloatArray]
@@ -63,10 +63,11 @@ class Recording:
     metadata: RecordingMetadata
 
     def __post_init__(self) -> None:
-        """Check names, values and metadata.
+        """Check the columns' names and values, and the joints in the metadata.
 
         Raises:
-          BadRecordingError: names the column and the row of the first fault.
+          BadRecordingError: they are not those of format 1; the message names the
+            column and the row of the first fault.
         """
         check_names(list(self.columns))
         object.__setattr__(self, "columns", frozen_columns(self.columns))
@@ -85,7 +86,7 @@ class Recording:
 
     @property
     def ticks(self) -> int:
-        """Number of rows."""
+        """Number of rows; there is one for each control tick."""
         return self.time_s.size
 
     @property
@@ -169,11 +170,11 @@ class Recording:
         return vector_columns(vector)[0] in self.columns
 
     def vector(self, vector: str) -> FloatArray:
-        """The columns of a vector, shape (ticks, components).
+        """The values of a vector in SI units, shape (ticks, components).
 
         Args:
-          vector: for example "base.orientation" or "foot_force"; its components are
-            in the order of the table at the top of this file.
+          vector: for example "base.orientation" (components w, x, y, z), "gyroscope"
+            (x, y, z) or "foot_force" (left, right).
 
         Raises:
           UnknownNameError: there is no such vector, or it was not recorded.
@@ -185,7 +186,9 @@ class Recording:
         return np.stack([self.columns[name] for name in vector_columns(vector)], axis=1)
 
     def slice(self, start: int, stop: int | None = None) -> "Recording":
-        """Rows from `start` to before `stop`, as in Python; their times stay the same.
+        """The part of the recording from row `start` to before row `stop`.
+
+        Negative rows count from the end. The times stay the same.
 
         Raises:
           BadRecordingError: no row is left.

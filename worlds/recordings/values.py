@@ -10,15 +10,16 @@ from groundwalk.errors import BadRecordingError
 from worlds.recordings.columns import ORIENTATION, SUPPORT, TIME, vector_columns
 
 UNIT_TOLERANCE = 1e-3
-"""Largest error of a quaternion's norm: that of components with three decimals."""
+"""Largest allowed |norm - 1| of a quaternion; components that were rounded to three
+decimals keep within it."""
 
 
 def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
-    """Make the error for one wrong value.
+    """Make the error for one wrong value of a recording.
 
     Args:
-      column: its column.
-      row: its row; the first row of values is row 0.
+      column: name of the value's column.
+      row: row of the value; the first row of values is row 0.
       problem: the fault, in a few words.
     """
     return BadRecordingError(
@@ -33,11 +34,11 @@ def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray
     recording; a read-only array is used without a copy.
 
     Args:
-      columns: values by column name; each a sequence of numbers.
+      columns: sequences of numbers by column name.
 
     Raises:
       BadRecordingError: a column holds no numbers, is not one-dimensional, or its
-        length differs from that of the first one.
+        length differs from that of the first column.
     """
     frozen = {name: _frozen(name, values) for name, values in columns.items()}
     lengths = {name: values.size for name, values in frozen.items()}
@@ -51,12 +52,12 @@ def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray
 
 
 def check_values(columns: Mapping[str, FloatArray]) -> None:
-    """Check the values of columns whose names are right; NaN is a missing value.
+    """Check the values of a recording's columns; NaN is a missing value.
 
     Raises:
       BadRecordingError: there are no rows; a time is missing or not later than the
-        one before; a value is infinite; a quaternion is not of unit length; a
-        support is none of -1, 0, 1.
+        time before; a value is infinite; a quaternion is not of unit length; a value
+        of `support`, the supporting leg, is none of -1, 0, 1.
     """
     if not columns[TIME].size:
         raise BadRecordingError("no rows")
@@ -88,7 +89,10 @@ def _frozen(name: str, values: npt.ArrayLike) -> FloatArray:
 def _refuse(
     column: str, bad: BoolArray, problem: str, values: FloatArray | None = None
 ) -> None:
-    """Raise an error for the first bad row; {} in the text stands for its value."""
+    """Raise an error for the first row that is True in `bad` (rows,), if any.
+
+    A {} in `problem` stands for the value of that row.
+    """
     if bad.any():
         row = int(np.argmax(bad))
         value = None if values is None else float(values[row])

@@ -1,4 +1,4 @@
-"""Scenes and searches as files for Rerun's viewer.
+"""Writes scenes (recordings with robot and ground) as files for Rerun's viewer.
 
 Example:
   >>> from pathlib import Path

@@ -1,15 +1,17 @@
-"""A scene's balance in Rerun: mass, pressure, ZMP and support on the ground.
+"""Writes a robot's balance into a Rerun file: points and support on the ground.
 
-| entity | what |
+ZMP stands for zero-moment point. Paths are below the scene's name.
+
+| entity | content |
 |---|---|
-| `balance/centre_of_mass` | a point, and its whole way as a line (`.../track`) |
-| `balance/below` | the centre of mass, seen from above, at the lowest sole's height |
+| `balance/centre_of_mass` | a point, and its whole path as a line (`.../track`) |
+| `balance/below` | the centre of mass, moved down to the lowest sole's height |
 | `balance/pressure` | the centre of pressure that the force sensors measure |
 | `balance/zmp` | the ZMP that follows from the motion |
-| `balance/polygon` | the support polygon: the hull of the soles that carry |
+| `balance/polygon` | the support polygon: the hull of the loaded soles |
 | `balance/sideways/...` | y over time [m] of the centre of mass, pressure and ZMP |
-| `contact/support` | which feet carry, as measured: left, right, both or none |
-| `fall` | where the robot fell: a ring on the ground, and when |
+| `contact/support` | feet that are loaded, as measured: left, right, both, none |
+| `fall` | a ring on the ground where the robot fell, labelled with the time |
 """
 
 from typing import TYPE_CHECKING
@@ -29,12 +31,12 @@ if TYPE_CHECKING:
     import rerun as rr
 
 _LIFT_M = 0.002
-"""Above the ground, to be seen."""
+"""Height of marks above the ground [m], so that the ground does not hide them."""
 _POINT_M, _LINE_M = 0.008, 0.003
 
 
 def write_balance(log: ColumnLog, scene: Scene) -> None:
-    """Write a scene's balance and its fall."""
+    """Write the balance of a scene's robot, and where it fell if it did."""
     found = balance(scene)
     _write_points(log, found, scene.recording.has("base.position"))
     if found.polygons_m is not None:
@@ -59,7 +61,7 @@ def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
             )
             log.log(f"balance/{name}", look)
             lift_m = np.array([0.0, 0.0, 0.0 if name == "centre_of_mass" else _LIFT_M])
-            # Of a tick without the point nothing is shown, not the last one.
+            # At a tick without the point show nothing, not the last known point.
             known = np.isfinite(place_m[:, 0])
             columns = rr.Points3D.columns(positions=(place_m + lift_m)[known])
             rows = np.arange(len(known))
@@ -71,7 +73,7 @@ def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
 
 
 def _write_track(log: ColumnLog, found: Balance) -> None:
-    """The whole way of the centre of mass."""
+    """Write the whole path of the centre of mass as a line."""
     import rerun as rr
 
     is_known = np.isfinite(found.centre_of_mass_m).all(axis=1)
@@ -102,7 +104,7 @@ def _write_support(log: ColumnLog, scene: Scene) -> None:
 
 
 def support_look() -> "rr.StateConfiguration":
-    """The colours of the lanes that say which leg carries."""
+    """Colours of the supporting legs ("left", "right", "both", "none") in Rerun."""
     import rerun as rr
 
     lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE, "none": colours.FALL}
@@ -110,7 +112,12 @@ def support_look() -> "rr.StateConfiguration":
 
 
 def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
-    """Rows at which the feet that carry change, and to which."""
+    """Rows of the recording at which the set of loaded feet changes.
+
+    Returns:
+      The rows, row 0 included, and the feet from each on: "left", "right", "both" or
+      "none". No rows without force sensors.
+    """
     loaded = loaded_feet(scene)
     if loaded is None:
         return np.empty(0, np.intp), []
@@ -120,7 +127,7 @@ def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
 
 
 def _write_fall(log: ColumnLog, scene: Scene, found: Balance) -> None:
-    """Where the robot fell; on the ground from the start, so that it is expected."""
+    """Write a ring where the robot fell, shown from the start of the recording."""
     import rerun as rr
 
     end = scene.recording.metadata.end

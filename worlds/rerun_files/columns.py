@@ -1,4 +1,4 @@
-"""Writes values over the times of one recording as columns of a Rerun file."""
+"""Writes values at the times of one recording as columns of a Rerun file."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,38 +12,44 @@ if TYPE_CHECKING:
 
 
 class ColumnLog:
-    """Writes values over the same times, at entities below one path.
+    """Writes values that share their times, as Rerun entities below one path.
 
-    Timelines: `sim_time`, the times themselves, and `tick`, their row.
+    Rerun's timelines are `sim_time`, the times, and `tick`, their row from 0.
     """
 
     def __init__(
         self, stream: "rr.RecordingStream", at: str, time_s: FloatArray
     ) -> None:
-        """Write into a stream.
+        """Write into a Rerun stream.
 
         Args:
-          stream: of a recording.
-          at: first part of all paths, with its "/"; may be empty.
-          time_s: (ticks,) [s].
+          stream: the stream of the file.
+          at: first part of all paths, with a "/" at its end; may be empty.
+          time_s: (ticks,) times of the values.
         """
         self._stream, self._at = stream, at
         # Rounded, because Rerun cuts off fractions of a nanosecond.
         self._time = np.rint(time_s * 1e9).astype("timedelta64[ns]")
 
     def log(self, path: str, what: "rr.AsComponents") -> None:
-        """Log something that does not change over time."""
+        """Write something that does not change over time to the entity `path`."""
         self._stream.log(f"{self._at}{path}", what, static=True, strict=True)
 
     def trace(self, trace: Trace) -> None:
-        """Log lines over time."""
+        """Write lines over time, with their names and colours."""
         import rerun as rr
 
         self.log(trace.path, rr.SeriesLines(names=trace.names, colors=trace.lines))
         self.send(trace.path, rr.Scalars, scalars=trace.values)
 
     def send(self, path: str, kind: Any, **columns: FloatArray) -> None:
-        """Send columns over time, without the rows in which a value is missing."""
+        """Write columns over time, without the rows in which a value is NaN.
+
+        Args:
+          path: path of the entity.
+          kind: Rerun archetype, such as `rr.Scalars`.
+          columns: (ticks, ...) values by the names of the archetype's fields.
+        """
         parts = [values.reshape(self._time.size, -1) for values in columns.values()]
         rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
         known = {name: values[rows] for name, values in columns.items()}
@@ -51,12 +57,12 @@ class ColumnLog:
             self.send_rows(path, rows, kind.columns(**known))
 
     def send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
-        """Send values that are known at some of the times only.
+        """Write values that are known at some of the times only.
 
         Args:
-          path: of the entity.
-          rows: indices of those times.
-          columns: an archetype's columns, one value for each of the rows.
+          path: path of the entity.
+          rows: indices of the times at which they are known.
+          columns: columns of a Rerun archetype, with one value for each of these rows.
         """
         import rerun as rr
 

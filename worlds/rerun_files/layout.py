@@ -1,4 +1,4 @@
-"""Layout of a Rerun file: which views show robots, feet and curves, and where."""
+"""Layout of a Rerun file: the views of robots, feet and curves, and their places."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
 MOST_ABREAST = 2
-"""Most scenes that stand side by side with all their curves; more scenes get tabs."""
+"""Largest number of scenes shown side by side with all curves; more get tabs."""
 
 _ON_GROUND = ("below", "pressure", "zmp", "polygon")
 _MARGIN = 0.05
-"""Free space above and below a curve, as a share of its range."""
+"""Free space above and below a curve in its plot, as a share of the curve's range."""
 _PAGE_COLUMNS = 2
 _ROBOT_COLUMNS = 4
 
@@ -27,12 +27,12 @@ _ROBOT_COLUMNS = 4
 def blueprint(
     scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
 ) -> "rrb.Blueprint":
-    """Lay out scenes from left to right, each above its curves.
+    """Lay out a file: scenes from left to right, each above its curves.
 
     Args:
       scenes: the scenes of the file.
-      pages: curves by the name of their tab. If there are any, they stand below the
-        robots, and the scenes' own curves are not shown.
+      pages: further curves, by the name of their tab. If there are any, they are below
+        the robots instead of the scenes' own curves.
     """
     import rerun.blueprint as rrb
 
@@ -54,10 +54,10 @@ def blueprint(
 
 
 def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
-    """Plots side by side; those in the first row have a legend.
+    """A tab of plots, two in a row; those in the first row have a legend.
 
-    Each plot shows all of its curve from the start. Left to itself, the viewer scales a
-    plot by what is near the time cursor when the file opens, often nothing.
+    The ranges of the axes are set to show the whole curve: the viewer would choose them
+    by the values near the time cursor when the file is opened, and there may be none.
     """
     import rerun.blueprint as rrb
 
@@ -75,7 +75,7 @@ def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
 
 
 def _whole(time_s: FloatArray) -> "rrb.TimeAxis":
-    """A time axis from the first moment to the last one."""
+    """Time axis from the first to the last of the times (ticks,)."""
     import rerun as rr
     import rerun.blueprint as rrb
 
@@ -86,7 +86,7 @@ def _whole(time_s: FloatArray) -> "rrb.TimeAxis":
 
 
 def _reach(values: FloatArray) -> tuple[float, float]:
-    """A range that holds all values that are not NaN, and a little more."""
+    """Range of an axis: all finite values, and a margin of `_MARGIN` on both sides."""
     known = values[np.isfinite(values)]
     low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)
     margin = _MARGIN * (high - low) or max(abs(high), 1.0) * _MARGIN
@@ -94,7 +94,7 @@ def _reach(values: FloatArray) -> tuple[float, float]:
 
 
 def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
-    """The robot, followed from its front right."""
+    """View of the robot by a camera that follows it, ahead of it on its right."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"
@@ -108,7 +108,7 @@ def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
 
 
 def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
-    """Soles and marks on the ground, followed from above; ahead is up."""
+    """View of soles and balance marks from above, following the robot; ahead is up."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"
@@ -133,7 +133,7 @@ def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
 
 
 def _scene_views(scene: Scene) -> "rrb.Vertical":
-    """A scene's robot above its curves."""
+    """Views of one scene: its robot, and its balance from above, above its curves."""
     import rerun.blueprint as rrb
 
     rows, shares = _traces(scene)
@@ -144,7 +144,7 @@ def _scene_views(scene: Scene) -> "rrb.Vertical":
 
 
 def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
-    """A scene's curves beside its view from above."""
+    """Tab of one scene: its balance from above, beside its curves."""
     import rerun.blueprint as rrb
 
     rows, shares = _traces(scene)
@@ -155,7 +155,7 @@ def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
 
 
 def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]":
-    """Rows of plots and lanes of the supporting legs, and their relative heights."""
+    """Rows of plots, last a row of the supporting legs, and their relative heights."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"
@@ -189,7 +189,7 @@ def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
 
 
 def _window() -> "rrb.TimeAxis":
-    """A few seconds around the time cursor: a whole course would be a blur."""
+    """Time axis from 2 s before to 1 s after the time cursor, so that steps show."""
     import rerun as rr
     import rerun.blueprint as rrb
 

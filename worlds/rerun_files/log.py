@@ -1,24 +1,24 @@
 """Writes recordings as Rerun files: robots, ground and curves.
 
-Each scene has a path prefix of its own, so that scenes stand side by side in one file:
+All paths of a scene begin with its name, so that one file can have several scenes:
 
-| entity | what |
+| entity | content |
 |---|---|
-| `<scene>/robot/<link>` | mesh, else capsules; pose of the link in the world |
-| `<scene>/robot/<foot>/{sole,rim,force}` | plate; its edge; arrows |
+| `<scene>/robot/<link>` | mesh or capsules, and pose of the link in the world |
+| `<scene>/robot/<foot>/{sole,rim,force}` | plate, its edge, arrows of forces |
 | `<scene>/ground` | the heightfield's triangles |
 | `<scene>/joints/<joint>/{position,velocity,command,...}` | as recorded |
 | `<scene>/contact/{left,right}` | force on each foot [N] |
 | `<scene>/imu/{gyroscope,accelerometer}` | x, y, z [rad/s, m/s^2] |
-| `<scene>/support` | the leg that the gait stands on: left, right or both |
+| `<scene>/support` | leg on which the gait means to stand: left, right or both |
 | `<scene>/events` | why the rollout ended |
 | `<scene>/{balance,fall}`, `<scene>/contact/support` | see `rerun_files.balance` |
 
-A file may also hold pages of further curves, each at a path of its own.
+A file may also hold further curves, each at a path of its own.
 
-Timelines: `sim_time`, the recording's own time, and `tick`, its row. A row in which a
-value is missing is left out of that entity. The metadata are in the file's properties,
-under the scene's name.
+Timelines are `sim_time`, the recording's time, and `tick`, its row. An entity has no
+value at a row in which one is missing. The recording's metadata are properties of the
+file, under the scene's name.
 """
 
 from collections.abc import Mapping, Sequence
@@ -53,19 +53,19 @@ def write_rrd(
     recording_id: str | None = None,
     pages: Mapping[str, Sequence[Curve]] | None = None,
 ) -> None:
-    """Write recordings side by side into one Rerun file, which appears whole.
+    """Write recordings side by side into one Rerun file, atomically.
 
     Args:
       path: the `.rrd` file.
       scenes: recordings with robot and ground, from left to right; may be empty.
-      recording_id: the viewer shows files with equal ids as one recording; by default
-        an id that follows from the scenes.
-      pages: curves by the name of their tab, two beside each other, below the scenes'
-        robots. The scenes' own curves are then not shown.
+      recording_id: the viewer shows files with equal ids as one recording; None for a
+        hash of the scenes.
+      pages: further curves by the name of their tab. They are below the robots, two in
+        a row, instead of the scenes' own curves.
 
     Raises:
-      BadValueError: there are neither scenes nor pages, or the name of one scene is
-        that of another or the first part of it.
+      BadValueError: there are neither scenes nor pages, or a scene has the name of
+        another one or a name that is the first part of another one's path.
     """
     import rerun as rr
 
@@ -86,7 +86,7 @@ def write_rrd(
 
 
 class _SceneLog(ColumnLog):
-    """Writes one scene into a stream."""
+    """Writes one scene, with robot, ground and curves, into a Rerun stream."""
 
     def __init__(
         self, stream: "rr.RecordingStream", scene: Scene, accent: colours.Colour

@@ -1,7 +1,7 @@
-"""A link's look as triangles: its mesh files, or the capsules of its description.
+"""Turns a robot's link into triangles, from its mesh files or from its capsules.
 
-A viewer can repeat a mesh at many poses, which Rerun 0.41 cannot do with capsules: it
-draws the first capsule at the first pose and the second one at the second.
+Rerun 0.41 can draw a mesh at many poses, but not capsules: it draws the first capsule
+at the first pose and the second one at the second.
 """
 
 from collections.abc import Sequence
@@ -22,31 +22,32 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
 CELL_M = 0.003
-"""Details smaller than this [m] are not drawn: mesh files show single screws, and
-would make a .rrd file megabytes larger."""
+"""Details smaller than this [m] are not drawn: mesh files have every screw, which would
+make a .rrd file megabytes larger."""
 
 _CAPSULE_SECTIONS = (6, 16)
-"""Sections of a capsule from pole to pole, and around its axis."""
+"""Number of sections of a capsule's mesh from pole to pole, and around its axis."""
 
 
 class LinkMesh(NamedTuple):
-    """Triangles in the frame of a link's joint, in one colour; fields as in Rerun."""
+    """Triangles of one colour in the frame of a link's joint, as Rerun takes them."""
 
     vertex_positions: FloatArray
-    """(points, 3) [m]."""
+    """(points, 3) places [m]."""
     triangle_indices: IntArray
-    """(triangles, 3)."""
+    """(triangles, 3) indices of the triangles' points."""
     vertex_normals: FloatArray
-    """(points, 3) unit vectors; Rerun does not shade without them."""
+    """(points, 3) unit normals; without them Rerun draws no shading."""
     albedo_factor: Colour
 
 
 def link_mesh(link: Link, colour: Colour) -> LinkMesh | None:
-    """All mesh files of a link as one mesh, without details below `CELL_M`.
+    """Join all mesh files of a link into one mesh, without details below `CELL_M`.
+
+    Files that cannot be read are left out.
 
     Returns:
-      The mesh; None if no file can be read or none has triangles, so that the link's
-      capsules have to be drawn.
+      The mesh; None if it has no triangles, so that the link's capsules must be drawn.
     """
     found = [mesh for mesh in map(_placed, link.meshes) if mesh is not None]
     whole = coarse(joined(found))
@@ -58,14 +59,14 @@ def link_mesh(link: Link, colour: Colour) -> LinkMesh | None:
 def coarse(mesh: "Trimesh", cell_m: float = CELL_M) -> "Trimesh":
     """Simplify a mesh: all points in one cubic cell become the first one of them.
 
-    Triangles that shrink to a line or a point go, and so does every triangle but one
-    between the same points (vertex clustering: J. Rossignac and P. Borrel,
-    Multi-resolution 3D approximations for rendering complex scenes, 1993). trimesh's
-    own simplification needs one more library, and a closed surface.
+    Triangles that shrink to a line or a point are dropped, and so are duplicates
+    (vertex clustering: J. Rossignac and P. Borrel, Multi-resolution 3D approximations
+    for rendering complex scenes, 1993). trimesh's own simplification needs one more
+    library and a closed surface.
 
     Args:
       mesh: any triangles; not changed.
-      cell_m: length of a cell's edge [m].
+      cell_m: length of a cell's edge.
     """
     import trimesh
 
@@ -81,11 +82,11 @@ def coarse(mesh: "Trimesh", cell_m: float = CELL_M) -> "Trimesh":
 
 
 def capsule_mesh(shapes: Sequence[Capsule], accent: Colour) -> Mesh:
-    """A link's capsules as one mesh in the frame of its joint.
+    """Join a link's capsules into one mesh in the frame of the link's joint.
 
     Args:
-      shapes: at least one.
-      accent: the robot's own colour; see `shape_colours`.
+      shapes: at least one capsule.
+      accent: the colour that marks the robot, for capsules of the colour "accent".
     """
     import trimesh
 
@@ -109,11 +110,11 @@ def capsule_mesh(shapes: Sequence[Capsule], accent: Colour) -> Mesh:
 
 
 def _shaded(mesh: "Trimesh") -> tuple[FloatArray, IntArray, FloatArray]:
-    """Points, triangles and the points' normals.
+    """Points (points, 3) [m], triangles (triangles, 3) and normals (points, 3).
 
-    A point where triangles face different sides of a cube around it becomes one point
-    for each side, so that edges stay sharp and round surfaces smooth. trimesh's own
-    `smooth_shade` looks no better and takes three times as long for a whole robot.
+    A point is split if its triangles face different sides of a cube, so that edges stay
+    sharp and round surfaces smooth. trimesh's own `smooth_shade` looks no better and
+    takes three times as long for a whole robot.
     """
     area = np.cross(*np.diff(mesh.triangles, axis=1).swapaxes(0, 1))
     axis = np.abs(area).argmax(axis=1)
@@ -129,7 +130,7 @@ def _shaded(mesh: "Trimesh") -> tuple[FloatArray, IntArray, FloatArray]:
 
 
 def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:
-    """Where each different row stands first, and which of those each row equals."""
+    """Indices of the first of equal rows; for each row, its place among those."""
     from trimesh.grouping import unique_rows
 
     first, which = unique_rows(rows)  # type: ignore[no-untyped-call]  # has no types
@@ -137,7 +138,7 @@ def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def _placed(mesh: VisualMesh) -> "Trimesh | None":
-    """A file's mesh in the joint's frame; None if it cannot be read."""
+    """Read a mesh file and move it into the joint's frame; None if it is unreadable."""
     try:
         read = read_mesh(mesh.path)
     except BadModelError:
@@ -149,7 +150,7 @@ def _placed(mesh: VisualMesh) -> "Trimesh | None":
 
 
 def _placement(place_m: npt.ArrayLike, turn: Rotation) -> FloatArray:
-    """(4, 4) of a (3,) place and a rotation."""
+    """(4, 4) homogeneous transform of a translation (3,) [m] and a rotation."""
     placement = np.eye(4)
     placement[:3, :3], placement[:3, 3] = turn.as_matrix(), place_m
     return placement

@@ -1,18 +1,19 @@
-"""Writes a search as a Rerun file: the gaits and rewards of each generation.
+"""Writes a search for gaits as a Rerun file: gaits and rewards of each generation.
 
-Its one timeline is `generation`. Curves show the whole search; bars, page and robot
-show the generation under the cursor.
+The only timeline is `generation`. Curves show the whole search; the bars, the text and
+the robot show the generation at the time cursor. The mean gait is the centre of the
+distribution from which a generation is drawn.
 
-| entity | what |
+| entity | content |
 |---|---|
-| `search/reward/{best,middle}` | reward of the best and of the middle gait tried |
-| `search/reward/{mean,tried}` | of the mean gait, and points: of every gait tried |
-| `search/rewards` | bars: how many gaits got how much |
-| `search/falls` | how many of the tried gaits fell [%] |
-| `search/parameters/<name>/{mean,spread}` | mean gait, and one deviation around it |
-| `search/parameters/<name>/best` | of the best gait, where the history has it |
-| `search/gait` | page: parameters of the best gait and of the mean |
-| `search/walk/...` | the best gait walks, see `worlds.rerun_files.search_walk` |
+| `search/reward/{best,middle}` | largest and median reward of a generation's gaits |
+| `search/reward/{mean,tried}` | of the mean gait; of every gait tried, as points |
+| `search/rewards` | histogram of a generation's rewards, as bars |
+| `search/falls` | share of the tried gaits that fell [%] |
+| `search/parameters/<name>/{mean,spread}` | of the mean gait; +- standard deviation |
+| `search/parameters/<name>/best` | of the best gait, if it is known |
+| `search/gait` | table of parameters: best gait, mean gait and spread |
+| `search/walk/...` | walk of the best gait, see `worlds.rerun_files.search_walk` |
 """
 
 from pathlib import Path
@@ -33,7 +34,8 @@ if TYPE_CHECKING:
 
 TIMELINE = "generation"
 _APPLICATION = "groundwalk-search"
-"""Differs from the name for walks: the viewer keeps one layout per application."""
+"""Rerun's application id of searches. It differs from that of recordings, because the
+viewer keeps one layout for each application."""
 
 _BINS = 30
 _PARAMETER_COLUMNS = 4
@@ -41,12 +43,12 @@ _MEAN, _BEST, _TRIED = colours.accent(0), colours.accent(1), colours.NEITHER_SID
 
 
 def write_search(path: Path, history: SearchHistory, identity: str) -> None:
-    """Write a search into one Rerun file, which appears whole.
+    """Write a search for gaits into one Rerun file, atomically.
 
     Args:
       path: the `.rrd` file.
-      history: at least one generation.
-      identity: the viewer shows files of one identity as one recording.
+      history: the search, with at least one generation.
+      identity: recording id; the viewer shows files with equal ids as one recording.
     """
     import rerun as rr
 
@@ -103,7 +105,7 @@ def _write_parameters(stream: "rr.RecordingStream", history: SearchHistory) -> N
 def _write_generation(
     stream: "rr.RecordingStream", history: SearchHistory, generation: int
 ) -> None:
-    """Write the bars and the page of one generation."""
+    """Write the histogram of rewards and the text about one generation."""
     import rerun as rr
 
     tried = _tried(history)
@@ -121,7 +123,7 @@ def _write_generation(
 
 
 def _tried(history: SearchHistory) -> FloatArray:
-    """(generations, gaits) rewards, the best first; NaN fills short generations."""
+    """(generations, gaits) rewards, the best first; NaN fills up short generations."""
     tried = np.full((len(history.rewards), max(map(len, history.rewards))), np.nan)
     for row, rewards in zip(tried, history.rewards, strict=True):
         row[: len(rewards)] = np.sort(rewards)[::-1]
@@ -131,7 +133,7 @@ def _tried(history: SearchHistory) -> FloatArray:
 def _send(
     stream: "rr.RecordingStream", path: str, values: FloatArray, look: Any
 ) -> None:
-    """Send (generations,) or (generations, lines) values, and how they are drawn."""
+    """Write (generations,) or (generations, lines) values, drawn as `look` says."""
     import rerun as rr
 
     stream.log(f"search/{path}", look, static=True, strict=True)
@@ -147,9 +149,9 @@ def _line(name: str, colour: colours.Colour) -> "rr.SeriesLines":
 
 
 def _layout(history: SearchHistory) -> "rrb.Blueprint":
-    """The walk beside the generation's gaits, the whole search below, in tabs.
+    """Layout: the walk beside the text on the generation, and tabs of curves below.
 
-    Without walks, everything at once.
+    Without walks there are no tabs: all rewards, the text and all curves are shown.
     """
     import rerun.blueprint as rrb
 
@@ -178,7 +180,7 @@ def _layout(history: SearchHistory) -> "rrb.Blueprint":
 def _reward_views(
     history: SearchHistory, abreast: bool
 ) -> "rrb.Horizontal | rrb.Vertical":
-    """Rewards, all abreast or above the two others: by gait, and falls."""
+    """Views of rewards, their histogram and falls: in a row, or the first on top."""
     import rerun.blueprint as rrb
 
     unit = history.units.get("reward", "")

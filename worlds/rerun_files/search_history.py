@@ -1,4 +1,4 @@
-"""The course of a search as columns: rewards, gaits, and walks of the best gaits."""
+"""The history of a search for gaits: rewards, parameters, walks of the best gaits."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -9,10 +9,10 @@ from worlds.world import FALLS
 
 
 class SearchWalk(NamedTuple):
-    """A repeated walk of one generation's best gait."""
+    """A walk of one generation's best gait, repeated in order to be shown."""
 
     scene: Scene
-    """Robot, ground and recording."""
+    """Robot, ground and recording of the walk."""
     distance_m: float
     """Distance walked forward [m]."""
     time_s: float
@@ -27,23 +27,26 @@ class SearchWalk(NamedTuple):
 
 
 class SearchHistory(NamedTuple):
-    """The course of a search; rows of all arrays are generations."""
+    """History of a search for gaits; all arrays have one row for each generation.
+
+    Each generation draws gaits from a normal distribution, tries and rewards them.
+    """
 
     rewards: Sequence[FloatArray]
-    """For each generation, the rewards of all gaits that it tried."""
+    """For each generation, the rewards (gaits,) of all gaits that it tried."""
     falls: FloatArray
     """(generations,) number of tried gaits that fell."""
     mean_reward: FloatArray
-    """(generations,) reward of the gait in the middle of the distribution."""
+    """(generations,) reward of the mean gait of the distribution."""
     mean: Mapping[str, FloatArray]
-    """(generations,) each parameter of the gait in the middle, by name."""
+    """By parameter name, (generations,) its value in the mean gait, in its unit."""
     spread: Mapping[str, FloatArray]
-    """(generations,) standard deviation of each parameter, in its own unit."""
+    """By parameter name, (generations,) its standard deviation, in its unit."""
     best: Mapping[str, FloatArray]
-    """(generations,) each parameter of the best gait; no entries if it is unknown."""
+    """By parameter name, (generations,) its value in the best gait; {} if unknown."""
     units: Mapping[str, str]
-    """Unit of each parameter by its name, and of the reward under "reward"."""
+    """Unit of each parameter by its name, and of the rewards under "reward"."""
     walks: Sequence[SearchWalk] = ()
-    """Walk of each generation's best gait; none, or one for each generation."""
+    """Walk of the best gait of each generation; empty if there are none."""
     no_walks: str = ""
-    """Why there are no walks though the best gaits are known."""
+    """Text for the viewer: why there are no walks though best gaits are known."""

@@ -1,4 +1,4 @@
-"""The text about one generation of a search, in Markdown."""
+"""Text about one generation of a search for gaits, in Markdown."""
 
 from collections.abc import Mapping
 
@@ -8,11 +8,11 @@ from groundwalk.arrays import FloatArray
 from worlds.rerun_files.search_history import SearchHistory, SearchWalk
 
 SAME_REWARD = 0.05
-"""Rewards that differ by less count as equal: they print with one decimal."""
+"""Rewards that differ by less count as equal, because one decimal is printed."""
 
 
 def search_page(history: SearchHistory, generation: int) -> str:
-    """Markdown: the gaits of one generation, and how the best one walked."""
+    """Markdown about one generation: rewards, the best gait's walk, all parameters."""
     best = float(np.max(history.rewards[generation]))
     mean = float(history.mean_reward[generation])
     unit = history.units.get("reward", "")
@@ -40,7 +40,11 @@ def search_page(history: SearchHistory, generation: int) -> str:
 
 
 def _walk(walk: SearchWalk, rated: float, unit: str) -> str:
-    """How the best gait walked; a warning if the walk differs from the rated one."""
+    """Sentence about the best gait's walk.
+
+    It warns if the reward of this walk differs from `rated`, that of the search: then
+    the repeated walk is not the one that the search saw.
+    """
     end = walk.scene.recording.metadata.end
     text = f"The best gait walked {walk.distance_m:.2f} m in {walk.time_s:.2f} s"
     text += f": {end}." if end else "."

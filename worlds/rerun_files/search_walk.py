@@ -1,12 +1,12 @@
-"""The best gait of each generation in Rerun: a robot in several poses along its walk.
+"""Writes walks of a search's best gaits to Rerun: robots in poses along each walk.
 
-| entity | what |
+| entity | content |
 |---|---|
 | `search/walk/robot/<link>` | mesh, in several poses, from start to end of the walk |
 | `search/walk/robot/<foot>/sole` | the sole's plate, in the same poses |
-| `search/walk/track` | the way of the centre of mass |
-| `search/walk/fall` | where the robot fell: a ring on the ground; else nothing |
-| `search/walk/ground` | the ground under the walks, and a little beside it |
+| `search/walk/track` | path of the centre of mass |
+| `search/walk/fall` | a ring on the ground where the robot fell, if it did |
+| `search/walk/ground` | the ground under the walks, with a margin |
 """
 
 from collections.abc import Sequence
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 AT = "search/walk"
 POSES = 7
-"""Poses drawn of one walk: the first, the last, and some at even times between."""
+"""Number of poses drawn of one walk, at even times from the first to the last tick."""
 
 _BESIDE_M = 0.35
-"""Ground beyond the places that a joint gets to."""
+"""Width of the ground drawn beyond the places that any joint reaches [m]."""
 
 _TRACK_M, _RING_M = 0.003, 0.0045
 
@@ -45,13 +45,13 @@ def write_walks(
     index: "rr.TimeColumn",
     colour: colours.Colour,
 ) -> None:
-    """Write one robot's walks: its poses, tracks and ground.
+    """Write walks of one robot: its poses, paths and ground.
 
     Args:
-      stream: of a recording.
-      walks: at least one, all with ground or none; the grounds' grids are alike.
-      index: the walks' places on a timeline, one entry for each walk.
-      colour: of the robot.
+      stream: Rerun stream of the file.
+      walks: at least one; either all have a ground or none, of the same grid.
+      index: position of each walk on a timeline.
+      colour: the colour that marks the robot.
     """
     import rerun as rr
 
@@ -63,22 +63,22 @@ def write_walks(
 
 
 class _WalkLog:
-    """Writes entities that have one row for each walk."""
+    """Writes Rerun entities that have one row for each walk, below `search/walk`."""
 
     def __init__(self, stream: "rr.RecordingStream", index: "rr.TimeColumn") -> None:
         self._stream, self._index = stream, index
 
     def log(self, path: str, what: "rr.AsComponents") -> None:
-        """Log something that all walks share."""
+        """Write something that all walks share to the entity `path`."""
         self._stream.log(f"{AT}/{path}", what, static=True, strict=True)
 
     def send(self, path: str, columns: Any) -> None:
-        """Send an archetype's columns, a row for each walk."""
+        """Write columns of a Rerun archetype, with a row for each walk, to `path`."""
         self._stream.send_columns(f"{AT}/{path}", [self._index], columns, strict=True)
 
 
 def stills(ticks: int) -> IntArray:
-    """Rows of a recording, at most `POSES`, evenly from the first to the last one."""
+    """At most `POSES` rows of a recording of `ticks` rows, evenly spaced."""
     return np.unique(np.rint(np.linspace(0, ticks - 1, POSES)).astype(np.intp))
 
 
@@ -109,7 +109,7 @@ def _look(link: Link, colour: colours.Colour) -> LinkMesh | Mesh | None:
 
 
 def _still_poses(walks: Sequence[SearchWalk]) -> dict[str, Any]:
-    """By link: columns of its poses, several in the row of each walk."""
+    """Rerun columns of poses by link name; a walk's row has several poses."""
     import rerun as rr
 
     rows = [stills(walk.scene.recording.ticks) for walk in walks]
@@ -129,7 +129,7 @@ def _still_poses(walks: Sequence[SearchWalk]) -> dict[str, Any]:
 
 
 def _write_tracks(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
-    """Ways of the centre of mass, and rings where robots fell."""
+    """Write the paths of the centre of mass, and rings where robots fell."""
     import rerun as rr
 
     found = [balance(walk.scene) for walk in walks]
@@ -149,12 +149,12 @@ def _write_tracks(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
     look = rr.LineStrips3D.from_fields(radii=_RING_M, colors=colours.FALL)
     log.log("fall", look)
     columns = rr.LineStrips3D.columns(strips=rings_m, labels=texts)
-    # A walk without a fall takes the last one's ring away.
+    # A walk without a fall removes the ring of the walk before.
     log.send("fall", columns.partition(fell.astype(int)))
 
 
 def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
-    """Write each walk's own ground, or once the ground that all of them share."""
+    """Write the ground of each walk, or only one if all grounds are equal."""
     import rerun as rr
 
     around_m = _reached(walks) + np.array([[-_BESIDE_M], [_BESIDE_M]])
@@ -183,7 +183,7 @@ def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
 
 
 def _reached(walks: Sequence[SearchWalk]) -> FloatArray:
-    """(2, 2) least and largest x and y of all joints in all walks [m]."""
+    """(2, 2) least x and y, then largest x and y, of all joints in all walks [m]."""
     places_m = [
         pose.position_m[:, :2]
         for walk in walks
@@ -195,11 +195,11 @@ def _reached(walks: Sequence[SearchWalk]) -> FloatArray:
 
 
 def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
-    """The part of a ground that holds a rectangle, as far as the ground goes.
+    """Cut out the part of a ground that covers a rectangle, as far as the ground goes.
 
     Args:
-      ground: the whole.
-      around_m: (2, 2) least and largest x and y.
+      ground: the whole ground.
+      around_m: (2, 2) least x and y of the rectangle, then largest x and y.
     """
     size = np.array(ground.heights_m.shape[::-1])
     cells = (around_m - ground.origin_m) / ground.spacing_m
@@ -213,11 +213,11 @@ def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
 
 
 def walk_view(walks: Sequence[SearchWalk], name: str) -> "rrb.Spatial3DView":
-    """All of the walks, from their right and a little ahead.
+    """View that shows all places of the walks, from the right and a little ahead.
 
     Args:
-      walks: at least one.
-      name: the view's title.
+      walks: at least one walk.
+      name: title of the view.
     """
     import rerun.blueprint as rrb
 

@@ -1,4 +1,4 @@
-"""Opening Rerun's viewer."""
+"""Opens `.rrd` files in Rerun's viewer."""
 
 import os
 import shutil
@@ -13,11 +13,11 @@ _PROGRAM = "rerun"
 
 
 def open_viewer(paths: Sequence[Path]) -> "subprocess.Popen[bytes]":
-    """Open Rerun files in a window of their own, which outlives this program.
+    """Open Rerun files in a viewer window that stays open after this program ends.
 
-    The viewer listens for further data, by itself on all network interfaces; here it
-    listens on the loopback only, on a free port. It sends usage statistics to its
-    makers unless `rerun analytics disable` was run once.
+    The viewer listens for more data; its default is all network interfaces, but here it
+    listens on the loopback interface only, on a free port. It sends usage statistics to
+    its makers unless `rerun analytics disable` has been run once.
 
     Args:
       paths: `.rrd` files.
@@ -26,13 +26,13 @@ def open_viewer(paths: Sequence[Path]) -> "subprocess.Popen[bytes]":
       The viewer's process.
 
     Raises:
-      BadRecordingError: a file is not there.
-      GroundwalkError: Rerun's program is not installed.
+      BadRecordingError: a file does not exist.
+      GroundwalkError: the program `rerun` is not installed.
     """
     for path in paths:
         if not path.is_file():
             raise BadRecordingError(f"{path}: no such file")
-    # Beside this Python first: a virtual environment need not be on the PATH.
+    # First beside this Python: its virtual environment may not be on the PATH.
     folders = (str(Path(sys.executable).parent), os.environ.get("PATH", ""))
     program = shutil.which(_PROGRAM, path=os.pathsep.join(folders))
     if program is None:

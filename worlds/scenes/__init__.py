@@ -1,4 +1,4 @@
-"""Scenes: recordings with robot and ground, and pictures of them drawn by NumPy.
+"""Scenes, which are recordings with robot and ground, and pictures drawn by NumPy.
 
 Example:
   >>> import robots, terrain

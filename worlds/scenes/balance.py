@@ -1,17 +1,17 @@
-"""Where a robot's mass is, which feet carry it, and its zero-moment point (ZMP).
+"""A robot's balance: centre of mass, loaded feet and zero-moment point (ZMP).
 
 Three points on the ground describe a walk's balance:
 
 - the centre of pressure, *measured*: the mean of the force sensors' places, weighted
-  by their forces. It cannot leave the soles.
+  by their forces. It is always on the soles.
 - the zero-moment point, *from the motion*: where the ground's force must act for links
   of these masses to have moved as they did (Vukobratovic and Borovac 2004). It needs
-  the base's pose, and no force sensor. Where both soles are flat on level ground it is
-  the centre of pressure; outside of the support polygon no force can act, and
-  the robot tips about its edge.
-- the centre of mass, seen from above.
+  the base's pose and no force sensors. With both soles flat on level ground it is the
+  centre of pressure. If it is outside of the support polygon, where the ground cannot
+  push, the robot tips about the polygon's edge.
+- the centre of mass, projected along the vertical.
 
-All are in the world frame; a base that was not recorded stays at the origin, upright.
+All are in the world frame; a base that was not recorded is at the origin, upright.
 """
 
 from typing import NamedTuple
@@ -27,32 +27,35 @@ from worlds.scenes.forward_kinematics import LinkPoses
 from worlds.scenes.scene import SIDES, Scene
 
 LOADED_PART = 0.05
-"""A foot counts as carrying above this share of the robot's weight."""
+"""A foot counts as loaded if its force exceeds this share of the robot's weight."""
 
 SMOOTHING_TICKS = 2.0
-"""Standard deviation of the bell curve that smooths positions and momenta: 20 ms."""
+"""Standard deviation [ticks of 10 ms] of the Gaussian that smooths positions and
+momenta before they are differentiated: 20 ms."""
 
 LEAST_WEIGHT_PART = 0.2
-"""The ZMP is not computed with less than this share of the weight on the ground."""
+"""Least ground force, as a share of the robot's weight, for which the ZMP is
+computed; its formula divides by that force."""
 
 
 class Balance(NamedTuple):
-    """Centre of mass and points on the ground, tick by tick; NaN where unknown."""
+    """Centre of mass and other balance points at each tick; NaN where unknown."""
 
     centre_of_mass_m: FloatArray
-    """(ticks, 3) in the world frame [m]."""
+    """(ticks, 3) centre of mass in the world frame [m]."""
     below_m: FloatArray
-    """(ticks, 3) the centre of mass at the height of the lowest sole."""
+    """(ticks, 3) centre of mass, moved down to the height of the lowest sole [m]."""
     pressure_m: FloatArray | None
-    """(ticks, 3) the measured centre of pressure; None without force sensors."""
+    """(ticks, 3) measured centre of pressure [m]; None without force sensors."""
     zmp_m: FloatArray | None
-    """(ticks, 3) the ZMP from the motion; None where the base was not recorded."""
+    """(ticks, 3) zero-moment point [m]; None without a recorded base position."""
     polygons_m: list[FloatArray] | None
-    """(corners, 3) each, none in the air: support polygons; None without sensors."""
+    """Support polygon (corners, 3) [m] of each tick, with 0 corners while no foot is
+    loaded; None without force sensors."""
 
 
 def balance(scene: Scene) -> Balance:
-    """A scene's balance at all ticks."""
+    """Compute the balance points of a scene's robot at all ticks."""
     poses = scene.link_poses()
     soles_m = {side: _sole(scene, side, poses) for side in SIDES}
     lowest_m = np.min([sole[..., 2].min(axis=1) for sole in soles_m.values()], axis=0)
@@ -71,7 +74,10 @@ def balance(scene: Scene) -> Balance:
 
 
 def loaded_feet(scene: Scene) -> dict[str, BoolArray] | None:
-    """(ticks,) by side whether a foot carries the robot; None without force sensors."""
+    """By side, (ticks,) whether the foot is loaded; None without force sensors.
+
+    A foot is loaded if its force exceeds `LOADED_PART` of the robot's weight.
+    """
     least_n = LOADED_PART * scene.description.mass_kg * GRAVITY_M_S2
     forces_n = {side: scene.foot_force_n(side) for side in SIDES}
     known = {side: force for side, force in forces_n.items() if force is not None}
@@ -81,7 +87,10 @@ def loaded_feet(scene: Scene) -> dict[str, BoolArray] | None:
 
 
 def _pressure(scene: Scene, poses: dict[str, LinkPoses]) -> FloatArray | None:
-    """sum(F_i p_i) / sum(F_i) over the sensors i of both feet."""
+    """(ticks, 3) centre of pressure [m]: sum(F_i p_i) / sum(F_i) over foot sensors i.
+
+    NaN where nearly no force is measured; None without force sensors.
+    """
     moment: FloatArray | float = 0.0
     force: FloatArray | float = 0.0
     for side in SIDES:
@@ -99,7 +108,12 @@ def _pressure(scene: Scene, poses: dict[str, LinkPoses]) -> FloatArray | None:
 def _polygons(
     soles_m: dict[str, FloatArray], loaded: dict[str, BoolArray]
 ) -> list[FloatArray]:
-    """The convex hull, seen from above, of the soles that carry the robot."""
+    """For each tick the (corners, 3) convex hull, seen from above, of the loaded soles.
+
+    Args:
+      soles_m: (ticks, corners, 3) outline of the sole, by side.
+      loaded: (ticks,) whether a foot is loaded, by side.
+    """
     polygons = []
     for tick in range(len(soles_m[SIDES[0]])):
         soles = [soles_m[side][tick] for side in SIDES if loaded[side][tick]]
@@ -113,7 +127,7 @@ def _polygons(
 
 
 def _sole(scene: Scene, side: str, poses: dict[str, LinkPoses]) -> FloatArray:
-    """(ticks, corners, 3) of a sole's outline."""
+    """(ticks, corners, 3) outline of a sole in the world frame [m]."""
     foot = scene.description.feet[SIDES.index(side)]
     height_m = np.full((len(foot.outline_m), 1), foot.sole_height_m)
     return _on_foot(scene, side, poses, np.hstack([foot.outline_m, height_m]))
@@ -122,7 +136,7 @@ def _sole(scene: Scene, side: str, poses: dict[str, LinkPoses]) -> FloatArray:
 def _on_foot(
     scene: Scene, side: str, poses: dict[str, LinkPoses], points_m: FloatArray
 ) -> FloatArray:
-    """(ticks, points, 3) of points given in the foot's frame."""
+    """(ticks, points, 3) world places of points (points, 3) in a foot's frame [m]."""
     robot = scene.description
     foot = robot.feet[SIDES.index(side)]
     pose = poses[robot.links[foot.joint].link.name]
@@ -132,7 +146,7 @@ def _on_foot(
 def _centres(
     robot: Description, poses: dict[str, LinkPoses]
 ) -> tuple[FloatArray, FloatArray]:
-    """(links,) masses and (links, ticks, 3) centres of mass."""
+    """(links,) masses [kg] and (links, ticks, 3) centres of mass in the world [m]."""
     links = [robot.root, *(joint.link for joint in robot.links)]
     places_m = []
     for link in links:
@@ -142,11 +156,12 @@ def _centres(
 
 
 def _zmp(scene: Scene, poses: dict[str, LinkPoses], height_m: FloatArray) -> FloatArray:
-    """(ticks, 3) ZMP: where the ground's force must act for the recorded motion [m].
+    """(ticks, 3) zero-moment point [m], at the heights `height_m` (ticks,).
 
-    With momentum P and angular momentum L about the world's origin, the ground gives
-    the force F = dP/dt + M g e_z and the moment N = dL/dt + M c x g e_z about the
-    origin. Its moment about the ZMP p has no level part: (N - p x F)_xy = 0, so
+    The ground's force must act there for the recorded motion. With momentum P, angular
+    momentum L about the world's origin, mass M and centre of mass c, the ground's force
+    is F = dP/dt + M g e_z and its moment about the origin N = dL/dt + M c x g e_z. Its
+    moment about the ZMP p has no horizontal part: (N - p x F)_xy = 0, so
     p_x = (p_z F_x - N_y) / F_z and p_y = (p_z F_y + N_x) / F_z.
     """
     robot, time_s = scene.description, scene.recording.time_s
@@ -172,9 +187,16 @@ def _momenta(
     places_m: FloatArray,
     time_s: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """(ticks, 3) momentum, and angular momentum about the world's origin."""
+    """(ticks, 3) momentum [kg m/s] and angular momentum about the origin [kg m^2/s].
+
+    Args:
+      robot: gives masses and inertias.
+      poses: poses of the links by name.
+      places_m: (links, ticks, 3) centres of mass in the world frame.
+      time_s: (ticks,) times.
+    """
     momentum = angular = np.zeros((time_s.size, 3))
-    # With rotors lumped in, as both engines have them.
+    # Rotor inertias are added to the links, as in both worlds' models.
     moved = [(joint.link.name, joint.moved_inertial) for joint in robot.links]
     links = [(robot.root.name, robot.root.inertial), *moved]
     for (name, inertial), place_m in zip(links, places_m, strict=True):
@@ -191,7 +213,10 @@ def _momenta(
 
 
 def _rate(values: FloatArray, time_s: FloatArray) -> FloatArray:
-    """d/dt of (ticks, k) values, smoothed; NaN where the bell curve leaves the data."""
+    """Time derivative of values (ticks, k), smoothed over `SMOOTHING_TICKS`.
+
+    NaN near the first and last tick, where the smoothing has too few values.
+    """
     smooth = gaussian_filter1d(values, SMOOTHING_TICKS, axis=0, truncate=3.0)
     rate = np.gradient(smooth, time_s, axis=0)
     margin = int(3.0 * SMOOTHING_TICKS)

@@ -1,14 +1,14 @@
 """Draws round shapes on uneven ground by tracing rays in NumPy.
 
-Every pixel is a ray from the eye. Where a ray meets a capsule is the root of a
-quadratic equation, so that round shapes are round at any size; the ground is met by
-a few steps of a fixed-point iteration, which suits ground that is nearly level. Light
-comes from one sun, with shadows, and from the sky.
+A ray goes from the camera through each pixel. A quadratic equation gives the place
+where it meets a capsule, so that round shapes look round at any size; a fixed-point
+iteration, which suits nearly level ground, gives the place where it meets the ground.
+Light comes from one sun, with shadows, and from the sky.
 
-Neither engine's renderer takes this file's place. PyBullet's ER_TINY_RENDERER (3.2.7)
-puts whole fields of a heightfield into wrong shadow, has one colour for all of the
-ground, and shows capsules with corners; `mujoco.Renderer` needs a graphics driver.
-These pictures need none, and are the same bytes on each run.
+The engines' own renderers are not good enough. PyBullet's ER_TINY_RENDERER (3.2.7) puts
+large parts of a heightfield into wrong shadow, gives all of the ground one colour and
+shows capsules with corners; `mujoco.Renderer` needs a graphics driver. These pictures
+need none, and have the same bytes on each run.
 """
 
 from dataclasses import dataclass
@@ -24,37 +24,38 @@ from worlds.scenes.rays import SUN, Rounds, axis_part, distances, in_sun
 from worlds.scenes.shapes import chessboard
 
 Image = npt.NDArray[np.uint8]
-"""(height, width, 3) red, green, blue from 0 to 255."""
+"""Picture as an array (height, width, 3) of red, green and blue from 0 to 255."""
 
 SHADE, SUNLIGHT = 0.62, 0.50
-"""Brightness in the sky's light alone, and how much full sun adds; chosen by eye."""
+"""Factors on a surface's colour: in the sky's light alone, and the share that full sun
+adds; both chosen by eye."""
 
 SHINE, SHINE_POWER = 50.0, 40
-"""Blinn-Phong highlight: its brightness (0 to 255) and its exponent; chosen by eye."""
+"""Brightness (0 to 255) and exponent of the Blinn-Phong highlights; chosen by eye."""
 
 HAZE_M = (1.6, 5.0)
 """Distances behind the camera's target at which the ground begins to fade into the sky
 and at which it is gone [m]."""
 
 _GROUND_STEPS = 3
-"""Iterations to meet uneven ground; more do not change a picture visibly."""
+"""Iterations to find where a ray meets uneven ground; more change nothing visibly."""
 
 _SEEN_THROUGH = 1e-3
-"""Factor on the distance of marks that glow: nothing stands before them."""
+"""Factor on the distance of glowing marks, so that no other shape hides them."""
 
 _PER_PIXEL = 2
-"""Rays along each side of a pixel: edges are smooth."""
+"""Rays along each side of a pixel, 2 x 2 in all: their mean makes edges smooth."""
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a picture is taken from, and how large it is.
+    """Position and direction of a camera, and the size of its pictures.
 
     Attributes:
-      eye_m: where the camera is [m], world frame.
-      target_m: the point in the middle of the picture [m].
-      size_px: width and height [pixels].
-      view_rad: angle of view from the lower to the upper edge of the picture [rad].
+      eye_m: place of the camera in the world frame.
+      target_m: place in the world that is in the middle of the picture.
+      size_px: width and height of the picture.
+      view_rad: angle of view from the lower to the upper edge of the picture.
     """
 
     eye_m: tuple[float, float, float]
@@ -63,7 +64,7 @@ class Camera:
     view_rad: float = 0.5
 
     def __post_init__(self) -> None:
-        """Refuse cameras that see nothing."""
+        """Refuse empty pictures, impossible angles, views straight up or down."""
         if min(self.size_px) < 1:
             raise BadValueError(f"size_px is {self.size_px}; both must be positive")
         if not 0 < self.view_rad < np.pi:
@@ -73,7 +74,7 @@ class Camera:
             raise BadValueError("a camera must not look straight up or down")
 
     def axes(self) -> FloatArray:
-        """(3, 3) unit vectors to the right, down and ahead."""
+        """(3, 3) unit vectors to the camera's right, down and ahead, a row each."""
         ahead = np.subtract(self.target_m, self.eye_m)
         ahead /= np.linalg.norm(ahead)
         right = np.cross(ahead, (0.0, 0.0, 1.0))
@@ -81,7 +82,7 @@ class Camera:
         return np.stack([right, np.cross(ahead, right), ahead])
 
     def picture(self, rounds: Rounds, ground: Heightfield | None) -> Image:
-        """Draw what the camera sees, before the sky.
+        """Draw the picture that this camera takes, with the sky behind everything.
 
         Args:
           rounds: capsules and spheres.
@@ -91,7 +92,7 @@ class Camera:
 
 
 class _Picture:
-    """One picture while it is computed: for each ray, the first shape that it meets."""
+    """A picture that is being computed: for each ray, the nearest shape it meets."""
 
     def __init__(
         self, camera: Camera, rounds: Rounds, ground: Heightfield | None
@@ -125,7 +126,7 @@ class _Picture:
         return np.asarray(np.clip(mean, 0, 255), np.uint8)
 
     def _meet(self, i: int) -> None:
-        """Note the rays that meet shape `i` nearer than every shape before it."""
+        """Assign to capsule `i` the rays that meet it before capsules 0 to i - 1."""
         start, end = self._rounds.start_m[i], self._rounds.end_m[i]
         radius = float(self._rounds.radius_m[i])
         window = self._window(np.stack([start, end]), radius)
@@ -141,10 +142,15 @@ class _Picture:
     def _window(
         self, ends_m: FloatArray, radius_m: float
     ) -> tuple[slice, slice] | None:
-        """Rows and columns of pixels in which a shape can be; None if it is behind."""
+        """Rows and columns of rays that can meet a capsule; None if none can.
+
+        Args:
+          ends_m: (2, 3) ends of the capsule's axis in the world frame.
+          radius_m: its radius.
+        """
         x, y, ahead = self._axes @ (ends_m - self._eye).T
         nearest_m = ahead.min() - radius_m
-        if not nearest_m > 0.01:  # behind the camera, or not known at this tick
+        if not nearest_m > 0.01:  # behind the camera, or NaN: unknown at this tick
             return None
         height, width = self._depth.shape
         reach = self._focal * radius_m / nearest_m * 1.3 + 1
@@ -179,7 +185,7 @@ class _Picture:
         self._owner[rows, columns] = -1
 
     def _paint_rounds(self, image: FloatArray) -> None:
-        """Colour the pixels whose rays meet a round shape first."""
+        """Colour the pixels whose rays meet a capsule before anything else."""
         rows, columns = np.nonzero(self._owner >= 0)
         owner = self._owner[rows, columns]
         rays = self._rays[rows, columns]
@@ -198,7 +204,7 @@ class _Picture:
         image[rows, columns] = np.where(glows, colour, lit)
 
     def _light(self, place_m: FloatArray, normal: FloatArray) -> FloatArray:
-        """(n,) how bright, about 1 in full sun."""
+        """(n,) brightness, about 1 in full sun, at places (n, 3) of normals (n, 3)."""
         toward_sun = np.clip(normal @ SUN, 0, 1)
         sky = SHADE * (0.8 + 0.2 * normal[:, 2])
         sun = in_sun(self._rounds, place_m + 0.002 * normal)
@@ -206,13 +212,16 @@ class _Picture:
 
 
 def _inside(places: FloatArray, reach: float, size: int) -> tuple[int, int]:
-    """The pixels from the first to the last place, with a margin, within a picture."""
+    """Range (first, last + 1) of the `size` pixels that places, +- `reach`, span."""
     first = np.clip(np.floor(places.min() - reach), 0, size)
     return int(first), int(np.clip(np.ceil(places.max() + reach), 0, size))
 
 
 def _normals(ground: Heightfield, place_m: FloatArray) -> FloatArray:
-    """(n, 3) upward unit vectors, from heights half a cell ahead and to the left."""
+    """(n, 3) unit normals of the ground at places (n, 3) [m] on it.
+
+    They follow from the heights half a cell farther along x and along y.
+    """
     x, y, z = place_m.T
     normal = np.tile([0.0, 0.0, 1.0], (len(place_m), 1))
     if not ground.is_flat:

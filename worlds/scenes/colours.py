@@ -23,11 +23,11 @@ _ACCENTS: tuple[Colour, ...] = (
 
 
 def accent(scene: int) -> Colour:
-    """The colour of the robot in scene number `scene`, counted from 0."""
+    """Colour that marks the robot of scene number `scene`, counted from 0."""
     return _ACCENTS[scene % len(_ACCENTS)]
 
 
 def pale(colour: Colour) -> Colour:
-    """A colour mixed with twice as much white, for a command beside a measurement."""
+    """Mix a colour with twice as much white, for example for a command's curve."""
     red, green, blue = ((part + 2 * 255) // 3 for part in colour)
     return red, green, blue

@@ -1,4 +1,4 @@
-"""Curves of a scene over time, and the plots that show them."""
+"""Curves of a recording over time, and the plots of a viewer that show them."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -13,32 +13,32 @@ from worlds.scenes.scene import SIDES, Scene
 _IMU = ("gyroscope", "accelerometer")
 MEASURED_SUPPORT = "contact/support"
 SIDEWAYS = "balance/sideways"
-"""Below this path lie the y of the centre of mass and of the points on the ground."""
+"""Path of the curves of y, sideways, of centre of mass, centre of pressure and ZMP."""
 _ABREAST = 4
-"""Most plots of joints in one row."""
+"""Largest number of joint plots in one row."""
 _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
 
 
 class Trace(NamedTuple):
-    """Lines over time, as recorded, at one path of a viewer's file."""
+    """Lines over the times of a recording, at one path of a viewer's file."""
 
     path: str
     """Path below the scene's name, such as "imu/gyroscope"."""
     names: Sequence[str]
-    """One for each line."""
+    """Name of each line, for the legend."""
     values: FloatArray
-    """(ticks,) or (ticks, lines); NaN where a value is missing."""
+    """(ticks,) or (ticks, lines) values of the lines; NaN where one is missing."""
     lines: Sequence[colours.Colour] | None
-    """One for each line; None lets the viewer choose."""
+    """Colour of each line; None lets the viewer choose."""
 
 
 class Curve(NamedTuple):
-    """Lines over times of their own, shown in a plot of their own.
+    """Lines in a plot of their own, with times that no scene's recording has to share.
 
     Attributes:
-      title: of the plot, with the unit.
-      time_s: (ticks,) [s].
-      trace: the lines; its path is one of the file, not of a scene.
+      title: title of the plot, with the unit.
+      time_s: (ticks,) times of the values.
+      trace: the lines; their path is complete, without a scene's name before it.
     """
 
     title: str
@@ -47,14 +47,14 @@ class Curve(NamedTuple):
 
 
 class Plot(NamedTuple):
-    """Curves that one plot shows together, by their paths."""
+    """A plot: its title and the paths of the traces that it shows together."""
 
     name: str
     paths: Sequence[str]
 
 
 def traces(scene: Scene) -> Iterator[Trace]:
-    """Every joint's quantities, the force on each foot, and the inertial sensors."""
+    """Yield the recorded curves of the joints, the foot forces and the IMU."""
     recording = scene.recording
     legs = {
         joint: colours.SIDES[side]
@@ -83,9 +83,9 @@ def traces(scene: Scene) -> Iterator[Trace]:
 
 
 def plots(scene: Scene) -> list[list[Plot]]:
-    """Rows of plots: pitch joints of both legs (or all joints), then the sensors.
+    """Rows of plots: pitch joints of both legs, or all joints of a robot without feet.
 
-    Quantities that were not recorded have no plot.
+    The last row shows the sensors. Quantities that were not recorded have no plot.
     """
     joints = [
         Plot(
@@ -119,7 +119,7 @@ def plots(scene: Scene) -> list[list[Plot]]:
 
 
 def _all_joints(scene: Scene) -> list[Plot]:
-    """A plot of each recorded joint, for robots without legs."""
+    """A plot of position and command for each recorded joint."""
     units = {
         joint.name: "m" if joint.slides else "rad" for joint in scene.description.links
     }
@@ -133,12 +133,17 @@ def _all_joints(scene: Scene) -> list[Plot]:
 
 
 def _rows(plots: Sequence[Plot]) -> list[Sequence[Plot]]:
-    """Plots in rows of `_ABREAST`."""
+    """Split plots into rows of at most `_ABREAST`."""
     return [plots[k : k + _ABREAST] for k in range(0, len(plots), _ABREAST)]
 
 
 def support_changes(scene: Scene) -> tuple[IntArray, list[str]]:
-    """Rows at which the supporting leg changes, and to which: left, right or both."""
+    """Rows of the recording at which the gait's supporting leg changes.
+
+    Returns:
+      The rows, the first known one included, and the leg from each row on: "left",
+      "right" or "both".
+    """
     support = scene.recording.columns.get(SUPPORT, np.empty(0))
     known = np.flatnonzero(~np.isnan(support))
     changes = known[np.diff(support[known], prepend=np.nan) != 0]

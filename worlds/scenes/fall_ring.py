@@ -1,4 +1,4 @@
-"""A ring on the ground around the place where a robot fell."""
+"""Draws a ring on the ground around the place where a robot fell."""
 
 import numpy as np
 
@@ -10,10 +10,10 @@ _CORNERS = 48
 
 
 def fall_ring(place_m: FloatArray, ground: Heightfield | None) -> FloatArray:
-    """(corners, 3) points once around a place [m], a little above the ground.
+    """(corners, 3) closed ring of points [m] around a place, 2 mm above the ground.
 
     Args:
-      place_m: (3,) in the world [m]; its height is used only without ground.
+      place_m: (3,) middle in the world; its height is used only without ground.
       ground: the ground that the ring follows; None for a level ring.
     """
     turn = np.linspace(0, 2 * np.pi, _CORNERS + 1)

@@ -1,6 +1,6 @@
-"""Forward kinematics: where every link of a robot is, for many ticks at once.
+"""Forward kinematics: poses of all links of a robot, for many ticks at once.
 
-These few lines keep NaN where a value is missing; SciPy's `Rotation` refuses it.
+A missing value (NaN) gives a NaN pose; SciPy's `Rotation` would refuse it.
 """
 
 from typing import NamedTuple
@@ -12,15 +12,15 @@ from robots.description import Description
 
 
 class LinkPoses(NamedTuple):
-    """Pose of a link's joint frame in the world, tick by tick."""
+    """Poses in the world of one link's frame (that of its joint), one for each tick."""
 
     position_m: FloatArray
-    """(ticks, 3) [m]."""
+    """(ticks, 3) place of the frame's origin in the world [m]."""
     orientation: FloatArray
     """(ticks, 4) unit quaternions w, x, y, z from link to world."""
 
     def axes(self) -> FloatArray:
-        """(ticks, 3, 3) matrices from link to world; NaN where the pose is."""
+        """(ticks, 3, 3) rotation matrices from link to world; NaN for a NaN pose."""
         w, x, y, z = self.orientation.T
         rows = (
             (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
@@ -30,25 +30,26 @@ class LinkPoses(NamedTuple):
         return np.moveaxis(np.array(rows), -1, 0)
 
     def points(self, points_m: FloatArray) -> FloatArray:
-        """(ticks, points, 3) in the world, of (points, 3) in the link's frame."""
+        """(ticks, points, 3) world places of (points, 3) in the link's frame [m]."""
         return self.position_m[:, np.newaxis] + points_m @ self.axes().mT
 
     def at(self, tick: int) -> "LinkPoses":
-        """The pose at one tick, as the only one."""
+        """The pose at one tick, as `LinkPoses` with one row."""
         return LinkPoses(self.position_m[[tick]], self.orientation[[tick]])
 
 
 def link_poses(
     description: Description, position_rad: FloatArray, base: LinkPoses
 ) -> dict[str, LinkPoses]:
-    """Forward kinematics: T_link = T_parent * translation(origin) * turn(axis, angle).
+    """Compute the poses of all links from joint positions and the root's poses.
 
-    A NaN in a joint or in the base reaches all that hangs on it, and nothing else.
+    T_link = T_parent * translation(origin) * rotation(axis, angle). A NaN in a joint
+    or in the base makes the poses of exactly the links after it NaN.
 
     Args:
       description: the robot.
-      position_rad: (ticks, joints) in the description's order; of sliding joints [m].
-      base: where the root link is; its quaternions need not be exactly of unit length.
+      position_rad: (ticks, joints) in the description's order; [m] of sliding joints.
+      base: poses of the root link; its quaternions are normalised here.
 
     Returns:
       Poses by link name, the root first.
@@ -74,14 +75,14 @@ def link_poses(
 
 
 def _product(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Quaternion products, (n, 4) each: turn by the second, then by the first."""
+    """(n, 4) products of quaternions w, x, y, z: first the `second` rotation acts."""
     w1, v1, w2, v2 = first[:, :1], first[:, 1:], second[:, :1], second[:, 1:]
     w = w1 * w2 - np.sum(v1 * v2, axis=1, keepdims=True)
     return np.hstack([w, w1 * v2 + w2 * v1 + np.cross(v1, v2)])
 
 
 def _rotate(orientation: FloatArray, vector: FloatArray) -> FloatArray:
-    """(n, 3) one vector, or (n, 3) vectors, turned by (n, 4) unit quaternions."""
+    """(n, 3) vectors (3,) or (n, 3), rotated by (n, 4) unit quaternions w, x, y, z."""
     w, v = orientation[:, :1], orientation[:, 1:]
     twice = 2.0 * np.cross(v, vector)
     return np.asarray(vector + w * twice + np.cross(v, twice))

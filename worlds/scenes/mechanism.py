@@ -13,32 +13,39 @@ if TYPE_CHECKING:
     import mujoco
 
 _NAO_EXTENT_M = 0.5
-"""A mechanism of this extent [m] is shown as large as a NAO, which is 0.57 m tall."""
+"""Largest extent along x, y or z [m] of a mechanism that is drawn with lines, marks and
+camera distances of a NAO's size, which is 0.57 m tall; other extents scale them."""
 
 _LEAST_KG = 1e-9
-"""Mass [kg] of a link that has none in the model: a picture needs no true masses."""
+"""Least mass [kg] of a link in the description: masses must be above 0, and pictures
+need no true ones."""
 
 _THIN = 0.03
-"""Radius of a link without any shape, as a share of the mechanism's extent."""
+"""Radius of the rod drawn for a link without shapes, as a share of the mechanism's
+largest extent."""
 
 _NO_MOTOR = Motor(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def mechanism(model: "mujoco.MjModel", name: str) -> Description:
-    """A robot model without feet, for pictures only: no world can step it.
+    """Describe a MuJoCo model without feet for pictures only; no world can step it.
 
-    Each shape of the model becomes a capsule along its longest side. Links without
-    shapes become thin rods from joint to joint.
+    Each shape (geom) of the model becomes a capsule along its longest side. Links
+    without shapes become thin rods from joint to joint.
 
     Args:
-      model: compiled; a tree of hinges and slides, with or without a free joint first.
+      model: a compiled tree of hinge and slide joints, with or without a free joint
+        at its root.
       name: the robot's name.
     """
     return _Mechanism(model).description(name)
 
 
 class _Mechanism:
-    """One model with all joints at zero, where every frame is parallel to the world."""
+    """A MuJoCo model with all joints at 0, and the links that are made from it.
+
+    In that pose all link frames of a description are parallel to the world frame.
+    """
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         import mujoco
@@ -63,7 +70,7 @@ class _Mechanism:
         self._extent_m = max(float(np.ptp(places_m, axis=0).max()), 0.01)
 
     def description(self, name: str) -> Description:
-        """The root, and a link for each joint."""
+        """Make the description: a root link, and a link for each hinge or slide."""
         nowhere = (0.0, 0.0, 0.0)
         return Description(
             name=name,
@@ -76,7 +83,11 @@ class _Mechanism:
         )
 
     def _geoms(self) -> list[tuple[int, FloatArray, float]]:
-        """Body, (2, 3) ends of the axis [m] and radius [m] of each bounded shape."""
+        """Capsules around all geoms but planes.
+
+        Returns:
+          MuJoCo's body id, (2, 3) ends of the axis in the world [m], and radius [m].
+        """
         import mujoco
 
         model, data, found = self._model, self._data, []
@@ -113,19 +124,19 @@ class _Mechanism:
         )
 
     def _origin_m(self, row: int) -> FloatArray:
-        """(3,) a joint's place in the world, or the root's."""
+        """(3,) place [m] of a joint in the world; the origin for -1, the root."""
         if row < 0:
             return np.zeros(3)
         return np.array(self._data.xanchor[self._joints[row]])
 
     def _carrier(self, row: int) -> int:
-        """Row of the joint before this one on the way from the root, -1 for none."""
+        """Row of the joint before joint `row` on the path from the root, or -1."""
         body = int(self._model.jnt_bodyid[self._joints[row]])
         before = [k for k in range(row) if self._body(k) == body]
         return before[-1] if before else self._mover(self._model.body_parentid[body])
 
     def _mover(self, body: int) -> int:
-        """Row of the last joint that moves a body, -1 for the root."""
+        """Row of the last joint between the root and a MuJoCo body, or -1."""
         while body > 0:
             own = [row for row in range(len(self._joints)) if self._body(row) == body]
             if own:
@@ -137,7 +148,7 @@ class _Mechanism:
         return int(self._model.jnt_bodyid[self._joints[row]])
 
     def _link(self, name: str, row: int) -> Link:
-        """Everything that moves with a joint, in its frame."""
+        """Link that joint `row` moves: mass and capsules of all bodies on it."""
         model, origin_m = self._model, self._origin_m(row)
         bodies = [body for body in range(model.nbody) if self._mover(body) == row]
         mass_kg = max(float(model.body_mass[bodies].sum()), _LEAST_KG)

@@ -1,4 +1,4 @@
-"""Scenes as pictures: the robot, its ground and its balance, seen by a camera."""
+"""Draws scenes as pictures: the robot, its ground and the marks of its balance."""
 
 from typing import NamedTuple
 
@@ -15,28 +15,31 @@ from worlds.scenes.scene import SIDES, Scene
 from worlds.scenes.shapes import shape_colours
 
 _EYE_M = (1.25, -1.55, 0.62)
-"""The camera as seen from its target [m, for a NAO]: ahead, on the right, and above."""
+"""Place of the camera relative to its target [m]: ahead, to the right and above. It is
+for a NAO and is scaled with the robot's size."""
 
 _MIDDLE_M = 0.27
-"""Height of the camera's target above the lowest sole [m, for a NAO]."""
+"""Height of the camera's target above the lowest sole [m], for a NAO (0.57 m tall); it
+is scaled with the robot's size."""
 
 _VIEW_RAD = 0.34
-"""Angle of view [rad]: a NAO with both arms stretched out fits in."""
+"""Angle of view from the lower to the upper edge of a picture [rad]: a NAO with both
+arms stretched out fits in."""
 
 _STEADY_S = 0.3
-"""Standard deviation of the bell curve that smooths the camera's way [s]."""
+"""Standard deviation [s] of the Gaussian that smooths the motion of the camera."""
 
 _SOLE_M, _LINE_M, _POINT_M, _ARROW_M = 0.006, 0.0025, 0.009, 0.005
-"""Radii of the sole's edge (for a NAO), and of lines, points and arrows [m]."""
+"""Radii [m] of the capsules that draw a sole (of a NAO), lines, points and arrows."""
 
 
 class LinkCapsules(NamedTuple):
-    """Capsules that a link carries, in its own frame.
+    """The n capsules that draw one link, in the link's frame.
 
     Attributes:
-      link: its name.
-      start_m, end_m: (n, 3) ends of their axes [m].
-      radius_m: (n,) [m].
+      link: name of the link.
+      start_m, end_m: (n, 3) ends of the capsules' axes.
+      radius_m: (n,) radii of the capsules.
       colour: (n, 3) red, green, blue from 0 to 255.
     """
 
@@ -48,10 +51,12 @@ class LinkCapsules(NamedTuple):
 
 
 class SceneCamera:
-    """A camera that follows a scene's robot, and shows every robot equally large.
+    """Takes pictures of a scene with a camera that follows the robot.
+
+    Its distance is scaled so that robots of all sizes look equally large.
 
     Attributes:
-      parts: the robot's shapes, by link.
+      parts: capsules of the robot's links and soles.
     """
 
     def __init__(
@@ -61,14 +66,14 @@ class SceneCamera:
         size_px: tuple[int, int],
         with_balance: bool = False,
     ) -> None:
-        """Choose where to look from at each tick.
+        """Compute the link poses and the camera's target at each tick.
 
         Args:
-          scene: whose recording has all joints.
-          accent: the colour of this robot.
+          scene: robot, ground and recording.
+          accent: the colour that marks this robot.
           size_px: width and height of the pictures.
-          with_balance: also draw the forces at the feet, the support polygon, the
-            ZMP, the centre of mass and its way.
+          with_balance: whether to draw the forces at the feet, the support polygon, the
+            zero-moment point, the centre of mass and its path, too.
         """
         self._scene, self._size_px = scene, size_px
         self._poses = scene.link_poses()
@@ -87,7 +92,10 @@ class SceneCamera:
         self._target_m = _steadied(middle_m, scene.recording.time_s)
 
     def picture(self, tick: int) -> Image:
-        """The picture at a tick; links whose pose is not known then are left out."""
+        """Draw the picture (height, width, 3) at a tick, a row of the recording.
+
+        Links whose pose is unknown at this tick are left out.
+        """
         target_m = self._target_m[tick]
         eye_m = target_m + np.array(_EYE_M) * self._size
         camera = Camera(tuple(eye_m), tuple(target_m), self._size_px, _VIEW_RAD)
@@ -106,7 +114,7 @@ class SceneCamera:
         return Rounds(start_m, end_m, part.radius_m, part.colour, dull)
 
     def _marks(self, found: Balance, tick: int) -> list[Rounds]:
-        """Forces, and marks on the ground, in colours that no light changes."""
+        """Forces, balance points and support polygon, in colours without shading."""
         way_m = found.centre_of_mass_m[: tick + 1 : 3]
         marks = [_line(way_m, _LINE_M, colours.MASS)]
         points = (
@@ -144,7 +152,7 @@ class SceneCamera:
 
 
 def _parts(scene: Scene, accent: colours.Colour) -> list[LinkCapsules]:
-    """The shapes of all links, and the soles."""
+    """Capsules of all links that have shapes, and of the soles."""
     robot = scene.description
     parts = [
         LinkCapsules(
@@ -166,7 +174,7 @@ def _parts(scene: Scene, accent: colours.Colour) -> list[LinkCapsules]:
 def _sole(
     link: str, foot: Foot, radius_m: float, colour: colours.Colour
 ) -> LinkCapsules:
-    """A sole as a plate: capsules around its rim, and side by side across it."""
+    """Fill a sole with capsules: around its outline, and side by side across it."""
     outline_m = foot.outline_m
     low_m, high_m = outline_m[:, 0].min(), outline_m[:, 0].max()
     bars = max(int((high_m - low_m) / (1.5 * radius_m)), 1)
@@ -206,7 +214,7 @@ def _line(points_m: FloatArray, radius_m: float, colour: colours.Colour) -> Roun
 
 
 def _steadied(place_m: FloatArray, time_s: FloatArray) -> FloatArray:
-    """(ticks, 3) smoothed places [m]; missing ones are interpolated."""
+    """(ticks, 3) places [m], smoothed over `_STEADY_S`; NaN ones are interpolated."""
     known = np.flatnonzero(np.isfinite(place_m).all(axis=1))
     if not known.size:
         return np.zeros_like(place_m)

@@ -1,4 +1,4 @@
-"""Round shapes in the world: where rays meet them, and the shadows that they throw."""
+"""Capsules in the world: where rays of light meet them, and their shadows."""
 
 from typing import NamedTuple
 
@@ -7,21 +7,21 @@ import numpy as np
 from groundwalk.arrays import BoolArray, FloatArray
 
 SUN = np.array([-0.15, -0.5, 0.85]) / np.linalg.norm([-0.15, -0.5, 0.85])
-"""(3,) direction to the sun, at the right of a robot that walks along x."""
+"""(3,) unit vector to the sun: above, to the right of a robot that walks along x."""
 
 PENUMBRA_M = 0.006
 """Width of a shadow's soft edge [m]."""
 
 
 class Rounds(NamedTuple):
-    """Capsules in the world; one whose two ends are the same place is a sphere.
+    """The n capsules of a picture; one whose two ends coincide is a sphere.
 
     Attributes:
-      start_m, end_m: (n, 3) ends of the axes [m].
-      radius_m: (n,) [m].
+      start_m, end_m: (n, 3) ends of the axes in the world frame.
+      radius_m: (n,) radii.
       colour: (n, 3) red, green, blue from 0 to 255.
-      glows: (n,) true for marks such as a force's arrow: these have one colour in any
-        light, are seen through everything else and throw no shadow.
+      glows: (n,) True for marks such as a force's arrow, which have the same colour in
+        any light, are never hidden by other shapes and cast no shadow.
     """
 
     start_m: FloatArray
@@ -32,15 +32,15 @@ class Rounds(NamedTuple):
 
 
 def axis_part(place: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Where capsules' axes are nearest to places.
+    """For each place, find the nearest point of the axis of its capsule.
 
     Args:
       place: (n, 2) or (n, 3) places [m].
-      start: one end of each place's axis, of the same shape [m].
-      end: the other end [m].
+      start: starts of the axes [m]; of the same shape, or one for all places.
+      end: ends of the axes [m], likewise.
 
     Returns:
-      (n, 1) from 0, the start of the axis, to 1, its end.
+      (n, 1) position along the axis, from 0 at its start to 1 at its end.
     """
     axis = end - start
     square = np.sum(axis * axis, axis=-1, keepdims=True)
@@ -51,17 +51,17 @@ def axis_part(place: FloatArray, start: FloatArray, end: FloatArray) -> FloatArr
 def distances(
     eye: FloatArray, rays: FloatArray, start: FloatArray, end: FloatArray, radius: float
 ) -> FloatArray:
-    """How far along each ray a capsule is met [m]; infinity where it is not.
+    """(...) distance [m] at which each ray meets a capsule; infinity if it does not.
 
     Args:
-      eye: (3,) where all rays start [m].
-      rays: (..., 3) their directions, unit vectors.
+      eye: (3,) start of all rays [m].
+      rays: (..., 3) directions of the rays, as unit vectors.
       start: (3,) one end of the capsule's axis [m].
-      end: (3,) its other end [m].
-      radius: of the capsule [m].
+      end: (3,) the other end [m].
+      radius: radius of the capsule [m].
 
-    With the axis d and what lies across it marked by _|_, the side of the cylinder is
-    where |(eye - start)_|_ + t ray_|_| = radius; the ends are two spheres.
+    A ray meets the cylinder at the t where |(eye - start) + t ray|, without its part
+    along the axis, equals the radius. The ends of the capsule are two spheres.
     """
     axis, to_eye = end - start, eye - start
     square = float(axis @ axis)
@@ -87,17 +87,14 @@ def _sphere(to_eye: FloatArray, rays: FloatArray, radius: float) -> FloatArray:
 
 
 def in_sun(rounds: Rounds, place_m: FloatArray) -> FloatArray:
-    """How much sunlight reaches each place.
+    """(n,) share of sunlight that reaches each place: 0 in a shadow, 1 in the sun.
+
+    Seen from the sun, every capsule is a flat stadium: places inside of the stadium
+    and behind the capsule are in its shadow.
 
     Args:
-      rounds: shapes that throw shadows.
-      place_m: (n, 3) [m].
-
-    Returns:
-      (n,) 0 in the shadow of a shape, 1 in the sun.
-
-    Along the direction of the sun every capsule is a flat stadium: what is within
-    the stadium, and behind the capsule, is in its shadow.
+      rounds: capsules; those that glow cast no shadow.
+      place_m: (n, 3) places.
     """
     known = np.isfinite(rounds.start_m + rounds.end_m).all(axis=1)
     shapes = np.flatnonzero(~rounds.glows & known)
@@ -130,6 +127,6 @@ def in_sun(rounds: Rounds, place_m: FloatArray) -> FloatArray:
 def _within(
     x: FloatArray, y: FloatArray, low: FloatArray, high: FloatArray
 ) -> BoolArray:
-    """(n,) whether places (x, y) lie in a rectangle."""
+    """(n,) whether points (x, y) lie in the rectangle with corners `low` and `high`."""
     inside = (x > low[0]) & (x < high[0]) & (y > low[1]) & (y < high[1])
     return np.asarray(inside)

@@ -1,4 +1,4 @@
-"""A scene: one recording with the robot and the ground that are drawn with it."""
+"""`Scene`: a recording together with its robot and ground, ready to be drawn."""
 
 import hashlib
 import itertools
@@ -27,10 +27,10 @@ class Scene:
     """One recording with its robot and its ground, ready to be drawn.
 
     Attributes:
-      name: first part of all its paths in a viewer, such as "sim" or "start/real".
-      recording: what the robot did.
+      name: name in a viewer, such as "sim" or "start/real"; all paths begin with it.
+      recording: the motion of the robot.
       description: the robot; it must have all joints of the recording.
-      ground: the ground that it walked on; None if there was none or it is unknown.
+      ground: the ground on which it walked; None if there was none or it is unknown.
     """
 
     name: str
@@ -39,11 +39,11 @@ class Scene:
     ground: Heightfield | None = None
 
     def __post_init__(self) -> None:
-        """Check the name, and that the recording is one of this robot.
+        """Check the name, and that the robot has all recorded joints.
 
         Raises:
           BadValueError: the name is no path of letters, digits, `_`, `-` and `.`.
-          BadRecordingError: the recording has a joint that the robot has not.
+          BadRecordingError: the recording has a joint that the robot does not have.
         """
         if not _NAME.fullmatch(self.name):
             raise BadValueError(
@@ -60,15 +60,15 @@ class Scene:
 
     @property
     def arrow_m_per_n(self) -> float:
-        """Length of an arrow per newton: the robot's weight is as long as its legs."""
+        """Arrow length per force [m/N]: the robot's weight is as long as its legs."""
         scale = self.description.scale
         return _NAO_ARROW_M_PER_N * scale.length / scale.weight
 
     def link_poses(self) -> dict[str, LinkPoses]:
-        """Pose of every link, by name, NaN where a value is missing.
+        """Poses of all links by name, at each tick; NaN where a value is missing.
 
-        A base that was not recorded stays at the world's origin, upright. A joint that
-        was not recorded stays at zero.
+        A base that was not recorded is upright at the world's origin, and a joint that
+        was not recorded is at 0.
         """
         recorded, joints = self.recording.joints, self.description.joints
         position_rad = np.zeros((self.recording.ticks, len(joints)))
@@ -81,10 +81,10 @@ class Scene:
         return link_poses(self.description, position_rad, base)
 
     def foot_force_n(self, side: str) -> FloatArray | None:
-        """(ticks,) force on a foot [N], of its sensors together; None if not recorded.
+        """(ticks,) total force on a foot's sensors [N]; None if it was not recorded.
 
         Args:
-          side: one of SIDES.
+          side: "left" or "right".
         """
         if self.recording.has("foot_force"):
             return self.recording.columns[f"foot_force.{side}"]
@@ -93,14 +93,15 @@ class Scene:
         return None
 
     def sensor_forces_n(self, side: str) -> tuple[FloatArray, FloatArray] | None:
-        """Where a foot's forces act and how large they are; None if not recorded.
+        """Places of a foot's force sensors and their forces.
 
         Args:
-          side: one of SIDES.
+          side: "left" or "right".
 
         Returns:
-          (k, 3) points of the sole in the foot's frame [m] and (ticks, k) forces [N]:
-          the four sensors or, where only their sum was recorded, their mean place.
+          (k, 3) points of the sole in the foot's frame [m] and (ticks, k) forces [N] of
+          the four sensors; one point in their middle if only the sum of the forces was
+          recorded; None if none were.
         """
         foot = self.description.feet[SIDES.index(side)]
         points_xy_m = foot.sensors_m
@@ -116,10 +117,10 @@ class Scene:
         return np.hstack([points_xy_m, height_m]), forces_n
 
     def pitch_joints(self, side: str) -> tuple[str, ...]:
-        """The recorded joints of a leg that turn about the y axis, from the hip down.
+        """Names of a leg's recorded joints with a pitch (y) axis, from the hip down.
 
         Args:
-          side: one of SIDES.
+          side: "left" or "right".
         """
         links = self.description.links
         if not self.description.feet:
@@ -135,7 +136,7 @@ class Scene:
 
     @property
     def title(self) -> str:
-        """The name and, where it is known, how the rollout ended."""
+        """The scene's name and, if it is known, how and when the rollout ended."""
         end = self.recording.metadata.end
         if not end:
             return self.name
@@ -143,7 +144,7 @@ class Scene:
 
     @property
     def properties(self) -> dict[str, str]:
-        """The metadata that are known, as text by name."""
+        """The recording's known metadata as text, by name."""
         about = self.recording.metadata
         known = {
             "robot": about.robot,
@@ -157,18 +158,18 @@ class Scene:
         return {name: text for name, text in known.items() if text}
 
     def _vector(self, name: str, otherwise: Sequence[float]) -> FloatArray:
-        """(ticks, k) a vector of the recording, or a constant."""
+        """(ticks, k) values of a recorded vector, or `otherwise` (k,) at each tick."""
         if self.recording.has(name):
             return self.recording.vector(name)
         return np.tile(otherwise, (self.recording.ticks, 1))
 
 
 def check_beside(scenes: Sequence[Scene]) -> None:
-    """Check that scenes can stand side by side.
+    """Check that there are scenes and that their names can be paths in one file.
 
     Raises:
-      BadValueError: there are no scenes; or the name of one is that of another one, or
-        the first part of it.
+      BadValueError: there are no scenes; or a scene has the name of another one, or a
+        name that is the first part of another one's path.
     """
     if not scenes:
         raise BadValueError("no scenes; at least one recording is needed")
@@ -182,7 +183,7 @@ def check_beside(scenes: Sequence[Scene]) -> None:
 
 
 def content_id(scenes: Sequence[Scene]) -> str:
-    """32 hexadecimal digits that identify these recordings, names and grounds."""
+    """Hash of scenes: 32 hexadecimal digits of their recordings, names and grounds."""
     content = hashlib.sha256()
     for scene in scenes:
         content.update(f"{scene.name}\n{scene.description.name}\n".encode())

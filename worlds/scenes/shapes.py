@@ -1,4 +1,4 @@
-"""The shapes of robots and ground as arrays that a viewer can draw."""
+"""Turns the shapes of robots and ground into arrays that a viewer can draw."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,18 +16,25 @@ SOLE_THICKNESS_M = 0.012
 
 
 class Capsules(NamedTuple):
-    """Capsules in Rerun's form: from one end along the turned z axis."""
+    """Capsules as Rerun takes them: from `translations` along the rotated z axis.
+
+    All lengths are in metres; `colors` is (n, 3).
+    """
 
     lengths: FloatArray
     radii: FloatArray
     translations: FloatArray
     quaternions: FloatArray
-    """(n, 4) x, y, z, w."""
+    """(n, 4) rotations x, y, z, w of the z axis to the capsules' axes."""
     colors: npt.NDArray[np.uint8]
 
 
 class Mesh(NamedTuple):
-    """Triangles between vertices."""
+    """Triangles between vertices, as Rerun takes them.
+
+    Positions [m] and normals are (vertices, 3), colours red, green, blue (vertices, 3),
+    and the indices of the triangles' vertices (triangles, 3).
+    """
 
     vertex_positions: FloatArray
     triangle_indices: IntArray
@@ -36,13 +43,13 @@ class Mesh(NamedTuple):
 
 
 def shape_colours(shapes: Sequence[Capsule], accent: Colour) -> npt.NDArray[np.uint8]:
-    """(n, 3) colours of a link's shapes; the accent is the colour of this robot."""
+    """(n, 3) colours of a link's shapes; `accent` is the colour of the robot."""
     known = {"shell": SHELL, "dark": DARK, "accent": accent}
     return np.array([known[shape.colour] for shape in shapes], np.uint8)
 
 
 def capsules(shapes: Sequence[Capsule], accent: Colour) -> Capsules:
-    """A link's shapes in Rerun's form; `accent` is the robot's own colour."""
+    """A link's shapes as Rerun takes them; `accent` is the colour of the robot."""
     start = np.array([shape.start_m for shape in shapes])
     axis = np.array([shape.end_m for shape in shapes]) - start
     downward = axis[:, 2] < 0
@@ -64,7 +71,7 @@ def capsules(shapes: Sequence[Capsule], accent: Colour) -> Capsules:
 
 
 def ground_mesh(ground: Heightfield) -> Mesh:
-    """The triangles of a heightfield, coloured as a chessboard to show the motion."""
+    """Triangles of a heightfield, coloured as a chessboard so that motion shows."""
     vertices_m = ground.vertices_m
     slope_y, slope_x = np.gradient(ground.heights_m, ground.spacing_m)
     normals = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1)
@@ -78,13 +85,13 @@ def ground_mesh(ground: Heightfield) -> Mesh:
 
 
 def chessboard(place_m: FloatArray) -> npt.NDArray[np.uint8]:
-    """(n, 3) colour of the ground at (n, 3) places: squares show the motion."""
+    """(n, 3) colour of the ground at places (n, 3) [m], in squares of `SQUARE_M`."""
     square = np.floor(place_m[:, :2] / SQUARE_M).astype(np.intp).sum(axis=1) % 2
     return np.asarray(np.array(GRASS, np.uint8)[square])
 
 
 def sole_mesh(foot: Foot, colour: Colour) -> Mesh:
-    """The sole as a plate of its true outline, in the foot's frame."""
+    """Mesh of a sole as a plate with its true outline, in the foot's frame."""
     outline_m = _counterclockwise(foot.outline_m)
     corners = len(outline_m)
     low, high = (
@@ -114,7 +121,7 @@ def sole_mesh(foot: Foot, colour: Colour) -> Mesh:
 
 
 def sole_rim(foot: Foot) -> FloatArray:
-    """(corners + 1, 3) once around the sole, in the foot's frame."""
+    """(corners + 1, 3) closed outline of a sole in the foot's frame [m]."""
     rim_m = np.vstack([foot.outline_m, foot.outline_m[:1]])
     return np.hstack([rim_m, np.full((len(rim_m), 1), foot.sole_height_m)])
 
