@@ -1,1 +1,1 @@
-"""The study of `groundwalk humanoids`: what limits each robot, and its page."""
+"""Study of `groundwalk humanoids`: measures of what limits a robot, and the page."""

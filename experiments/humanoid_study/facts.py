@@ -13,17 +13,17 @@ from worlds import Recording
 from worlds.scenes.forward_kinematics import LinkPoses, link_poses
 
 FEET_PARTS = (-1.0, 0.0, 1.0)
-"""Positions of the feet at which `reach` is measured: behind the hips, below them and
-ahead of them, in units of a quarter of a cycle's distance."""
+"""Positions of the feet, relative to the hips, at which `reach` is measured: behind,
+below and ahead, in units of a quarter of the distance walked in one gait cycle."""
 
 
 class Reach(NamedTuple):
-    """The deviation from a gait's leg poses that the joints' ranges cause.
+    """How far the joints' ranges keep a robot's feet from the poses of a gait.
 
     Attributes:
       place_m: largest distance of an ankle from its target [m].
       tilt_rad: largest tilt of a sole, which should be level [rad].
-      joint: the leg joint whose target is farthest beyond its range; "" if none is.
+      joint: the leg joint whose target is farthest outside its range; "" if none is.
     """
 
     place_m: float
@@ -35,8 +35,8 @@ class Saturation(NamedTuple):
     """The motor that is at its limit for the largest share of a walk.
 
     Attributes:
-      share: share of the time, from 0 to 1.
-      joint: name of its joint; "" if no motor is ever at its limit.
+      share: share of the walk's time at the limit, from 0 to 1.
+      joint: name of the motor's joint; "" if no motor is ever at its limit.
     """
 
     share: float
@@ -44,14 +44,14 @@ class Saturation(NamedTuple):
 
 
 class Sole(NamedTuple):
-    """Length and width of a sole in units of the NAO's, scaled to the robot's size."""
+    """Length and width of a sole, relative to the NAO's scaled to the robot's size."""
 
     length: float
     width: float
 
 
 def sole(description: Description) -> Sole:
-    """Measure a robot's sole relative to the NAO's at the same robot size."""
+    """Measure a robot's sole relative to the NAO's sole scaled to the robot's size."""
     of_nao, own = (
         np.ptp(robot.feet[0].outline_m, axis=0) / robot.scale.length
         for robot in (robots.get("nao"), description)
@@ -63,13 +63,13 @@ def sole(description: Description) -> Sole:
 def reach(description: Description, gait: Gait) -> Reach:
     """Measure how far the joint ranges keep a gait's feet from their targets.
 
-    The targets are the farthest positions ahead and behind, on the ground and lifted.
-    The walk engine's inverse kinematics gives the joint angles, which are clipped to
-    the ranges; forward kinematics then gives the feet.
+    The targets are behind, below and ahead of the hips, on the ground and lifted. The
+    walk engine's inverse kinematics gives the joint angles, which are clipped to the
+    ranges; forward kinematics then gives the poses of the feet.
 
     Args:
       description: the robot model.
-      gait: the gait, for the NAO's size.
+      gait: the gait in the NAO's size; it is scaled to the robot.
     """
     body = biped(description)
     ankle_m = _targets_m(body, gait)
@@ -92,10 +92,9 @@ def reach(description: Description, gait: Gait) -> Reach:
 
 
 def saturation(description: Description, recording: Recording) -> Saturation:
-    """Find the motor that is at its limit most of the time.
+    """Find the motor that is at its limit for the largest share of a walk.
 
-    The drive of each motor is computed from the recorded commands, positions and
-    velocities.
+    Each motor's torque is computed from recorded commands, positions and velocities.
 
     Args:
       description: the robot model.
@@ -112,7 +111,7 @@ def saturation(description: Description, recording: Recording) -> Saturation:
 
 
 def _targets_m(body: Biped, gait: Gait) -> FloatArray:
-    """(3, 2, n) targets of the ankles in the torso's frame [m], the right mirrored."""
+    """(3, 2, n) xyz targets of both ankles in the torso's frame [m]; right mirrored."""
     scale, leg = body.scale, body.leg
     quarter_m = gait["max_forward"] * gait["step_period"] / 2 * scale.length
     ahead = quarter_m * np.array(FEET_PARTS)
@@ -125,7 +124,7 @@ def _targets_m(body: Biped, gait: Gait) -> FloatArray:
 
 
 def _angles(body: Biped, ankle_m: FloatArray) -> FloatArray:
-    """(n, joints) angles [rad] with level soles, not yet clipped to the ranges."""
+    """(n, joints) angles [rad] for ankles (3, 2, n) [m] and level soles, unclipped."""
     n = ankle_m.shape[2]
     none = np.zeros((2, n))
     left, right = legs_of(body).angles(ankle_m, none, none, np.zeros((2, 2, n)))

@@ -20,7 +20,8 @@ TITLE = "Which other humanoids walk 5 s after a short search?"
 PICTURE = "humanoids.png"
 PANELS_IN_A_ROW = 3
 DOTS_PER_INCH = 80
-"""With this resolution three panels are as wide as a page of text can show."""
+"""Resolution of the picture: three panels of 5 inches are then 1200 pixels wide, which
+fits a page."""
 
 COLUMNS = [
     "robot", "mass [kg]", "size", "speed [cm/s]", "falls", "fall rate, 95 % interval",
@@ -44,20 +45,20 @@ NOTES = (
     "`simple_humanoid_as_is` has the same sole and the ranges of the file.",
 )
 _FAR_M, _TILTED_RAD, _OFTEN = 0.02, math.radians(10), 0.5
-"""Beyond these limits a measure is named as a cause of falls: a foot's distance from
-its place [m], the tilt of a sole [rad], the share of time at which a motor is at its
-limit. They lie above the values at which a robot still walks: Romeo's soles tilt by up
-to 7 degrees, and one of its motors is at its limit for 45 % of the time."""
+"""Limits above which a measure is named as a cause of falls: distance of a foot from
+its target [m], tilt of a sole [rad], share of time that a motor is at its limit. They
+are higher than the values of robots that walk: Romeo's soles tilt by up to 7 degrees,
+and one of its motors is at its limit for 45 % of the time."""
 
 Result = Mapping[str, Mapping[str, Any]]
-"""Measures of each robot, by its name, as `result.json` has them."""
+"""Measures of each robot, by its name, as in the run's `result.json`."""
 
 
 def write_humanoids_page(folder: RunFolder, result: Result) -> None:
-    """Write the report of a run.
+    """Write the report page of `groundwalk humanoids`.
 
     Args:
-      folder: the run, with a folder for each robot.
+      folder: the run's folder, with a subfolder for each robot.
       result: measures of each robot, by its name.
     """
     columns, rows = robot_rows(result)
@@ -72,7 +73,7 @@ def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
     """Draw a walk of each robot into a PNG file, three side by side.
 
     Args:
-      recordings: by the name of the robot.
+      recordings: recordings by the name of the robot.
       path: the file.
     """
     strips = [walk_strip(scene) for scene in make_scenes(recordings)]
@@ -85,12 +86,12 @@ def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
 
 
 def robot_rows(result: Result) -> tuple[list[str], list[list[str]]]:
-    """The headings of the table, and a row for each robot."""
+    """The headings and the rows of the table of all robots' measures."""
     return COLUMNS, [_row(short_name(name), of) for name, of in result.items()]
 
 
 def answer(result: Result) -> Iterator[str]:
-    """One sentence on the robots that walk, then one on each robot that falls."""
+    """Yield a sentence on the robots that walk, then one on each robot that falls."""
     result = {short_name(name): of for name, of in result.items()}
     walks = [name for name, of in result.items() if not _tuned(of)["falls"]]
     trials = next(_tuned(of)["trials"] for of in result.values())
@@ -111,7 +112,7 @@ def answer(result: Result) -> Iterator[str]:
 
 
 def why(of: Mapping[str, Any]) -> str:
-    """Explain a robot's falls by its measures, or say that none explains them."""
+    """Explain a robot's falls by its measures `of`, or say that none explains them."""
     reach, motor = of["reach"], of["saturation"]
     causes = []
     if reach["place_m"] > _FAR_M or reach["tilt_rad"] > _TILTED_RAD:

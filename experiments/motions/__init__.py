@@ -1,1 +1,1 @@
-"""Motions that excite a robot's physics: in the air, and standing on its feet."""
+"""Motions that excite a robot's physics: in the air, and standing or walking."""

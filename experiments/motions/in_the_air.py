@@ -8,16 +8,17 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 
 MOTIONS = ("multisine", "chirp", "steps", "ramps")
-"""Names of all motions in the air."""
+"""Names of all motions of a robot whose base is fixed in the air."""
 
 _RANGE_USED, _MOST_RAD = 0.8, 0.6
-"""Share of the free range that a joint uses, and its largest amplitude [rad]."""
+"""Limits of a joint's amplitude: share of the distance from its centre to the nearer
+end of its range, and an absolute limit [rad]."""
 
 _SPEED_USED = 0.8
-"""Share of a joint's speed limit that commands use."""
+"""Largest speed of a joint's commands, as a share of the joint's speed limit."""
 
 _START_S = 1.0
-"""Time in which a motion fades in [s]."""
+"""Time in which a motion's amplitude grows from zero [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +26,9 @@ class Excitation:
     """The joints that move, and the limits of their motion.
 
     Attributes:
-      centre_rad: (j,) angle at which each joint starts and rests.
-      range_rad: (j, 2) lower and upper end of each joint's range.
-      speed_rad_s: (j,) largest speed of each joint's commands.
+      centre_rad: (j,) angle [rad] around which each joint moves and at which it starts.
+      range_rad: (j, 2) lower and upper end of each joint's range [rad].
+      speed_rad_s: (j,) speed limit of each joint [rad/s].
       moves: (j,) whether a joint moves; the others are held at their centre.
       together: pairs of joints that always get the same command.
     """
@@ -39,14 +40,14 @@ class Excitation:
     together: tuple[tuple[int, int], ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse centres outside of the range."""
+        """Refuse a centre outside of the joint's range."""
         low, high = self.range_rad.T
         if not ((low <= self.centre_rad) & (self.centre_rad <= high)).all():
             raise BadValueError(f"centre {self.centre_rad} lies outside of the range")
 
     @property
     def amplitude_rad(self) -> FloatArray:
-        """(j,) amplitude that keeps each joint in its range; 0 if it does not move."""
+        """(j,) amplitude [rad] within the joint's range; 0 for a joint that is held."""
         low, high = self.range_rad.T
         room = np.minimum(self.centre_rad - low, high - self.centre_rad)
         return np.where(self.moves, np.minimum(_RANGE_USED * room, _MOST_RAD), 0.0)
@@ -54,11 +55,11 @@ class Excitation:
     def commands(
         self, motion: str, time_s: FloatArray, rng: np.random.Generator
     ) -> FloatArray:
-        """Draw the commands of a motion.
+        """Draw the commands of a motion at random.
 
         Args:
           motion: one of `MOTIONS`.
-          time_s: (T,) times of the commands, from 0 on [s].
+          time_s: (T,) times of the commands [s], beginning with 0.
           rng: draws frequencies, phases and levels.
 
         Returns:
@@ -79,7 +80,7 @@ class Excitation:
 def multisine(
     plan: Excitation, time_s: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """(T, j) sums of six sines from 0.1 to 2.5 Hz with random phases [rad]."""
+    """(T, j) angles [rad] from the centre: six sines, 0.1 to 2.5 Hz, random phases."""
     j = len(plan.centre_rad)
     frequency = np.geomspace(0.1, 2.5, 6)[:, None] * rng.uniform(0.85, 1.15, (6, j))
     phase = rng.uniform(0, 2 * np.pi, (6, j))
@@ -89,7 +90,7 @@ def multisine(
 
 
 def chirp(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """(T, j) sines whose frequency rises from 0.1 to 4 Hz while they shrink [rad]."""
+    """(T, j) angles [rad] from the centre: shrinking sines, from 0.1 up to 4 Hz."""
     j = len(plan.centre_rad)
     low, high = 0.1 * rng.uniform(0.8, 1.2, j), rng.uniform(3.0, 4.0, j)
     end = max(float(time_s[-1]), 1e-9)
@@ -103,7 +104,7 @@ def chirp(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> Flo
 
 
 def steps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """(T, j) random levels [rad] of 0.4 to 1.2 s, independently in each joint."""
+    """(T, j) angles [rad] from the centre: random levels, each for 0.4 to 1.2 s."""
     shape = np.zeros((len(time_s), len(plan.centre_rad)))
     for joint, amplitude in enumerate(plan.amplitude_rad):
         at = rng.uniform(0.1, 0.6)
@@ -114,7 +115,7 @@ def steps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> Flo
 
 
 def ramps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """(T, j) slow ramps at several speeds, with reversals and pauses [rad]."""
+    """(T, j) angles [rad] from the centre: slow ramps with reversals and pauses."""
     shape = np.zeros((len(time_s), len(plan.centre_rad)))
     for joint, amplitude in enumerate(plan.amplitude_rad):
         at, level = rng.uniform(0.0, 0.5), 0.0
@@ -133,7 +134,7 @@ def ramps(plan: Excitation, time_s: FloatArray, rng: np.random.Generator) -> Flo
 
 
 def _within(plan: Excitation, shape: FloatArray, time_s: FloatArray) -> FloatArray:
-    """Scale a motion (T, j) to amplitude and speed limit, and fade it in."""
+    """Fade in a motion (T, j), and scale it to amplitude and speed limit [rad]."""
     start = 0.5 - 0.5 * np.cos(np.pi * np.minimum(time_s / _START_S, 1.0))
     shape = shape * start[:, None]
     scale = plan.amplitude_rad / np.maximum(np.abs(shape).max(axis=0), 1e-9)

@@ -13,31 +13,32 @@ from worlds.hidden.engine import BodySense
 from worlds.world import TICK_S
 
 STANDING_MOTIONS = ("squat", "fast_squat", "sway")
-"""Names of all motions in which both feet stay on the ground."""
+"""Names of all motions in which both feet keep standing on the ground."""
 
 _HIGH, _DEEP = 0.97, 0.80
-"""Distance from hip to ankle as a share of the straight leg: upright, and squatting."""
+"""Distance from hip to ankle as a share of the straight leg's length: when standing
+upright, and in the deepest squat."""
 
 _SWAY_M, _SLOW_HZ, _FAST_HZ = 0.02, 0.35, 0.9
-"""Amplitude of swaying [m], and frequencies of slow and fast motions [Hz]."""
+"""Amplitude of swaying sideways [m]; frequencies of slow and of fast motions [Hz]."""
 
 _ARM_RAD, _ARM_ROLL_RAD, _START_S = 0.3, 0.2, 1.0
-"""Amplitude of the arms' swing, their angle away from the body [rad], and the time in
-which the motion fades in [s]."""
+"""Amplitude of the arms' swing [rad], their constant angle away from the body [rad],
+and the time in which a motion's amplitude grows from zero [s]."""
 
 WALK_SPEEDS = (0.06, 0.16)
-"""Range of the walking speed [m/s]."""
+"""Range from which the forward speed of a walk is drawn [m/s]."""
 
 
 def standing_commands(
     description: Description, motion: str, time_s: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """Draw the commands of a motion with both feet on the ground.
+    """Draw the commands of a motion with both feet on the ground at random.
 
     Args:
-      description: the robot model, of a biped.
+      description: the robot model of a biped.
       motion: one of `STANDING_MOTIONS`.
-      time_s: (T,) times of the commands, from 0 on [s].
+      time_s: (T,) times of the commands [s], beginning with 0.
       rng: draws speeds, depths and the motion of the arms.
 
     Returns:
@@ -66,7 +67,7 @@ def standing_commands(
 
 
 def _pose(body: Biped, down: FloatArray, aside_m: FloatArray) -> FloatArray:
-    """(T, joints) targets [rad] for hips lowered by a share and moved sideways [m]."""
+    """(T, joints) targets [rad]: squat `down` (T,) of 0 to 1, hips moved aside (T,)."""
     leg = body.leg
     length = (leg.thigh_m + leg.tibia_m) * (_HIGH - (_HIGH - _DEEP) * down)
     hip_x, hip_y, hip_z = leg.hip_m
@@ -109,7 +110,7 @@ def walking_feed(
     """Make the start pose of a walk, and a function that computes its commands.
 
     Args:
-      description: the robot model, of a biped.
+      description: the robot model of a biped.
       rng: draws the walking speed.
       rest_rows: number of ticks for which the robot stands before it walks.
 

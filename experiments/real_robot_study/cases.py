@@ -1,4 +1,4 @@
-"""The real robots that are diagnosed, and what others published about them."""
+"""The real robots that are diagnosed, with published values of their physics."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from worlds import ServoGains
 
 @dataclass(frozen=True)
 class Published:
-    """A value that others found for a robot.
+    """A published value of a parameter of a real robot.
 
     Attributes:
-      effect: name of the effect that the value belongs to.
+      effect: name of the effect, such as "coulomb_friction".
       parameter: name of the effect's parameter.
-      value: in SI units, with the sign that the effect's parameter has.
-      text: the quantity in words, for a page.
+      value: the value in SI units, with the sign convention of the parameter.
+      text: the quantity in words, for the report page.
     """
 
     effect: str
@@ -26,12 +26,12 @@ class Published:
 
 @dataclass(frozen=True)
 class Sane:
-    """Bounds of what a parameter can be on such hardware.
+    """Bounds of a parameter that are plausible for a robot's hardware.
 
     Attributes:
-      low: least possible value, in the parameter's unit.
-      high: largest possible value, in the same unit.
-      why: where the bounds come from.
+      low: smallest plausible value, in the parameter's unit.
+      high: largest plausible value, in the same unit.
+      why: source of the bounds.
     """
 
     low: float
@@ -41,22 +41,23 @@ class Sane:
 
 @dataclass(frozen=True)
 class RealRobot:
-    """One robot's recordings, and the knowledge that a diagnosis is compared with.
+    """A real robot's recordings, and known values to compare its diagnosis with.
 
     Attributes:
-      title: of the page.
-      folder: name of the folder of recordings, in the folder of all robots' recordings.
-      model: name of the robot, or a model file in that folder.
+      title: title of the report page.
+      folder: name of the robot's subfolder in the folder of all recordings.
+      model: name of the robot, or a model file in that subfolder.
       source: where the recordings come from, and their licence.
       about: where data, model and servo gains come from, as a paragraph for the page.
-      gains: of all servos; None where the recordings or the model state them.
+      gains: gains of all servos; None if the recordings or the model state them.
       drive: "servos" or "torques", as in `groundwalk diagnose --drive`.
-      least_share: as in `groundwalk diagnose --least-share`; its default where None.
-      published: values that others found.
-      sane: by "effect.parameter", the bounds of what is possible.
-      pulses: number of force pulses that were added at the actuator's input.
-      twice: whether the page claims that held-out motions are predicted at least twice
-        as well with the effects found.
+      least_share: as in `groundwalk diagnose --least-share`; None for its default.
+      published: published values of parameters.
+      sane: plausible bounds of parameters, by "effect.parameter".
+      pulses: number of force pulses that the experimenters added at the actuator's
+        input.
+      twice: whether the page claims that with the effects found the held-out motions
+        are predicted with at most half the error.
 
     Example:
       >>> RealRobot("My arm", "arm", "arm.urdf", "recorded by us", "A paragraph.")
@@ -77,7 +78,8 @@ class RealRobot:
 
 
 _SO101_KP, _SO101_LIMIT = 7.8, 2.94
-"""Stiffness [N m/rad] and stall torque [N m] of the servo; `about` has the sources."""
+"""Stiffness [N m/rad] and stall torque [N m] of the SO-101's servos; the text `about`
+of that robot gives the sources."""
 
 ROBOTS = {
     "so101": RealRobot(
@@ -144,4 +146,4 @@ example-robot-data, its base fixed and level, with the stated joint servos.""",
         gains=ServoGains(20.0, 1.5, 23.7),
     ),
 }
-"""The robots by their names on the command line."""
+"""The real robots by their names on the command line."""

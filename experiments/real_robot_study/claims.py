@@ -10,15 +10,15 @@ from experiments.real_robot_study.cases import Published, RealRobot
 from experiments.transfer.claims import Claim
 
 TWICE = 2.0
-"""Least factor by which held-out errors must fall."""
+"""Factor by which held-out errors must at least fall for the claim of `_twice`."""
 
 
 def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
     """All claims about a robot's diagnosis, each with whether it holds.
 
     Args:
-      robot: with the values and bounds to compare with.
-      verdict: of its diagnosis.
+      robot: the robot, with the values and bounds to compare with.
+      verdict: the verdict of its diagnosis.
 
     Example:
       >>> claims_of(ROBOTS["emps"], verdict)[0].holds
@@ -35,13 +35,13 @@ def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
 
 
 def sane_bounds(robot: RealRobot, effect: str, parameter: str) -> str:
-    """The possible range of a parameter in words; empty if none is known."""
+    """The plausible range of a parameter as text; "" if none is known."""
     bounds = (robot.sane or {}).get(f"{effect}.{parameter}")
     return f"{bounds.low:g} to {bounds.high:g}: {bounds.why}" if bounds else ""
 
 
 def _published(robot: RealRobot, verdict: Verdict) -> Iterator[Claim]:
-    """A claim for each published value: its interval holds that value."""
+    """Yield for each published value the claim that the verdict's interval holds it."""
     for known in robot.published:
         found = _estimate(verdict, known)
         text = f"{known.text}: the 80 % interval holds the published {known.value:g}"
@@ -60,7 +60,7 @@ def _estimate(verdict: Verdict, known: Published) -> Estimate | None:
 
 
 def _pulses(count: int, pulses: tuple[Pulse, ...]) -> Claim:
-    """The claim that all pulses were found and attributed to the actuator's input."""
+    """The claim that `count` pulses were found, all at the actuator's input."""
     text = f"all {count} pulses are located and attributed to the actuator's input"
     right = [pulse for pulse in pulses if pulse.source == "actuator input"]
     found = "; ".join(pulse_sentences(pulses)) or "none found"
@@ -68,7 +68,7 @@ def _pulses(count: int, pulses: tuple[Pulse, ...]) -> Claim:
 
 
 def _twice(verdict: Verdict) -> Claim:
-    """The claim that held-out motions are predicted at least twice as well."""
+    """The claim that the effects found at least halve the error of held-out motions."""
     text = "held-out motions are predicted at least twice as well"
     if verdict.fit is None:
         return Claim(text, False, "nothing was held out")
@@ -83,7 +83,7 @@ def _twice(verdict: Verdict) -> Claim:
 
 
 def _sane(robot: RealRobot, verdict: Verdict) -> Claim:
-    """The claim that every joint has an effect, and that all values are possible."""
+    """The claim that each joint has an effect, and that all values are plausible."""
     text = "an effect is named at each joint, and all values are possible"
     joints = [
         name.partition(".")[2]

@@ -1,4 +1,4 @@
-"""A diagnosis of a real robot as a page of Markdown."""
+"""The report page of a real robot's diagnosis."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,8 @@ from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import write_transfer_page
 
 MUCH = 2.0
-"""Multiple of the noise floor; an error left above it is mentioned as a doubt."""
+"""Error of the corrected sim, in multiples of the noise floor, above which the page
+mentions it as a doubt."""
 
 NOTES = """
 Intervals hold 80 %. Errors are rms errors of the sim on recordings, or parts of them,
@@ -29,9 +30,9 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
     """Write `result.md` and `report.html` into the run's folder.
 
     Args:
-      folder: of the diagnosis.
+      folder: the run's folder.
       robot: the robot that was diagnosed.
-      verdict: of the diagnosis.
+      verdict: the verdict of its diagnosis.
     """
     body = [" ".join(robot.about.split()), "", f"## Verdict: {badge(verdict)}"]
     body += ["", *_effects(robot, verdict.effects), "", *_doubts(verdict)]
@@ -43,7 +44,7 @@ def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> No
 
 
 def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
-    """A table with a row for each parameter of the effects found."""
+    """Markdown table of the effects found, with a row for each of their parameters."""
     rows = []
     for effect in sorted(effects, key=lambda one: (one.place, one.name)):
         for name, value in effect.parameters.items():
@@ -60,7 +61,7 @@ def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
 
 
 def _doubts(verdict: Verdict) -> list[str]:
-    """A list: other answers, limits of the data, and the error that is left."""
+    """Markdown list of the doubts: other answers, limits of the data, error left."""
     lines = [
         f"- instead of {effect.name} at {effect.place} it may be "
         + ", ".join(
@@ -89,7 +90,7 @@ def _doubts(verdict: Verdict) -> list[str]:
 
 
 def _rest_of_fit(verdict: Verdict) -> list[str]:
-    """Lines on the error that the corrected sim leaves, if it is large."""
+    """Markdown lines on the error of the corrected sim, if it is large."""
     fit = verdict.fit
     if fit is None or fit.corrected <= MUCH * fit.floor:
         return []
@@ -107,7 +108,7 @@ def _rest_of_fit(verdict: Verdict) -> list[str]:
 
 
 def _may_be_nothing(effects: Sequence[Found]) -> list[str]:
-    """A line with the effects whose first value may be 0, if there are any."""
+    """A Markdown line with the effects whose first parameter may be 0, if any."""
     names = [
         f"{effect.name} at {effect.place}"
         for effect in effects
@@ -117,7 +118,7 @@ def _may_be_nothing(effects: Sequence[Found]) -> list[str]:
 
 
 def _fit(verdict: Verdict) -> list[str]:
-    """A table of held-out errors by channel, and of all channels together."""
+    """Markdown table of held-out errors by channel, and of all channels together."""
     fit = verdict.fit
     if fit is None:
         return ["Nothing was held out."]
@@ -142,7 +143,7 @@ def _fit(verdict: Verdict) -> list[str]:
 
 
 def _pulses(verdict: Verdict) -> list[str]:
-    """A table of the pulses that were added to a servo's torque, if there are any."""
+    """Markdown table of the force pulses found; no lines if there are none."""
     if not verdict.pulses:
         return []
     columns = ["recording", "joint", "from [s]", "to [s]", "size", "came in at"]

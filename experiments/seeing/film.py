@@ -1,4 +1,4 @@
-"""Puts pictures of walks together: film strips and films, as bytes of a file."""
+"""Makes film strips (PNG) and films (GIF, MP4) of walks, as bytes of a file."""
 
 import io
 import shutil
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     import PIL.Image
 
 GIF_BYTES = 1_000_000
-"""A GIF gets fewer colours until it is smaller than this, down to 16 colours."""
+"""Size [bytes] above which a GIF is made again with fewer colours, down to 16."""
 
 _GIF_COLOURS = (128, 64, 32, 16)
 _AFTER_FALL_S = 0.7
-"""A film goes on for this long after a fall [s], until the robot lies."""
+"""Time that a film shows after a fall [s], in which the robot comes to lie."""
 
 _TITLE_PX = 26
 _TEXT_PX = 15
@@ -41,9 +41,10 @@ class Film:
     """The walks that a film shows, and which part of them.
 
     Attributes:
-      scenes: from left to right.
-      size_px: width and height of each walk's picture.
-      start_s: first moment [s]; None for the fall, or the middle of a walk without one.
+      scenes: the walks, from left to right.
+      size_px: width and height of each walk's picture [pixels].
+      start_s: first moment [s]; None to show the fall or, without a fall, the middle of
+        the walk.
       duration_s: length of the part that is shown [s].
       with_balance: whether forces, support polygon, ZMP and centre of mass are drawn.
     """
@@ -56,14 +57,14 @@ class Film:
 
     @cached_property
     def cameras(self) -> list[SceneCamera]:
-        """One camera for each scene, each robot in a colour of its own."""
+        """One camera for each scene; each shows its robot in another colour."""
         return [
             SceneCamera(scene, accent(index), self.size_px, self.with_balance)
             for index, scene in enumerate(self.scenes)
         ]
 
     def titled(self, index: int, time_s: float) -> Image:
-        """Draw a scene at a moment, or its last one, below its name and the time."""
+        """Draw scene `index` at a time [s] (at most its last), with a title above."""
         scene = self.scenes[index]
         times_s = scene.recording.time_s
         tick = max(int(np.searchsorted(times_s, time_s + 1e-9, side="right")) - 1, 0)
@@ -76,18 +77,18 @@ class Film:
         return _with_title(picture, name, label, FALL if end in FALLS else _INK)
 
     def shown_s(self, scenes: Sequence[Scene]) -> tuple[float, float]:
-        """First and last moment shown of these scenes [s]."""
+        """First and last moment [s] of the part of these scenes that is shown."""
         if self.start_s is None:
             return window_s(scenes, self.duration_s)
         return self.start_s, self.start_s + self.duration_s
 
 
 def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
-    """First and last moment to show [s]: around the first fall, else in the middle.
+    """Choose first and last moment to show [s]: around the first fall, or the middle.
 
     Args:
       scenes: scenes that are shown together.
-      duration_s: length of the part [s]; the result is shorter if the walks are.
+      duration_s: length of the part [s]; shorter walks give a shorter part.
     """
     first_s = min(float(scene.recording.time_s[0]) for scene in scenes)
     lasts_s = [float(scene.recording.time_s[-1]) for scene in scenes]
@@ -105,12 +106,12 @@ def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
 
 
 def strip_bytes(film: Film, frames: int) -> bytes:
-    """Draw a PNG with a row for each walk, its pictures at even times.
+    """Draw a PNG with a row of pictures, at equal distances in time, for each walk.
 
     Args:
-      film: the walks. Where it has no start, each row has its own, chosen so that the
-        last picture shows the fall.
-      frames: pictures in a row.
+      film: the walks. If its `start_s` is None, each row has its own start, chosen so
+        that the last picture shows the fall.
+      frames: number of pictures in a row.
     """
     rows = []
     with progress("pictures", len(film.scenes) * frames) as bar:
@@ -130,11 +131,11 @@ def _strip_times_s(film: Film, scene: Scene, frames: int) -> FloatArray:
 
 
 def film_bytes(film: Film, rate_hz: float, suffix: str) -> bytes:
-    """Make a film of all walks side by side, at the same moments.
+    """Make a film of all walks side by side, all at the same time.
 
     Args:
       film: the walks.
-      rate_hz: pictures a second.
+      rate_hz: pictures per second.
       suffix: ".gif" or ".mp4".
 
     Raises:
@@ -159,7 +160,7 @@ def _frames(film: Film, times_s: FloatArray) -> Iterator[Image]:
 def _with_title(
     picture: Image, name: str, label: str, colour: tuple[int, int, int]
 ) -> Image:
-    """A picture below a line with its name on the left and a label on the right."""
+    """Put a line above a picture: its name on the left, a label on the right."""
     from PIL import Image as Pillow
     from PIL import ImageDraw, ImageFont
 
@@ -181,9 +182,9 @@ def _png(picture: Image) -> bytes:
 
 
 def gif_bytes(frames: Sequence[Image], rate_hz: float) -> bytes:
-    """A GIF of all frames [bytes], with fewer colours if it would be too large.
+    """Make a GIF file of all frames, with fewer colours if it is above `GIF_BYTES`.
 
-    All frames share one palette, so that still parts of the picture cost nothing.
+    All frames share one palette, so that parts that do not change cost no bytes.
     """
     for colours in _GIF_COLOURS:
         content = _gif_of(frames, rate_hz, colours)
@@ -227,7 +228,7 @@ def _ffmpeg() -> str:
 
 
 def _mp4(frames: Sequence[Image], rate_hz: float) -> bytes:
-    """A film [bytes] in H.264, which every browser plays; its sides must be even."""
+    """Make an MP4 file in H.264, which every browser plays; odd sides lose a pixel."""
     height, width, _ = frames[0].shape
     even = [frame[: height // 2 * 2, : width // 2 * 2] for frame in frames]
     height, width, _ = even[0].shape

@@ -1,4 +1,4 @@
-"""Draws a run: its search, its walks, and its recordings in Rerun."""
+"""Draws the search and the walks of a run, and writes its recordings for Rerun."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ OVERLAY = "overlay.rrd"
 
 
 def picture_run(folder: RunFolder) -> None:
-    """Draw a run's history and all of its recordings, as far as there are any."""
+    """Draw a run's search and walks, and write a Rerun file, as far as it has data."""
     picture_search(folder)
     recordings = read_recordings(folder.path / RECORDINGS)
     if recordings:
@@ -23,13 +23,13 @@ def picture_run(folder: RunFolder) -> None:
 
 
 def picture_search(folder: RunFolder) -> Path | None:
-    """Draw a run's search, unless that was done since its last generation.
+    """Draw a run's search, unless the picture is newer than the last generation.
 
     Returns:
-      The picture; None if there is no history, as before the first generation.
+      The picture's path; None if the run has no finished generation.
 
     Raises:
-      RunFolderError: the history is damaged.
+      RunFolderError: the file with the search's history is damaged.
     """
     history, picture = folder.path / HISTORY, folder.path / SEARCH_PICTURE
     if not history.exists():

@@ -1,4 +1,4 @@
-"""Makes scenes of recordings, with the robot and the ground that they name."""
+"""Makes scenes (recording, robot and ground) from recordings and their metadata."""
 
 import dataclasses
 import re
@@ -29,10 +29,11 @@ def read_recordings(folder: Path) -> dict[str, Recording]:
     """Read every Parquet recording of a folder.
 
     Args:
-      folder: with files such as `sim_tuned.parquet`; it need not be there.
+      folder: folder with files such as `sim_tuned.parquet`; it need not exist.
 
     Returns:
-      Recordings by scene name, "sim/tuned" for that file; those of the sim first.
+      Recordings by scene name, such as "sim/tuned" for the file `sim_tuned.parquet`;
+      those of the sim come first.
     """
     paths = sorted(folder.glob("*.parquet"), key=_order)
     names = scene_names(path.stem.replace("_", "/", 1) for path in paths)
@@ -40,13 +41,13 @@ def read_recordings(folder: Path) -> dict[str, Recording]:
 
 
 def read_run(folder: Path) -> dict[str, Recording]:
-    """Read every recording of a run, and of runs that are folders in it.
+    """Read every recording of a run, and of the runs in its subfolders.
 
     Args:
-      folder: a run; one of `humanoids` holds a run for each robot.
+      folder: a run folder; that of `groundwalk humanoids` has a run for each robot.
 
     Returns:
-      Recordings by scene name; of a run inside, the name begins with its folder's.
+      Recordings by scene name, such as "sim/tuned"; in a subfolder "nao/sim/tuned".
     """
     recordings = read_recordings(folder / RECORDINGS)
     inside = sorted(path.parent for path in folder.glob(f"*/{RECORDINGS}"))
@@ -58,7 +59,7 @@ def read_run(folder: Path) -> dict[str, Recording]:
 
 
 def read_with_model(path: Path) -> Recording:
-    """Read a recording; a model file that it names is also looked for beside it."""
+    """Read a recording; its model file may also be in the folder of the recording."""
     recording = read_recording(path)
     model = path.parent / recording.metadata.robot
     if not model.suffix or Path(recording.metadata.robot).exists():
@@ -70,7 +71,7 @@ def read_with_model(path: Path) -> Recording:
 
 
 def scene_names(texts: Iterable[str]) -> list[str]:
-    """Turn texts into names that scenes can have, all different."""
+    """Turn texts into different names that Rerun's entity paths may contain."""
     taken: Counter[str] = Counter()
     names = []
     for text in texts:
@@ -82,13 +83,13 @@ def scene_names(texts: Iterable[str]) -> list[str]:
 
 
 def make_scenes(recordings: Mapping[str, Recording]) -> list[Scene]:
-    """Set recordings on their grounds, with their robots.
+    """Make scenes of recordings, with the robot and the ground of their metadata.
 
     Args:
-      recordings: by the scene's name; their metadata name robot and ground.
+      recordings: recordings by the scene's name.
 
     Raises:
-      BadRecordingError: a robot or a ground is unknown here.
+      BadRecordingError: a recording's robot or ground is unknown.
     """
     return [_scene(name, recording) for name, recording in recordings.items()]
 
@@ -103,7 +104,7 @@ def _scene(name: str, recording: Recording) -> Scene:
 
 
 def _robot(recording: Recording) -> robots.Description:
-    """The robot of a recording: one that walks, or any model of hinges and slides."""
+    """The robot of a recording: a biped, or any model with hinge and slide joints."""
     robot = recording.metadata.robot
     base: Base = "floating" if recording.metadata.base == "floating" else "fixed"
     try:
@@ -117,7 +118,7 @@ def _robot(recording: Recording) -> robots.Description:
 
 
 def _ground(metadata: RecordingMetadata) -> Heightfield | None:
-    """The ground that was walked on, made again; None if the recording has none."""
+    """Make the ground that the metadata name; None if they name none."""
     if metadata.terrain is None:
         return None
     whole = {"parameters": {}, "seed": 0, **metadata.terrain}

@@ -1,4 +1,4 @@
-"""A run's scores as a page: every number written by the run itself."""
+"""The report page with the speeds and falls of a run's gaits."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -17,7 +17,8 @@ PICTURES = {
 }
 COLUMNS = ("world", "gait", "speed [cm/s] ± s.d.", "falls", "fall rate, 95 % interval")
 MOST_NAMED = 3
-"""Gaits that the answer speaks of one by one."""
+"""Largest number of gaits that the page's answer describes one by one; of more gaits
+it describes only the best."""
 
 
 def write_page(
@@ -26,13 +27,13 @@ def write_page(
     scores: Scores,
     start: Mapping[str, Gait] | None = None,
 ) -> None:
-    """Write the report of a run that has its result and its pictures.
+    """Write the report page of a run whose result and pictures are written.
 
     Args:
-      folder: the run.
+      folder: the run's folder.
       title: the question, as a heading.
-      scores: by world and gait.
-      start: the gait that a search started from, by its name.
+      scores: the fields of a `Score` by world and gait.
+      start: name and gait that the run's search started from; None without a search.
     """
     result = folder.read_json(RESULT)
     body = score_lines(scores)
@@ -47,7 +48,7 @@ def write_page(
 
 
 def score_answer(scores: Scores) -> Iterator[str]:
-    """How fast the gaits were and how often they fell: a sentence for each world."""
+    """Yield for each world a sentence on the gaits' speeds and falls."""
     for world, gaits in scores.items():
         where = "real world" if world == "real" else world
         if len(gaits) <= MOST_NAMED:
@@ -72,7 +73,7 @@ def _rank(score: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def score_lines(scores: Scores) -> list[str]:
-    """A table of speeds with their spread, and of falls with Wilson's interval."""
+    """Markdown table of speeds with s.d. and of falls with Wilson's 95 % interval."""
     rows = []
     for world, gaits in scores.items():
         for gait, score in gaits.items():
@@ -84,7 +85,7 @@ def score_lines(scores: Scores) -> list[str]:
 
 
 def gait_lines(gaits: Sequence[tuple[str, Mapping[str, float]]]) -> list[str]:
-    """A table of the 16 parameters, with a column for each gait and its name."""
+    """Markdown table of the 16 gait parameters, with a column for each (name, gait)."""
     rows = [
         [p.name, p.unit, *(f"{gait[p.name]:.4g}" for _, gait in gaits)]
         for p in PARAMETERS

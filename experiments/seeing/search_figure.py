@@ -1,4 +1,4 @@
-"""Draws a search: rewards and falls, generation by generation."""
+"""Draws the rewards and the falls of a search over its generations."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,13 +14,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MEAN, BEST, TRIED, FALLS = "#0072b2", "#e69f00", "#7f8894", "#d55e00"
-"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
+"""Colours of the mean's, best and tried gaits' rewards and of the falls: a palette that
+colour-blind people can distinguish (Okabe and Ito)."""
 
 MOST_MARKED = 40
-"""Lines of more generations carry no markers."""
+"""Number of generations above which the lines are drawn without markers."""
 
 WIDTH = 0.6
-"""Width of the marks of one generation, as a share of the step to the next."""
+"""Width of a generation's dots and bar, as a share of the distance to the next one."""
 
 
 def draw_search(history: Sequence[Mapping[str, Any]], path: Path) -> None:
@@ -29,12 +30,12 @@ def draw_search(history: Sequence[Mapping[str, Any]], path: Path) -> None:
 
 
 def search_figure(history: Sequence[Mapping[str, Any]]) -> "Figure":
-    """Rewards above, and the share of gaits that fell below.
+    """Draw the rewards and, in a panel below, the share of gaits that fell.
 
     Args:
-      history: a search's notes on each generation, from the first one on:
-        `rewards` [cm/s] and number of `falls` of the gaits that it tried, and
-        `mean_reward` and `mean_fell` of the distribution's mean.
+      history: the record of each generation of a search: `rewards` [cm/s] and number
+        of `falls` of the gaits tried; `mean_reward` [cm/s] and `mean_fell` (a bool) of
+        the mean gait.
 
     Raises:
       BadValueError: there is no generation.
@@ -81,7 +82,7 @@ def _draw_rewards(axes: "Axes", history: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _draw_tried(axes: "Axes", generation: int, rewards: Sequence[float]) -> None:
-    """Draw every gait that was tried, each a little apart from the next one."""
+    """Draw the rewards [cm/s] of a generation's gaits as dots beside each other."""
     count = len(rewards)
     aside = WIDTH * ((np.arange(count) + 0.5) / count - 0.5)
     label = "gaits that were tried" if generation == 0 else None

@@ -1,4 +1,4 @@
-"""Lets the best gaits of a search walk once more, so that they can be shown."""
+"""Repeats the walks of a search's best gaits, so that they can be shown."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -20,10 +20,10 @@ _NEEDED = ("robot", "terrain", "sim", "seed", "threads")
 
 
 def search_plan(stored: Mapping[str, Any]) -> SearchPlan:
-    """Read robot, grounds and settings of a search from a run's `config.json`.
+    """Make the options of a search from the content of its run's `config.json`.
 
     Raises:
-      GroundwalkError: a file that it names is gone, or a setting is impossible.
+      GroundwalkError: a robot or gait file does not exist, or a value is invalid.
     """
     given = {name: stored[name] for name in _NEEDED if name in stored}
     if given.get("sim") is not None:
@@ -32,12 +32,12 @@ def search_plan(stored: Mapping[str, Any]) -> SearchPlan:
 
 
 def walk_again(plan: SearchPlan, best: Sequence[Gait]) -> list[SearchWalk]:
-    """Let the best gait of each generation walk as it did when it was rated.
+    """Repeat the walk with which the best gait of each generation was rated.
 
-    Side by side in one sim, each on its generation's ground.
+    The robots walk side by side in one sim, each on its generation's ground.
 
     Args:
-      plan: the search.
+      plan: options of the search.
       best: the best gait of each generation, from the first one on.
     """
     description = robots.get(plan.robot)
@@ -73,7 +73,7 @@ def _metadata(
 
 
 def _shared(grounds: Sequence[Heightfield]) -> list[Heightfield]:
-    """The grounds, as one object if all are alike: a sim then loads only one."""
+    """Replace grounds that are all equal by one object: the sim loads it only once."""
     first = grounds[0]
     if all(np.array_equal(first.heights_m, one.heights_m) for one in grounds):
         return [first] * len(grounds)

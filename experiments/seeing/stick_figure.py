@@ -1,4 +1,4 @@
-"""Reduces a robot to a few lines: its limbs, its torso and its head."""
+"""Stick figures of a moving robot: lines for its limbs, its torso and its head."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,20 +11,21 @@ from worlds.scenes.forward_kinematics import LinkPoses
 from worlds.scenes.scene import SIDES, Scene
 
 NAO_HEAD_M = 0.056
-"""Radius of the NAO's head."""
+"""Radius of the NAO's head [m], scaled to robots whose model has no shapes."""
 
 
 @dataclass(frozen=True, eq=False)
 class StickFigure:
-    """Lines through a robot's joints, tick by tick, in the world frame [m].
+    """Lines through a robot's joints at each tick, in the world frame [m].
 
     Attributes:
-      legs: of left and right, each (ticks, points, 3): hip, knee, ankle and once
-        around the foot by heel and toe, back to the ankle.
-      arms: all other limbs, each (ticks, points, 3) out to its tip.
-      torso: (ticks, 3, 3) from between the hips over between the shoulders to the
-        head's centre.
-      head_radius_m: of the head.
+      legs: for "left" and "right" (ticks, points, 3) points of a line: hip, knee,
+        ankle, heel, toe and back to the ankle.
+      arms: for each other limb (ticks, points, 3) points from its first joint to its
+        tip.
+      torso: (ticks, 3, 3) the middle between the hips, the middle between the
+        shoulders, and the centre of the head.
+      head_radius_m: radius of the head [m].
     """
 
     legs: dict[str, FloatArray]
@@ -34,7 +35,7 @@ class StickFigure:
 
 
 def stick_figure(scene: Scene) -> StickFigure:
-    """The robot of a scene as lines; NaN at ticks where a value is missing."""
+    """Compute the stick figure of a scene; NaN at ticks where a value is missing."""
     robot, poses = scene.description, scene.link_poses()
     feet = dict(zip(SIDES, robot.feet, strict=True))
     legs = {side: _leg(robot, poses, foot) for side, foot in feet.items()}
@@ -66,7 +67,7 @@ def _arm(robot: Description, poses: dict[str, LinkPoses], tip: int) -> FloatArra
 
 
 def _other_tips(robot: Description) -> list[int]:
-    """Joints that carry no other joint and no foot."""
+    """Indices of the joints whose links carry no other joint and no foot."""
     carriers = {joint.parent for joint in robot.links}
     carriers |= {foot.joint for foot in robot.feet}
     return [joint for joint in range(len(robot.links)) if joint not in carriers]
@@ -75,7 +76,7 @@ def _other_tips(robot: Description) -> list[int]:
 def _joints(
     robot: Description, poses: dict[str, LinkPoses], joint: int
 ) -> list[FloatArray]:
-    """(ticks, 3) places of the joints from the root to this one."""
+    """Positions (ticks, 3) [m] of each joint on the way from the root to `joint`."""
     chain: list[FloatArray] = []
     while joint >= 0:
         chain.insert(0, poses[robot.links[joint].link.name].position_m)
@@ -84,12 +85,12 @@ def _joints(
 
 
 def _point(pose: LinkPoses, place_m: Sequence[float]) -> FloatArray:
-    """(ticks, 3) a point that a link carries, given in the link's frame."""
+    """(ticks, 3) world positions [m] of a point given in the frame of a link."""
     return pose.points(np.array([place_m]))[:, 0]
 
 
 def _head(robot: Description) -> Capsule:
-    """The root's highest shape; without any, a head where the root's mass is."""
+    """The root link's highest shape; without shapes, a sphere at its centre of mass."""
     x_m, y_m, z_m = robot.root.inertial.com_m.tolist()
     centre_m = (x_m, y_m, z_m)
     stand_in = Capsule(centre_m, centre_m, NAO_HEAD_M * robot.scale.length)
@@ -97,7 +98,7 @@ def _head(robot: Description) -> Capsule:
 
 
 def _middle_m(shape: Capsule) -> tuple[float, ...]:
-    """A capsule's centre."""
+    """Centre of a capsule [m]."""
     return tuple(np.mean([shape.start_m, shape.end_m], axis=0).tolist())
 
 

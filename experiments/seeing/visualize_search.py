@@ -1,4 +1,4 @@
-"""Writes a run's search for Rerun, with walks of each generation's best gait."""
+"""Writes a Rerun file of a run's search, with a walk of each generation's best gait."""
 
 import hashlib
 import json
@@ -24,16 +24,16 @@ Entries = Sequence[Mapping[str, Any]]
 
 
 def visualize_search(folder: RunFolder) -> Path | None:
-    """Write a run's search for Rerun; its best gaits walk once more for this.
+    """Write a Rerun file of a run's search; its best gaits walk again for this.
 
-    Runs of earlier versions did not note the best gaits. Where these cannot walk any
-    more, the page of each generation says why.
+    Runs of earlier versions of groundwalk did not store the best gaits. If these cannot
+    walk again, the file's text on each generation says why.
 
     Returns:
-      The file; None if there is no history, as before the first generation.
+      The path of the file; None if the run has no finished generation.
 
     Raises:
-      RunFolderError: the history is damaged.
+      RunFolderError: the file with the search's history is damaged.
     """
     if not folder.has(HISTORY):
         return None
@@ -54,7 +54,7 @@ def visualize_search(folder: RunFolder) -> Path | None:
 def _with_walks(
     folder: RunFolder, history: SearchHistory, entries: Entries
 ) -> SearchHistory:
-    """Add the walk of each generation's best gait, or the reason why there is none."""
+    """Add a walk of each generation's best gait, or the reason why there is none."""
     if not all(entry.get("best_gait") for entry in entries):
         return history
     try:
@@ -70,13 +70,13 @@ def _with_walks(
 
 
 def read_history(entries: Entries) -> SearchHistory:
-    """Read the notes of `optimize-gait` on each generation, as columns.
+    """Turn the records of a search's generations into columns over the generations.
 
-    Entries of earlier versions have no `best_gait`; parameters that were not noted are
-    left out.
+    Records of earlier versions have no `best_gait`; gait parameters that no record has
+    are left out.
 
     Raises:
-      KeyError: an entry lacks a value that every version notes.
+      KeyError: a record lacks a value that every version stores.
     """
     mean = _columns(entries, "mean_gait")
     ranges = np.array([parameter.high - parameter.low for parameter in PARAMETERS])
@@ -97,7 +97,7 @@ def read_history(entries: Entries) -> SearchHistory:
 
 
 def _columns(entries: Entries, key: str) -> dict[str, FloatArray]:
-    """(generations,) each parameter of a gait, NaN in entries that lack it."""
+    """Each parameter (generations,) of the entries' gait `key`; NaN where missing."""
     gaits = [entry.get(key, {}) for entry in entries]
     return {
         parameter.name: np.array([gait.get(parameter.name, np.nan) for gait in gaits])

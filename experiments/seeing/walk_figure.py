@@ -1,4 +1,4 @@
-"""A picture of walks: stick figures from the side, at true proportions."""
+"""Draws walks as stick figures seen from the side, at the same scale in x and z."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,44 +18,44 @@ if TYPE_CHECKING:
 
 LEGS = {"left": "#0072b2", "right": "#d55e00"}
 ARMS, TORSO, GROUND, ENDED = "#009e73", "#444444", "#dddddd", "#b2182b"
-"""Colours of limbs that colour-blind people can distinguish (Okabe and Ito)."""
+"""Colours of arms, torso, ground and the label of an early end."""
 
 PANEL_IN = 5.0
-"""Width of a panel [inch]."""
+"""Width of a walk's panel [inch]."""
 
 BELOW_M, ABOVE_M = 0.03, 0.09
-"""Shown below the ground, and above the heads for the time."""
+"""Heights [m] shown below the ground, and above the heads (for the time)."""
 
 
 def draw_walk(recordings: Mapping[str, Recording], path: Path) -> None:
     """Draw walks into a PNG file; see `walk_figure`.
 
     Args:
-      recordings: by name, with the base and all joints at every tick.
+      recordings: recordings by name, with base pose and all joints at every tick.
       path: the file.
 
     Raises:
-      GroundwalkError: there is no recording, or one does not say where the base was,
-        or names a robot or a ground that is not known.
+      GroundwalkError: there is no recording, or one lacks the base's position or names
+        an unknown robot or ground.
     """
     strips = {scene.name: walk_strip(scene) for scene in make_scenes(recordings)}
     write_figure(walk_figure(strips), path)
 
 
 def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "Figure":
-    """Draw a panel for each walk, all at one scale.
+    """Draw a panel for each walk, all at the same scale.
 
-    Faint figures follow every 0.12 s; wherever there is room for it, one is
-    clear and has its time above. Thin lines are the ways of the ankles. The ground is
-    drawn as it is under each foot, in the foot's colour.
+    A faint stick figure is drawn every 0.12 s; those that do not overlap are drawn bold
+    with the time above. Thin lines are the paths of the ankles. The ground is drawn
+    under each foot's path, in the colour of that leg.
 
     Args:
-      strips: by name. The text before the last "/" is the column, the text
-        after it the row: "sim/tuned" and "real/tuned" come side by side.
-      dots_per_inch: a panel is some 5 inches wide.
+      strips: walks by name. The text before the last "/" is the column, the text after
+        it the row: "sim/tuned" and "real/tuned" are side by side.
+      dots_per_inch: resolution; a panel is 5 inches wide.
 
     Raises:
-      BadValueError: there is none.
+      BadValueError: there is no walk.
     """
     if not strips:
         raise BadValueError("there is no recording that could be drawn")
@@ -76,7 +76,7 @@ def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "F
 def _panels(
     rows: int, columns: int, ratio: float, dots_per_inch: int
 ) -> tuple["Figure", Any]:
-    """A figure with (rows, columns) panels of height / width, switched off for now."""
+    """A figure with (rows, columns) panels without axes; `ratio` is height / width."""
     from matplotlib.figure import Figure
 
     panel_in = PANEL_IN * ratio + 0.6  # title and axis
@@ -112,7 +112,7 @@ def _draw_strip(axes: "Axes", strip: WalkStrip, height_m: float) -> None:
 
 
 def _draw_figures(axes: "Axes", strip: WalkStrip) -> None:
-    """Draw the robot at all stills, its right side nearest."""
+    """Draw the stick figures of all stills, seen from the robot's right side."""
     from matplotlib.collections import LineCollection
 
     body = strip.figure
@@ -136,7 +136,7 @@ def _draw_figures(axes: "Axes", strip: WalkStrip) -> None:
 
 
 def _draw_head(axes: "Axes", strip: WalkStrip, still: int) -> None:
-    """Draw a clear still's head, with the time above."""
+    """Draw the head of the stick figure at a tick, with the time above."""
     from matplotlib.patches import Circle
 
     x_m, _, z_m = strip.figure.torso[still, -1]

@@ -1,4 +1,4 @@
-"""Chooses the part and the moments of a walk that its figure shows."""
+"""Chooses the part and the moments of a walk that a figure of it shows."""
 
 from dataclasses import dataclass
 
@@ -10,35 +10,37 @@ from worlds import TICK_S
 from worlds.scenes.scene import Scene
 
 COURSE_M, LONGEST_S = 1.0, 5.0
-"""Largest distance [m] and duration [s] of the part that is shown."""
+"""Largest distance [m] and duration [s] of the part of a walk that is shown."""
 
 WIDTH_M = 1.5
-"""Width of the picture [m]: the part shown, and room for arms, legs and a fall."""
+"""Width of the picture [m]: 1 m of walk, and room for arms, legs and a fall."""
 
 STILL_S = 0.12
-"""Time from one still to the next [s]: about half a step."""
+"""Time between two stills, the stick figures of a picture [s]: about half a step."""
 
 _ROOM = 2.9
-"""Least distance between two clear stills, in radii of the head."""
+"""Least distance between the heads of two bold stick figures, in radii of the head, so
+that the figures and their times do not overlap."""
 
 _GROUND_POINTS = 500
 
 
 @dataclass(frozen=True, eq=False)
 class WalkStrip:
-    """At most 1 m and 5 s of a walk: up to its early end, else from its middle.
+    """Part of a walk, at most 1 m and 5 s: its end if it ended early, else its middle.
 
     Attributes:
-      title: name and speed of the whole walk, and how it ended where it ended early.
-      ended: whether it ended early, as by a fall.
+      title: name and speed of the whole walk, and the reason if it ended early.
+      ended: whether the walk ended early, such as by a fall.
       time_s: (ticks,) times of all ticks [s].
-      figure: the robot at all ticks.
+      figure: the robot as a stick figure at all ticks.
       ticks: the part that is shown, as a slice of the ticks.
       x_range_m: first and last x that are shown [m].
-      stills: ticks 0.12 s apart, the last one shown among them.
-      clear: those of the stills that stand apart, from the last one back.
-      ground_m: (points, 2) x and z of the ground under the way of each foot, by side;
-        empty where the ground is not known.
+      stills: (stills,) ticks at which the figure is drawn, 0.12 s apart, up to the end
+        of the part.
+      clear: those of the stills whose figures do not overlap; they are drawn bold.
+      ground_m: for "left" and "right" (points, 2) x and z of the ground under the path
+        of that foot [m]; empty if the ground is unknown.
     """
 
     title: str
@@ -60,13 +62,13 @@ class WalkStrip:
 
 
 def walk_strip(scene: Scene) -> WalkStrip:
-    """Choose the part of a walk to show.
+    """Choose the part of a walk to show, and prepare it for drawing.
 
     Args:
-      scene: its recording must have the base and all joints at every tick.
+      scene: a walk; its recording must have base pose and all joints at every tick.
 
     Raises:
-      UnknownNameError: the recording does not say where the base was.
+      UnknownNameError: the recording lacks the base's position.
     """
     recording = scene.recording
     time_s, end = recording.time_s, recording.metadata.end
@@ -91,12 +93,12 @@ def walk_strip(scene: Scene) -> WalkStrip:
 
 
 def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
-    """The ticks of the piece.
+    """The ticks of the part to show: at the walk's end if `ended`, else in its middle.
 
     Args:
-      time_s: (ticks,).
-      x_m: (ticks,) of the base.
-      ended: whether the piece is the last one, not the one in the middle.
+      time_s: (ticks,) times [s].
+      x_m: (ticks,) x of the base [m].
+      ended: whether the walk ended early, such as by a fall.
     """
     stop = len(x_m)
     if not ended:
@@ -112,24 +114,24 @@ def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
 
 
 def _x_range(x_m: FloatArray) -> tuple[float, float]:
-    """First and last x to show [m], around the places of the base."""
+    """First and last x to show [m], around the positions x_m (ticks,) of the base."""
     middle_m = (x_m.min() + x_m.max()) / 2
     return float(middle_m - WIDTH_M / 2), float(middle_m + WIDTH_M / 2)
 
 
 def _stills(time_s: FloatArray) -> IntArray:
-    """Rows 0.12 s apart, counted back from the last one."""
+    """Indices of times 0.12 s apart, counted back from the end of `time_s` (ticks,)."""
     times_s = np.arange(time_s[-1], time_s[0] - TICK_S / 2, -STILL_S)[::-1]
     return np.searchsorted(time_s, times_s - TICK_S / 2)
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
-    """Choose stills that do not overlap, from the last one back.
+    """Choose stills whose stick figures do not overlap, from the last one back.
 
     Args:
-      x_m: (ticks,) of the head.
-      stills: ticks to choose from.
-      room_m: least distance between two of them [m].
+      x_m: (ticks,) x of the head [m].
+      stills: (stills,) ticks to choose from.
+      room_m: least distance between two heads [m].
     """
     chosen: list[int] = []
     for still in stills[::-1].tolist():
@@ -141,7 +143,7 @@ def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
 def _ground(
     scene: Scene, figure: StickFigure, ticks: slice, x_range_m: tuple[float, float]
 ) -> dict[str, FloatArray]:
-    """(points, 2) x and z of the ground under the way of each foot, by side."""
+    """By side (points, 2) x and z of the ground [m] under the path of the foot."""
     if scene.ground is None:
         return {}
     x_m = np.linspace(*x_range_m, _GROUND_POINTS)

@@ -1,1 +1,1 @@
-"""The terrain stress test: families of ground, walks, causes of falls, its page."""
+"""Terrain stress test: walks on harder and harder ground, and causes of falls."""

@@ -1,4 +1,4 @@
-"""Curves of the stress test: results by severity, and where half of the trials fall."""
+"""Curves of the terrain stress test: falls and speeds over the severity of ground."""
 
 import dataclasses
 from collections import Counter
@@ -12,17 +12,19 @@ from experiments.stress.families import FAMILIES, FLAT
 from experiments.stress.walks import Trial
 
 Cell = Mapping[str, Any]
-"""The fields of a `Place`, and `trials`: the trials of all gaits there, as dicts."""
+"""A robot, world, family of ground and severity (the fields of `Place`), and the
+`trials` of all gaits there, as dicts."""
 
 Curve = Mapping[str, Any]
-"""Results of one gait on one family of ground in one world, as `_curve` makes them."""
+"""Results of one gait on one family of ground in one world, over the severity: a dict
+whose list `rungs` has an entry for each severity."""
 
 
 def curves_of(cells: Sequence[Cell]) -> list[dict[str, Any]]:
     """Make a curve for every robot, world, family and gait, in the cells' order.
 
     Args:
-      cells: all cells; severities of a family follow each other from mild to hard.
+      cells: all cells; those of a family of ground are in order from mild to hard.
     """
     keys = dict.fromkeys(
         (cell["robot"], cell["world"], cell["family"], trial["gait"])
@@ -58,7 +60,8 @@ def _curve(
 
 
 _COUNTS = ("severity", "falls", "trials")
-"""Keys of a rung that `half_fall` needs, in the order of its arguments."""
+"""Keys of a rung, a curve's entry for one severity, in the order of the arguments of
+`half_fall`."""
 
 
 def trials_of(cell: Cell, gait: str) -> list[Trial]:

@@ -1,4 +1,4 @@
-"""Finds the cause of a fall from its recording alone."""
+"""Finds the cause of a robot's fall from the recording of its walk alone."""
 
 import enum
 import math
@@ -12,16 +12,16 @@ from worlds import End
 from worlds.scenes.scene import Scene
 
 LOSS_TILT_RAD = math.radians(15)
-"""Tilt of the torso [rad] from which no robot recovers; walks without a fall stay
-below it."""
+"""Tilt of the torso from the vertical [rad] from which no robot recovers; in walks
+without a fall it stays below this limit."""
 
 WINDOW_PENDULUMS = 6.0
-"""Longest time between a cause and the loss of balance, in units of
-sqrt(leg length / gravity): 0.95 s on the NAO, four steps."""
+"""Longest time from a cause to the loss of balance, in units of
+sqrt(leg length / gravity): 0.95 s for the NAO, which is four steps."""
 
 
 class Cause(enum.StrEnum):
-    """The first event in the time before a fall."""
+    """Cause of a fall: the first event before it, or else the direction of tipping."""
 
     SLIP = "slip"
     TRIP = "trip"
@@ -47,8 +47,8 @@ class FallCause:
 
     Attributes:
       cause: the cause.
-      time_s: time in the recording [s] at which it was first detected; for a tip, the
-        time at which balance was lost; None if the cause is unknown.
+      time_s: time in the recording [s] at which the cause was first detected; for a tip
+        the time at which balance was lost; None if the cause is unknown.
     """
 
     cause: Cause
@@ -58,16 +58,17 @@ class FallCause:
 def fall_cause(scene: Scene) -> FallCause:
     """Find the cause of a fall: the first event in the second before balance is lost.
 
-    Without any event the robot tipped over a foot: sideways, forward or backward, by
-    its lean at the end. The cause is unknown if the robot sank without leaning, or if
-    the simulation diverged.
+    Events are a slip, a trip, a missed support switch and a motor at its limit. Without
+    any event the robot tipped over a foot: sideways, forward or backward, by its lean
+    at the end. The cause is unknown if the robot sank without leaning, or if the
+    simulation diverged.
 
     Args:
-      scene: a walk that ended with a fall. The recording has base, commands, foot
-        forces and support, and its metadata every joint's servo.
+      scene: a walk that ended with a fall. The recording must have base pose, commands,
+        foot forces and support leg, and its metadata the servo of every joint.
 
     Raises:
-      UnknownNameError: a column is missing.
+      UnknownNameError: the recording lacks a column.
     """
     if scene.recording.metadata.end == End.DIVERGED:
         return FallCause(Cause.UNKNOWN, None)
@@ -89,7 +90,7 @@ def fall_cause(scene: Scene) -> FallCause:
 
 
 def _loss(signals: Signals) -> int:
-    """The tick from which the torso leans too far; the number of ticks if never."""
+    """The tick from which on the torso is tilted too far; number of ticks if never."""
     upright = np.flatnonzero(signals.tilt_rad < LOSS_TILT_RAD)
     return int(upright[-1]) + 1 if upright.size else 0
 

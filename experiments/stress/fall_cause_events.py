@@ -1,10 +1,10 @@
 """Detectors of events that can make a walking robot fall.
 
-Every function takes signals and a range of ticks, and returns the tick at which the
-event happened first, or None. Lengths are in leg lengths and times in
-sqrt(leg length / gravity), so that they fit robots of any size; values in brackets are
-the NAO's. Each threshold lies between its values in walks without falls and in falls
-that were made on purpose (docs/terrain_stress.md).
+Each detector takes the signals of a walk and a range of ticks, and returns the first
+tick at which the event happened, or None. Thresholds are in leg lengths and in
+sqrt(leg length / gravity), so that they fit robots of any size; values in parentheses
+are the NAO's. Each threshold lies between the values in walks without falls and those
+in falls that were caused on purpose (docs/terrain_stress.md).
 """
 
 import numpy as np
@@ -14,44 +14,49 @@ from groundwalk.arrays import BoolArray, FloatArray
 from robots import biped
 
 LOADED = 0.3
-"""Share of the robot's weight on a foot above which the foot counts as standing."""
+"""Share of the robot's weight above which a foot that carries it counts as standing."""
 
 _SHORT_S = 0.04
-"""Time over which motion is measured [s]: shorter motion is below the resolution of the
-encoders."""
+"""Time over which the motion of a foot is measured [s]: in a shorter time the motion is
+below the resolution of the encoders."""
 
 SLIDE_LEGS, SLIDE_PENDULUMS = 0.06, 1.5
-"""A standing foot slips if it slides this distance (15 mm) in this time (0.24 s)."""
+"""Thresholds of a slip: a standing foot slides by this distance [leg lengths] (15 mm)
+within this time [sqrt(leg length / gravity)] (0.24 s)."""
 
 _CREEP_LEGS = 0.002
-"""Sliding by less than this in a tick (0.5 mm) is ignored: feet roll on their rims."""
+"""Sliding of a foot by less than this in a tick [leg lengths] (0.5 mm) is ignored,
+because feet roll on their rims."""
 
 TO_GO_LEGS, RISE_LEGS, AHEAD_LEGS = 0.02, 0.02, 0.05
-"""Thresholds of a trip: the distance that the foot should still travel (5 mm), the
-height of the ground above the sole (5 mm), its distance ahead of the sole (12 mm)."""
+"""Thresholds of a trip [leg lengths]: the distance that the foot should still travel
+(5 mm), and the height above the sole (5 mm) of the ground at a distance ahead of the
+sole (12 mm)."""
 
 TOUCH, IN_THE_AIR = 0.2, 0.15
-"""Shares of the weight above which a swing foot touches something, and below which it
-is in the air."""
+"""Thresholds of a trip, as shares of the robot's weight: a swing foot with a larger
+force than the first touches something, one with less than the second is in the air."""
 
 WRONG_SHARE, WRONG_PENDULUMS = 0.3, 0.6
-"""A support switch is missed if the swing foot carries more of the weight than the
-support foot, by this share, for this time (0.1 s). In a normal switch it does so for
-0.03 s."""
+"""Thresholds of a missed support switch: the swing foot carries more than the support
+foot, by this share of the robot's weight, for this time [sqrt(leg length / gravity)]
+(0.1 s). In a normal switch it does so for 0.03 s."""
 
 SATURATED, SATURATED_PENDULUMS = 0.97, 0.8
-"""A motor is at its limit if its servo asks for this share of the stall torque for this
-time (0.13 s). In a normal step of a fast gait it does so for 0.1 s."""
+"""Thresholds of a motor at its limit: its servo asks for this share of the stall torque
+for this time [sqrt(leg length / gravity)] (0.13 s). In a normal step of a fast gait it
+does so for 0.1 s."""
 
 LATENCY_S = 0.04
-"""Longest time until a command takes effect [s]: a little over the real latency."""
+"""Longest time until a command takes effect [s], a little above the command latency of
+the real world."""
 
 
 def slip(signals: Signals, ticks: range) -> int | None:
     """Detect that a standing foot slides over the ground.
 
-    Its sliding is the motion of its slowest point at or below the ground, because a
-    foot that only tips or pivots has a point that rests.
+    The slowest of the sole's points on the ground gives the speed of sliding, because
+    a foot that only tips or pivots has a point at rest.
     """
     step, window = (
         signals.ticks_in(_SHORT_S),
@@ -89,7 +94,7 @@ def trip(signals: Signals, ticks: range) -> int | None:
 
 
 def _stops(signals: Signals, tick: int, side: int, step: int) -> bool:
-    """Whether a foot loses half of its speed at a tick, before it is at its target."""
+    """Whether a foot loses half of its speed at a tick before it reaches its target."""
     heading = signals.heading[tick]
     sole_m = signals.soles_m[:, side, :, :2].mean(axis=1) @ heading
     goal_m = signals.commanded_m[tick - 1, side, :, :2].mean(axis=0) @ heading
@@ -100,7 +105,7 @@ def _stops(signals: Signals, tick: int, side: int, step: int) -> bool:
 
 
 def _faces_a_rise(signals: Signals, tick: int, side: int) -> bool:
-    """Whether the ground just ahead of a sole's point stands above that point."""
+    """Whether the ground just ahead of a point of a sole is higher than this point."""
     points_m = signals.soles_m[tick, side]
     ahead_m = points_m[:, :2] + AHEAD_LEGS * signals.leg_m * signals.heading[tick]
     above_m = signals.ground_m(ahead_m) - points_m[:, 2]
@@ -119,8 +124,8 @@ def motor_limit(signals: Signals, ticks: range) -> int | None:
     """Detect that a motor of a standing leg is at its limit while its error grows.
 
     If the position error exceeds stall torque / kp, the servo asks for all the torque
-    that the motor can give at its speed (see `Motor`). Because of the latency the
-    command in effect may be any of the last few.
+    that the motor can give at its speed. Because of the command latency, any of the
+    commands of the last 0.04 s may be in effect.
     """
     long = signals.ticks_in(SATURATED_PENDULUMS * signals.pendulum_s)
     asked = asked_share(signals)
@@ -136,7 +141,11 @@ def motor_limit(signals: Signals, ticks: range) -> int | None:
 
 
 def asked_share(signals: Signals) -> FloatArray:
-    """(ticks, joints) smallest torque that any recent command asks for, over stall."""
+    """(ticks, joints) torque that commands ask for, as a share of the stall torque.
+
+    Because of the latency, it is the minimum over the commands of the last 0.04 s; it
+    is 0 where these ask for torques of different signs.
+    """
     recording, robot = signals.scene.recording, signals.scene.description
     commands = recording.commands(robot.joints)
     servo = [recording.metadata.servo[joint] for joint in robot.joints]
@@ -149,7 +158,7 @@ def asked_share(signals: Signals) -> FloatArray:
 
 
 def _all_of_last(mask: BoolArray, count: int) -> BoolArray:
-    """Whether a mask (ticks, ...) was set at each of the last `count` ticks."""
+    """(ticks, ...) whether a mask was true at each of the last `count` ticks."""
     every = mask.copy()
     for back in range(1, count):
         every[back:] &= mask[:-back]
@@ -158,6 +167,6 @@ def _all_of_last(mask: BoolArray, count: int) -> BoolArray:
 
 
 def _first(mask: BoolArray, ticks: range) -> int | None:
-    """The first tick of a range at which a mask (ticks,) is set."""
+    """The first tick in a range at which a mask (ticks,) is true; None if never."""
     found = np.flatnonzero(mask[ticks.start : ticks.stop])
     return ticks.start + int(found[0]) if found.size else None

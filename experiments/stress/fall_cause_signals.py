@@ -1,4 +1,4 @@
-"""Signals of a walk, from its recording: feet, weight and balance, tick by tick."""
+"""Signals of a walk at each tick, computed from its recording: feet, load, balance."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,7 +17,7 @@ from worlds.scenes.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """Signals of one recording as arrays over its ticks; feet in the order left, right.
+    """Signals of a recorded walk as arrays over its ticks; feet in order left, right.
 
     Attributes:
       scene: the recording with its robot and its ground.
@@ -32,10 +32,10 @@ class Signals:
         """Prepare the signals of a walk.
 
         Args:
-          scene: a recording with base, commands, foot forces and support.
+          scene: a recording with base pose, commands, foot forces and support leg.
 
         Raises:
-          UnknownNameError: a column is missing.
+          UnknownNameError: the recording lacks a column.
         """
         leg = biped(scene.description).leg
         return cls(scene, leg.thigh_m + leg.tibia_m + leg.ankle_height_m)
@@ -67,18 +67,18 @@ class Signals:
 
     @cached_property
     def swings(self) -> BoolArray:
-        """(ticks, 2) whether the walk engine wants a foot to swing."""
+        """(ticks, 2) whether each foot should swing according to the walk engine."""
         support = self.scene.recording.columns[SUPPORT]
         return np.stack([support < 0, support > 0], axis=1)
 
     @cached_property
     def soles_m(self) -> FloatArray:
-        """(ticks, 2, points, 3) positions of points of both soles in the world [m]."""
+        """(ticks, 2, points, 3) world positions of both soles' contact points [m]."""
         return self._soles(self.scene.link_poses())
 
     @cached_property
     def commanded_m(self) -> FloatArray:
-        """(ticks, 2, points, 3) positions of the soles at the commanded angles [m]."""
+        """(ticks, 2, points, 3) soles' points [m] if the joints were as commanded."""
         recording, robot = self.scene.recording, self.scene.description
         base = LinkPoses(
             recording.vector("base.position"), recording.vector("base.orientation")
@@ -99,7 +99,7 @@ class Signals:
 
     @cached_property
     def lean(self) -> FloatArray:
-        """(ticks, 2) components of the torso's up axis: forward, and to the left."""
+        """(ticks, 2) forward and left components of the torso's unit up vector."""
         up, heading = self._torso.apply([0.0, 0.0, 1.0]), self.heading
         left = np.stack([-heading[:, 1], heading[:, 0]], axis=1)
         return np.stack(
@@ -114,7 +114,7 @@ class Signals:
         return np.asarray(np.arccos(np.clip(up_z, -1.0, 1.0)))
 
     def ground_m(self, places_m: FloatArray) -> FloatArray:
-        """(...) heights of the ground [m] at places (..., 2); 0 if it is unknown."""
+        """(...) heights of the ground [m] at x, y (..., 2); 0 if it is unknown."""
         ground = self.scene.ground
         if ground is None:
             return np.zeros(places_m.shape[:-1])

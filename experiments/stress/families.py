@@ -1,6 +1,7 @@
-"""Families of ground that a gait is tested on, each harder from rung to rung.
+"""Families of ground for the terrain stress test, each a ladder of severities.
 
-The ladders of shapes stand in the classes of `terrain`, those of materials here.
+The ladders of shapes are defined in the classes of `terrain`, those of friction and
+softness here.
 """
 
 import dataclasses
@@ -17,7 +18,7 @@ from terrain.ladder import Ladder
 from worlds import WorldOptions
 
 FLAT = "flat"
-"""Name of the family without severity, for comparison: hard, level ground."""
+"""Name of the family for comparison, which has no severity: hard, level ground."""
 
 
 @dataclass(frozen=True)
@@ -25,8 +26,8 @@ class Family(Ladder):
     """A family of ground that is difficult to walk on, by its shape or its material.
 
     Attributes:
-      terrain: name of the ground.
-      options: function of a severity that returns the world options that it changes.
+      terrain: name of the terrain.
+      options: function that returns, for a severity, the changed world options by name.
     """
 
     terrain: str = FLAT
@@ -34,7 +35,7 @@ class Family(Ladder):
 
 
 def _shapes() -> Iterator[tuple[str, Family]]:
-    """A family for each ladder of each kind of ground."""
+    """Yield name and family of each severity ladder of each terrain."""
     for terrain, ground in GROUNDS.items():
         for name, ladder in ground.ladders.items():
             yield name, Family(**vars(ladder), terrain=terrain)
@@ -55,7 +56,7 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         ),
     }
 )
-"""Families by name, in the order of the tables."""
+"""Families of ground by name, in the order of the tables."""
 
 
 @dataclass(frozen=True)
@@ -63,9 +64,9 @@ class Place:
     """A family of ground at one severity, for a robot in a world.
 
     Attributes:
-      robot: its name.
+      robot: name of the robot.
       world: "sim" or "real".
-      family: one of `FAMILIES`, or `FLAT`.
+      family: a key of `FAMILIES`, or `FLAT`.
       severity: in the family's unit; 0 for `FLAT`.
     """
 
@@ -75,13 +76,13 @@ class Place:
     severity: float
 
     def __post_init__(self) -> None:
-        """Refuse an unknown family."""
+        """Refuse an unknown family of ground."""
         if self.family not in (FLAT, *FAMILIES):
             raise UnknownNameError("family of ground", self.family, FAMILIES)
 
     @property
     def label(self) -> str:
-        """A short name of the place, such as "lumps-0.006"."""
+        """A short name of family and severity, such as "lumps-0.006"."""
         return f"{self.family}-{self.severity:.3g}" if self.severity else self.family
 
     def ground(self, leg_m: float, begin: float, seed: int) -> TerrainSpec:
@@ -108,7 +109,7 @@ class Place:
         return TerrainSpec(name, around | parameters, seed)
 
     def options(self, usual: WorldOptions) -> WorldOptions:
-        """The options of the world at this place, given its usual options."""
+        """The world's usual options, with the friction or softness of this family."""
         if self.family == FLAT:
             return usual
         changes: dict[str, Any] = FAMILIES[self.family].options(self.severity)

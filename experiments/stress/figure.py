@@ -1,4 +1,4 @@
-"""Pictures of a stress test: falls by severity, and gaits compared with each other."""
+"""Figures of the terrain stress test: falls by severity, and a comparison of gaits."""
 
 import math
 from collections.abc import Sequence
@@ -17,14 +17,15 @@ if TYPE_CHECKING:
 COMPARISON = "terrain_stress.png"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 _WIDTH_IN = 7.6
-"""Width of the pictures [inch]: that of a report's column of text, so that the letters
-are as large on the page as they are drawn."""
+"""Width of the figures [inch]: that of a report's column of text, so that their font
+size is right on the page."""
 _EDGE = 0.06
-"""Distance beyond the ladder's ends at which severities outside of it are drawn."""
+"""Distance beyond the ends of a ladder of severities, as a share of its length, at
+which severities outside of it are drawn."""
 
 
 def heat_map_name(gait: str) -> str:
-    """Name of the file with a gait's picture."""
+    """Name of the PNG file with the falls of a gait."""
     return f"terrain_stress_{gait}.png"
 
 
@@ -41,10 +42,10 @@ def draw_heat_maps(curves: Sequence[Curve], folder: Path) -> None:
 
 
 def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
-    """Falls of one gait: a panel for each robot and world, a row for each family.
+    """Draw one gait's falls: a panel for each robot and world, a row for each family.
 
     Args:
-      curves: the curves of one gait.
+      curves: the curves of one gait; each has a family of ground.
     """
     from matplotlib.figure import Figure
 
@@ -91,10 +92,10 @@ def _heat_map(panel: "Axes", curves: Sequence[Curve]) -> Any:
 
 
 def comparison_figure(curves: Sequence[Curve]) -> "Figure":
-    """Severities at which half of the trials fall: a panel for each robot and world.
+    """Draw severities at which half of the trials fall, by robot, world and family.
 
-    All ladders are as long as each other, in the logarithm of the severity. An arrow
-    means that the severity is beyond what was tried, or that the interval is.
+    The severities tried of every family span the same length, on a logarithmic axis. An
+    arrow marks an estimate outside of the severities tried.
     """
     from matplotlib.figure import Figure
 
@@ -130,7 +131,7 @@ def comparison_figure(curves: Sequence[Curve]) -> "Figure":
 def _half(
     panel: "Axes", curve: Curve, y: float, colour: str, label: str | None
 ) -> None:
-    """Draw a curve's severity as a point with its interval."""
+    """Draw where half of a curve's trials fall: severity and its 95 % interval."""
     half = curve["half"]
     ends = [_at(curve, half[name]) for name in ("low", "high")]
     low = -_EDGE if ends[0] is None else ends[0]
@@ -163,7 +164,7 @@ def _frame(panel: "Axes", curves: Sequence[Curve], families: Sequence[str]) -> N
 
 
 def _at(curve: Curve, severity: float | None) -> float | None:
-    """Position of a severity on its ladder, from 0 (mildest) to 1 (hardest)."""
+    """Position of a severity on the log scale from 0 (mildest tried) to 1 (hardest)."""
     if severity is None:
         return None
     first, last = (curve["rungs"][k]["severity"] for k in (0, -1))
@@ -192,5 +193,5 @@ def _settings(curves: Sequence[Curve]) -> list[tuple[str, str]]:
 
 
 def _name(curves: Sequence[Curve], setting: tuple[str, str]) -> str:
-    """Name of a panel: the world, and the robot if there are several."""
+    """Name of a panel: the world, preceded by the robot if there are several robots."""
     return " ".join(setting) if len(_each(curves, "robot")) > 1 else setting[1]

@@ -1,4 +1,4 @@
-"""Tables and page of the terrain stress test."""
+"""Tables and report page of the terrain stress test."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -49,7 +49,7 @@ NOTES = (
 
 
 def half_rows(curves: Sequence[Curve]) -> list[list[str]]:
-    """Severities at which half of the trials fall, a row of texts for each curve."""
+    """Table rows: the severity at which half of the trials fall, for each curve."""
     return [
         [*_setting(curve), curve["quantity"], half_text(curve)]
         for curve in curves
@@ -58,7 +58,7 @@ def half_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 
 def cell_rows(curves: Sequence[Curve]) -> list[list[str]]:
-    """Table of all results, a row for each severity of each curve."""
+    """Table rows: speed, falls and their causes, for each severity of each curve."""
     rows = []
     for curve in curves:
         for rung in curve["rungs"]:
@@ -78,7 +78,7 @@ def cell_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 
 def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
-    """Table of the causes of falls, a row for each curve that has falls."""
+    """Table rows: number of falls by cause, for each curve with falls."""
     return [
         [*_setting(curve), str(counted.total()), *(str(counted[c]) for c in Cause)]
         for curve, counted in causes_by_family(curves)
@@ -87,10 +87,10 @@ def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 
 def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
-    """Write `result.md` and the HTML of a run that has its pictures.
+    """Write the report page, `result.md` and `report.html`, of a run with its pictures.
 
     Args:
-      folder: the run.
+      folder: the run's folder.
       curves: results as `curves_of` makes them.
     """
     causes = ("robot", "world", "gait", "family", "falls", *Cause)
@@ -118,7 +118,7 @@ def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
 
 
 def stress_answer(curves: Sequence[Curve]) -> Iterator[str]:
-    """The page's answer: a sentence for each robot, world and gait."""
+    """Yield the answer of the page: a sentence for each robot, world and gait."""
     keys = dict.fromkeys(tuple(_setting(curve)[:3]) for curve in curves)
     for robot, world, gait in keys:
         own = [c for c in curves if tuple(_setting(c)[:3]) == (robot, world, gait)]

@@ -5,16 +5,16 @@ from collections.abc import Mapping
 from typing import Any
 
 SHOWN = {"m": (1000.0, " mm"), "rad": (180.0 / math.pi, "°"), "1": (1.0, "")}
-"""For each unit of a severity: the factor to the printed unit, and its name."""
+"""By SI unit of a severity: the factor to the printed unit, and the printed unit."""
 
 
 def family_text(family: str) -> str:
-    """A family's name, such as "slope up"."""
+    """Name of a family of ground in words, such as "slope up"."""
     return family.replace("_", " ")
 
 
 def severity_text(severity: float, unit: str | None) -> str:
-    """A severity with its printed unit, such as "6.3 mm"; "-" if it has no unit."""
+    """A severity with its printed unit, such as "6.3 mm"; "-" if `unit` is None."""
     if unit is None:
         return "-"
     factor, name = SHOWN[unit]
@@ -26,8 +26,8 @@ def half_text(curve: Mapping[str, Any], interval: bool = True) -> str:
 
     Examples: "6.3 mm (5 to 8.1)"; "not reached (up to 20 mm)" if fewer than half of the
     trials fall even at the hardest severity, 20 mm; "below 2 mm" or, for friction,
-    "above 0.6" if more than half fall at the mildest. An end of the interval that lies
-    outside of the ladder is "?".
+    "above 0.6" if more than half fall at the mildest. An end of the interval outside of
+    the severities tried is "?".
 
     Args:
       curve: results of one gait on one family of ground, as `curves_of` makes them.

@@ -1,4 +1,4 @@
-"""Trials of the terrain stress test: lets gaits walk at a place."""
+"""Trials of the terrain stress test: gaits walk on ground of one severity."""
 
 import contextlib
 import dataclasses
@@ -23,24 +23,24 @@ from worlds import FALLS, End, RecordingMetadata
 from worlds.scenes.scene import Scene
 
 COURSE_LEGS = 8.0
-"""Length of the course in leg lengths; 2 m for the NAO."""
+"""Length of a trial's course in leg lengths; 2 m for the NAO."""
 
 LIMIT_PENDULUMS = 50.0
-"""Time limit in units of sqrt(leg length / gravity); 8 s for the NAO."""
+"""Time limit of a trial in units of sqrt(leg length / gravity); 8 s for the NAO."""
 
 BEGIN_LEGS = (0.8, 1.6)
-"""Range, in leg lengths, of the radius of the flat area around the start."""
+"""Range from which the radius of the flat area at the start is drawn [leg lengths]."""
 
 START_SPREAD_RAD = 0.01
 """Standard deviation of the joint angles in the start poses [rad]."""
 
 Row = tuple[str, int]
-"""Name of a gait, and number of its trial."""
+"""Name of a gait, and number of a trial of it."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """How one trial went.
+    """The result of one trial.
 
     Attributes:
       gait: name of the gait.
@@ -48,7 +48,8 @@ class Trial:
         noise and start pose.
       distance_m: distance forward at the end [m].
       time_s: duration [s].
-      end: why the rollout ended; "" if the time was up or the course finished.
+      end: reason of an early end, such as "fall"; "" if the time was up or the course
+        finished.
       cause: cause of the fall; "" without a fall.
     """
 
@@ -75,7 +76,7 @@ class Walk:
 
 @dataclass(frozen=True, eq=False)
 class _Start:
-    """Ground and seeds of a trial: the same for all gaits."""
+    """Ground and seeds of a trial, which are the same for all gaits."""
 
     ground: TerrainSpec
     of_noise: np.random.SeedSequence
@@ -83,7 +84,7 @@ class _Start:
 
 
 def rules_of(description: Description) -> TrialRules:
-    """Rules of a trial: course and time limit are scaled to the robot's leg length."""
+    """Rules of a trial, with course and time limit scaled to the robot's leg length."""
     leg_m = leg_length_m(description)
     return TrialRules(
         limit_s=round(LIMIT_PENDULUMS * math.sqrt(leg_m / GRAVITY_M_S2), 2),
@@ -100,15 +101,15 @@ def walk_at(
     threads: int = 0,
     on_end: Callable[[], object] = lambda: None,
 ) -> Iterator[Walk]:
-    """Let gaits walk at a place. The bits of a trial do not depend on other trials.
+    """Run trials at a place; none depends on which other trials run beside it.
 
     Args:
       place: robot, world, family of ground and severity.
       gaits: the gaits by name.
       rows: gait and number of every trial.
-      seed: the randomness of a trial follows from it and from the trial's number.
-      threads: of the sim, or processes of the real world; 0 for one per core.
-      on_end: called once for each trial that is over.
+      seed: the random numbers of a trial follow from it and from the trial's number.
+      threads: threads of the sim, or processes of the real world; 0 for one per core.
+      on_end: called once at the end of each trial.
     """
     for first in range(0, len(rows), MOST_AT_ONCE):
         wave = rows[first : first + MOST_AT_ONCE]
@@ -167,7 +168,7 @@ def _walk_together(
 
 
 def _start(place: Place, description: Description, number: int, seed: int) -> _Start:
-    """Seeds and ground of a trial; the seeds are the same at all severities."""
+    """Draw ground and seeds of a trial; the seeds are the same at all severities."""
     children = np.random.SeedSequence(seed, spawn_key=(number,)).spawn(4)
     of_ground, of_begin, of_noise, of_pose = children
     begin = float(np.random.default_rng(of_begin).uniform(*BEGIN_LEGS))

@@ -1,4 +1,4 @@
-"""Walks the worst falls of a stress test once more, and writes their recordings."""
+"""Repeats the worst falls of a terrain stress test, and writes their recordings."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
@@ -29,19 +29,19 @@ def write_worst(
     gaits: Mapping[str, Gait],
     cells: Sequence[Cell],
 ) -> list[dict[str, object]]:
-    """Write the worst falls of each robot, world and gait: recordings, Rerun files.
+    """Write recordings and Rerun files of each robot's, world's and gait's worst falls.
 
-    They are walked again. The same seeds give the same bits, so that the recordings of
-    all rollouts need not be kept.
+    The walks are simulated again: the same seeds give the same bits, so that the test
+    need not keep the recordings of all trials.
 
     Args:
-      folder: the run; files that it holds already are not changed.
+      folder: the run's folder; files that it already holds are not changed.
       config: number of falls, seed and threads.
       gaits: the gaits by name.
-      cells: all cells of the test.
+      cells: all cells (trials at one place) of the test.
 
     Returns:
-      Place, trial and file of each fall, as plain values.
+      Place, trial and file name of each fall, as JSON values.
     """
     written: list[dict[str, object]] = []
     for robot, world in dict.fromkeys((c["robot"], c["world"]) for c in cells):
@@ -62,10 +62,11 @@ def write_worst(
 def worst_falls(
     cells: Sequence[Cell], gait: str, count: int
 ) -> list[tuple[Place, Trial]]:
-    """A gait's falls on the mildest ground and after the shortest distance.
+    """Choose a gait's worst falls: on the mildest ground, after the shortest distance.
 
     Args:
-      cells: cells of one robot and world, from mild to hard within a family.
+      cells: cells (trials at one place) of one robot and world; those of a family of
+        ground are in order from mild to hard.
       gait: name of the gait.
       count: largest number of falls; at most one is taken from each family.
     """
