@@ -1,4 +1,4 @@
-"""Finds a robot's legs, arms and joint roles, for a walk engine, in its description."""
+"""Finds legs, arms and foot sensors in a robot's description, for the walk engine."""
 
 import math
 
@@ -12,20 +12,25 @@ from robots.leg_geometry import LEG_JOINTS, Biped, LegChain, LegGeometry
 
 _SAME_M = 1e-9
 _ABOUT = [2, 0, 1, 1, 1, 0]
-"""The axis, z, x or y, that each role turns about."""
+"""Index of the axis (0 x, 1 y, 2 z) about which each leg joint turns, in the order yaw,
+roll, pitch, knee, ankle pitch, ankle roll."""
 
 _Leg = tuple[int, ...]
 
 
 def biped(description: Description) -> Biped:
-    """Legs, arms and foot sensors of a robot that walks on two legs.
+    """Find the legs, arms and foot sensors of a robot that walks on two legs.
 
     A leg is the chain of joints from the root to a foot: three at the hip, the knee,
-    two at the ankle. An arm is a joint at the root that no leg has, with the joint
-    after it: shoulder pitch and roll.
+    two at the ankle. An arm is a joint at the root that belongs to no leg (shoulder
+    pitch), with the joint after it (shoulder roll).
 
     Raises:
-      BadValueError: a leg has not six joints, or its knee does not bend it.
+      BadValueError: a leg does not have six joints, or its knee's axis is not lateral.
+
+    Example:
+      >>> biped(robots.get("nao")).leg.thigh_m
+      0.1
     """
     left, right = (_chain(description, foot.joint) for foot in description.feet)
     for side, leg in (("left", left), ("right", right)):
@@ -70,7 +75,7 @@ def biped(description: Description) -> Biped:
 
 
 def _chain(description: Description, joint: int) -> _Leg:
-    """Joints from the root to this one."""
+    """Indices of the joints from the root to a joint, that joint included."""
     chain: list[int] = []
     while joint >= 0:
         chain.insert(0, joint)
@@ -87,7 +92,13 @@ def _by_role(description: Description, leg: _Leg) -> _Leg:
 
 
 def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
-    """Shoulder pitch and roll on one side (1 left, -1 right), if there is an arm."""
+    """Indices of shoulder pitch and roll of the arm on one side; None without an arm.
+
+    Args:
+      description: the robot.
+      legs: indices of the joints of both legs.
+      side: 1 left, -1 right.
+    """
     for i, joint in enumerate(description.links):
         if joint.parent < 0 and i not in legs and joint.origin_m[1] * side > 0:
             for k, after in enumerate(description.links):
@@ -98,7 +109,13 @@ def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
 
 
 def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
-    """Whether hip axes meet in one point and ankle axes in another (`LegGeometry`)."""
+    """Whether hip axes meet in one point, ankle axes in another, and legs are mirrored.
+
+    Args:
+      description: the robot.
+      left: indices of the left leg's joints from hip to foot.
+      right: indices of the right leg's joints from hip to foot.
+    """
     one, other = ([description.links[joint] for joint in leg] for leg in (left, right))
     axes = np.array([joint.axis for joint in one])
     expected = np.array([axes[0], *np.eye(3)[[0, 1, 1, 1, 0]]])
@@ -107,7 +124,7 @@ def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
     bones[[2, 3], 2] = 0.0  # the knee and the ankle are straight below
     mirror = np.array([1.0, -1.0, 1.0])
     same_origins = origins * mirror - np.array([joint.origin_m for joint in other])
-    # A mirrored turn about an axis is one about its mirror image, the other way round.
+    # The mirror image of a turn is the opposite turn about the mirrored axis.
     mirrored = -mirror * axes * np.array([1, -1, 1, 1, 1, -1])[:, None]
     same_axes = mirrored - np.array([joint.axis for joint in other])
     wrong = (axes - expected, bones, same_origins, same_axes)
@@ -115,7 +132,7 @@ def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
 
 
 def _geometry(description: Description, leg: _Leg) -> LegGeometry:
-    """Lengths of a left leg whose hip axes meet in one point."""
+    """Geometry of a left leg whose hip axes meet in one point, and ankle axes, too."""
     yaw, _, _, knee, ankle, _ = (description.links[joint] for joint in leg)
     hip_x, hip_y, hip_z = yaw.origin_m.tolist()
     axis_x, axis_y, axis_z = yaw.axis.tolist()
@@ -129,10 +146,15 @@ def _geometry(description: Description, leg: _Leg) -> LegGeometry:
 
 
 def _like(description: Description, chain: _Leg, leg: _Leg) -> LegGeometry:
-    """Approximate a leg whose hip axes do not meet by one whose axes do.
+    """Approximate a leg whose hip axes do not meet by a leg whose axes do.
 
-    Its hip is at the pitch axis, straight above the foot; thigh and shin are as long
-    as they look from the side; the ankle is at its pitch axis.
+    The approximation has its hip on the hip pitch axis, straight above the foot, its
+    ankle on the ankle pitch axis, and the thigh and shin lengths seen from the side.
+
+    Args:
+      description: the robot.
+      chain: indices of the left leg's joints from hip to foot.
+      leg: the same indices in the order yaw, roll, pitch, knee, ankle pitch and roll.
     """
     at = _places(description, chain)
     _, _, pitch, knee, ankle, _ = (at[chain.index(joint)] for joint in leg)
@@ -169,5 +191,5 @@ def _leg_chain(description: Description, chain: _Leg, leg: _Leg) -> LegChain:
 
 
 def _places(description: Description, chain: _Leg) -> FloatArray:
-    """(6, 3) where the joints of a leg are in the torso's frame, all at zero."""
+    """(6, 3) positions of a leg's joints in the torso's frame [m], all angles zero."""
     return np.cumsum([description.links[joint].origin_m for joint in chain], axis=0)

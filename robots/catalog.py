@@ -1,4 +1,4 @@
-"""Finds robots by name or in files."""
+"""Makes descriptions of robots from their names or files."""
 
 import dataclasses
 import tomllib
@@ -16,7 +16,12 @@ _URDF, _TOML = ".urdf", ".toml"
 
 
 def names() -> list[str]:
-    """Every name that `get` knows."""
+    """List the names of the built-in robots.
+
+    Example:
+      >>> "nao" in robots.names()
+      True
+    """
     return sorted(path.stem for path in _FOLDER.glob(f"*{_TOML}"))
 
 
@@ -25,13 +30,13 @@ def get(name: str) -> Description:
     """Describe a robot by its name, or from a file.
 
     Args:
-      name: one of `names`, a URDF (.urdf) of a robot on two legs, or a TOML file
-        (.toml) that completes a URDF (`Adaptation`).
+      name: one of `robots.names()`, or the path of a file: a URDF (.urdf) of a robot on
+        two legs, or a TOML file (.toml) like robots/nao.toml or that completes a URDF.
 
     Raises:
       UnknownNameError: there is no such robot.
-      GroundwalkError: the file holds no robot that walks on two legs; the message says
-        why.
+      GroundwalkError: the file cannot be read or holds no robot that walks on two legs;
+        the message says why.
 
     Example:
       >>> get("nao").joints[:2]

@@ -1,7 +1,8 @@
 """A robot as data: links, joints, motors, feet and sensors.
 
-Both engines' models are made from this one description. Frames: x forward, y
-left, z up; with all joints at zero every joint frame is parallel to the root's.
+The MuJoCo and the PyBullet model are both made from this description. Frames: x
+forward, y left, z up; with all joints at zero every joint's frame is parallel to the
+root link's.
 """
 
 import math
@@ -22,12 +23,13 @@ SHAPE_COLOURS = ("shell", "dark", "accent")
 
 @dataclass(frozen=True)
 class Capsule:
-    """A round shape of a link, to be looked at; it never touches anything.
+    """A visual capsule or sphere of a link; it has no collisions.
 
     Attributes:
-      start_m, end_m: ends of the axis in the joint's frame; equal for a sphere.
-      radius_m: the radius.
-      colour: one of SHAPE_COLOURS; "accent" is another colour for each robot in view.
+      start_m, end_m: ends of the axis in the joint's frame [m]; equal for a sphere.
+      radius_m: radius [m].
+      colour: "shell", "dark" or "accent"; "accent" differs from robot to robot when
+        several are shown.
     """
 
     start_m: tuple[float, float, float]
@@ -43,13 +45,13 @@ class Capsule:
 
 @dataclass(frozen=True)
 class VisualMesh:
-    """A file that shows a part of a link; like a capsule it never touches anything.
+    """A mesh file that shows a part of a link; it has no collisions.
 
     Attributes:
-      path: STL, OBJ or COLLADA.
-      position_m: of the mesh's frame in the joint's frame.
+      path: STL, OBJ or COLLADA file.
+      position_m: origin of the mesh's frame in the joint's frame [m].
       orientation: unit quaternion w, x, y, z from the mesh's frame to the joint's.
-      scale: factors of the mesh's own axes.
+      scale: factors along the mesh's x, y and z axes.
     """
 
     path: Path
@@ -62,16 +64,17 @@ class VisualMesh:
 class Motor:
     """A geared position servo with a torque-speed line.
 
-    Its torque is `kp * (command - position) - kd * velocity`, held between
-    `stall * (-1 - velocity / no_load)` and `stall * (1 - velocity / no_load)`.
-    A board that sets the duty cycle in proportion to the position error has the
-    motor's back-EMF as its damping: kd = stall / no_load.
+    Its torque is `kp * (command - position) - kd * velocity`, clipped to the range from
+    `stall * (-1 - velocity / no_load)` to `stall * (1 - velocity / no_load)`.
+    If the motor board sets the duty cycle in proportion to the position error, the only
+    damping is the motor's back-EMF: kd = stall / no_load.
 
     Attributes:
-      stall_torque_nm, no_load_speed_rad_s: the ends of the torque-speed line.
-      kp_nm_rad: stiffness.
-      kd_nm_s_rad: damping, back-EMF included.
-      rotor_kg_m2: rotor inertia behind the gear.
+      stall_torque_nm: torque [N m] at full voltage and speed zero.
+      no_load_speed_rad_s: speed [rad/s] at full voltage without load.
+      kp_nm_rad: stiffness [N m/rad].
+      kd_nm_s_rad: damping [N m s/rad], back-EMF included.
+      rotor_kg_m2: rotor inertia [kg m^2] times the gear ratio squared.
     """
 
     stall_torque_nm: float
@@ -81,28 +84,28 @@ class Motor:
     rotor_kg_m2: float
 
     def __post_init__(self) -> None:
-        """Refuse negative and infinite values."""
+        """Refuse values that are negative or not finite."""
         for name, value in vars(self).items():
             if not (math.isfinite(value) and value >= 0):
                 raise BadValueError(f"motor {name} is {value}; it must not be negative")
 
     @property
     def back_emf_nm_s_rad(self) -> float:
-        """Slope of the torque-speed line [N m s/rad]."""
+        """Damping by the back-EMF [N m s/rad]: stall torque over no-load speed."""
         return self.stall_torque_nm / self.no_load_speed_rad_s
 
     def drive_nm(self, error_rad: FloatArray, velocity_rad_s: FloatArray) -> FloatArray:
-        """Stall torque (n,) that the drive asks for [N m]; the motor has a limited one.
+        """Drive voltage as the stall torque (n,) it would give [N m], before its limit.
 
         Args:
-          error_rad: (n,) command less position.
-          velocity_rad_s: (n,) of the joint.
+          error_rad: (n,) command minus position of the joint [rad].
+          velocity_rad_s: (n,) velocity of the joint [rad/s].
         """
         damping = self.kd_nm_s_rad - self.back_emf_nm_s_rad
         return np.asarray(self.kp_nm_rad * error_rad - damping * velocity_rad_s)
 
     def shared(self, joints: int) -> "Motor":
-        """The part of this motor that each of its coupled joints gets."""
+        """Divide this motor among a number of coupled joints: the share of each."""
         return Motor(
             self.stall_torque_nm / joints,
             self.no_load_speed_rad_s,
@@ -114,13 +117,13 @@ class Motor:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """A rigid body, everything that is fixed to it merged in.
+    """A rigid body, with all bodies that are fixed to it merged in.
 
     Attributes:
       name: the link's name.
-      inertial: in the frame of the link's joint, without any rotor.
-      shapes: round shapes to draw.
-      meshes: mesh files to draw in their place, where there are any.
+      inertial: mass and inertia in the frame of the link's joint, without rotors.
+      shapes: capsules and spheres to draw.
+      meshes: mesh files to draw instead of `shapes`, if there are any.
     """
 
     name: str
@@ -136,9 +139,9 @@ class Joint:
     Attributes:
       name: the joint's name, as in commands and recordings.
       parent: index of the joint whose link carries this one, -1 for the root.
-      origin_m: (3,) in the frame of the parent link's joint.
-      axis: (3,) unit vector.
-      range_rad: lower and upper end.
+      origin_m: (3,) position in the frame of the parent joint [m].
+      axis: (3,) unit vector of the joint's axis.
+      range_rad: lower and upper end of the joint's range [rad].
       motor: the motor; for a coupled pair, half of the shared motor in each joint.
       link: the body that the joint moves.
       slides: whether it slides along its axis instead of turning about it. Only robot
@@ -157,7 +160,10 @@ class Joint:
 
     @property
     def moved_inertial(self) -> Inertial:
-        """The link with the motor's rotor lumped in, as both engines carry it."""
+        """Inertial of the joint's link with the motor's rotor inertia lumped in.
+
+        The MuJoCo and the PyBullet model both use it.
+        """
         return self.link.inertial.with_rotor(self.axis, self.motor.rotor_kg_m2)
 
 
@@ -167,9 +173,10 @@ class Foot:
 
     Attributes:
       joint: index of the joint whose link is the foot.
-      sole_height_m: of the sole in that joint's frame; negative.
-      outline_m: (points, 2) corner points of the sole, x and y, convex.
-      sensors_m: (4, 2) force sensors, x and y, in the order SENSORS_PER_FOOT.
+      sole_height_m: z of the sole in that joint's frame [m]; negative.
+      outline_m: (points, 2) x and y [m] of the corners of the sole, which is convex.
+      sensors_m: (4, 2) x and y [m] of the force sensors: front left, front right, rear
+        left, rear right.
     """
 
     joint: int
@@ -180,7 +187,7 @@ class Foot:
 
 @dataclass(frozen=True)
 class Imu:
-    """Where the root link carries its inertial sensors, in the root's frame."""
+    """Positions (x, y, z) [m] of gyroscope and accelerometer in the torso frame."""
 
     gyroscope_m: tuple[float, float, float]
     accelerometer_m: tuple[float, float, float]
@@ -188,20 +195,25 @@ class Imu:
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A robot with a floating root.
+    """A robot as data, from which its MuJoCo model and its URDF are generated.
 
     Attributes:
       name: the robot's name.
       root: the floating link; its frame is the torso frame.
-      links: one per joint, in the order of the columns of all arrays.
-      coupled: pairs of joints that one motor holds at the same angle.
-      feet: left and right; none if the robot is only to be shown, such as an arm.
-      imu: the inertial sensors.
-      scale: how much larger than the NAO it is.
+      links: the joints, each with its link, in the order of columns of joint arrays.
+      coupled: pairs of joint indices that one motor holds at the same angle.
+      feet: left and right foot; none for a robot that is only shown, such as an arm.
+      imu: positions of the inertial sensors.
+      scale: size relative to the NAO.
       legs: columns of the left and the right leg's yaw, roll, pitch, knee, ankle
-        pitch and ankle roll; None where the axes tell.
-      hanging_rad: left and right shoulder pitch at which the arms hang down.
-      ankles_ahead_m: way from hips to ankles when a gait asks for no offset.
+        pitch and ankle roll; None if they follow from the joints' axes.
+      hanging_rad: left and right shoulder pitch [rad] at which the arms hang down.
+      ankles_ahead_m: distance of the ankles ahead of the hips [m] when the gait
+        parameter `com_offset` is zero.
+
+    Example:
+      >>> robots.get("nao").joints[:2]
+      ('LHipYawPitch', 'LHipRoll')
     """
 
     name: str
@@ -222,22 +234,22 @@ class Description:
 
     @cached_property
     def joint_range_rad(self) -> FloatArray:
-        """(joints, 2) lower and upper end of each joint."""
+        """(joints, 2) lower and upper end of each joint's range [rad]."""
         return np.array([joint.range_rad for joint in self.links])
 
     @cached_property
     def no_load_speed_rad_s(self) -> FloatArray:
-        """(joints,) speed of each motor without load."""
+        """(joints,) speed of each joint's motor without load [rad/s]."""
         return np.array([joint.motor.no_load_speed_rad_s for joint in self.links])
 
     @cached_property
     def parents(self) -> IntArray:
-        """(joints,) index of each joint's parent joint, -1 for the root."""
+        """(joints,) index of each joint's parent joint, -1 if that is the root link."""
         return np.array([joint.parent for joint in self.links], np.intp)
 
     @property
     def mass_kg(self) -> float:
-        """The whole robot's mass."""
+        """Mass of the whole robot [kg]."""
         return self.root.inertial.mass_kg + sum(
             joint.link.inertial.mass_kg for joint in self.links
         )

@@ -13,17 +13,20 @@ _CLEAR = 0.9
 
 
 def roles(axes: FloatArray) -> tuple[int, ...]:
-    """Places of `ROLES` in a leg's chain of joints.
+    """Find yaw, roll, pitch, knee, ankle pitch and ankle roll among a leg's joints.
 
-    At the hip, yaw, roll and pitch are the joints whose axes come closest to z, x and
-    y, all three together: on the NAO yaw leans by 45 degrees. The same holds for
-    pitch and roll at the ankle.
+    The order of the three hip joints is the one in which yaw, roll and pitch axes are
+    closest to z, x and y in sum; the NAO's yaw axis leans by 45 degrees. The order of
+    ankle pitch and roll is found in the same way. The fourth joint is the knee.
 
     Args:
-      axes: (6, 3) unit vectors from the hip to the foot, x forward, y left, z up.
+      axes: (6, 3) unit vectors of the joints from hip to foot; x forward, y left, z up.
+
+    Returns:
+      For each role in that order, the index of its joint in `axes`.
 
     Raises:
-      ValueError: the knee does not bend the leg about y.
+      ValueError: the knee's axis is not close to y.
     """
     if abs(axes[KNEE, _Y]) < _CLEAR:
         raise ValueError(f"the knee's axis is {np.round(axes[KNEE], 3)}, not y")
@@ -33,7 +36,12 @@ def roles(axes: FloatArray) -> tuple[int, ...]:
 
 
 def _closest(axes: FloatArray, wanted: tuple[int, ...]) -> tuple[int, ...]:
-    """The order of axes in which they come closest to the wanted axes."""
+    """Order of k axes in which they are closest, in sum, to wanted coordinate axes.
+
+    Args:
+      axes: (k, 3) unit vectors.
+      wanted: k indices of coordinate axes: 0 x, 1 y, 2 z.
+    """
     return max(
         itertools.permutations(range(len(axes))),
         key=lambda order: float(np.abs(axes[list(order), list(wanted)]).sum()),

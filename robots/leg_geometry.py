@@ -1,4 +1,4 @@
-"""A robot's geometry for a walk engine: its legs, arms, joint ranges and sensors."""
+"""A robot as the walk engine needs it: legs, arms, joint ranges and foot sensors."""
 
 import math
 from dataclasses import dataclass
@@ -17,17 +17,19 @@ FOOT_SENSORS = 8
 class LegChain:
     """One leg as a chain of joints from the hip to the foot; its axes need not meet.
 
-    Frames are parallel to the torso's with all joints at zero. Roles are yaw, roll,
-    pitch, knee, ankle pitch and ankle roll. Angles by role are positive about +z, +x
-    and +y, and zero with the leg straight down and the sole level.
+    Frames are parallel to the torso's with all joints at zero. The roles of the joints
+    are yaw, roll, pitch, knee, ankle pitch and ankle roll. Angles by role are positive
+    about +z (yaw), +x (rolls) and +y (pitches and knee), and zero if the leg points
+    straight down and the sole is level.
 
     Attributes:
-      origins_m: (6, 3) each joint from the one above, the first from the torso.
-      axes: (6, 3) unit vectors.
-      order: (6,) where in the chain each role is.
-      signs: (6,) by role: -1 where the joint turns the other way.
-      zero_rad: (6,) angles by role with all joints at zero.
-      foot_m: (3,) from the ankle, which is the ankle pitch joint, to the last joint.
+      origins_m: (6, 3) position of each joint relative to the joint above it, of the
+        first one in the torso's frame [m].
+      axes: (6, 3) unit vectors of the joints' axes.
+      order: (6,) index in the chain of the joint of each role.
+      signs: (6,) by role: -1 if the joint's angle counts the other way, else 1.
+      zero_rad: (6,) angles by role with all joints at zero [rad].
+      foot_m: (3,) vector from the ankle pitch joint to the last joint [m].
     """
 
     origins_m: FloatArray
@@ -40,7 +42,7 @@ class LegChain:
 
 @dataclass(frozen=True)
 class LegGeometry:
-    """The left leg as its inverse kinematics see it; the right one is its mirror image.
+    """Geometry of the left leg for closed inverse kinematics; the right leg mirrors it.
 
     Six hinges: yaw, roll (axis +x), pitch, knee, ankle pitch (axes +y) and ankle
     roll (axis +x), all axes given with the leg straight. The three at the hip meet
@@ -48,11 +50,16 @@ class LegGeometry:
     pitch, knee and ankle pitch angles, and opposite roll angles, mirror the pose.
 
     Attributes:
-      hip_m: where the hip axes meet, in the torso frame (x forward, y left, z up).
+      hip_m: point where the hip axes meet, in the torso frame (x forward, y left, z up)
+        [m].
       yaw_axis: unit vector of the first joint's axis; on NAO it leans by 45 degrees.
-      thigh_m: hip to knee.
-      tibia_m: knee to ankle.
-      ankle_height_m: sole to ankle axis.
+      thigh_m: length from hip to knee [m].
+      tibia_m: length from knee to ankle [m].
+      ankle_height_m: height of the ankle axes above the sole [m].
+
+    Example:
+      >>> robots.biped(robots.get("nao")).leg.thigh_m
+      0.1
     """
 
     hip_m: tuple[float, float, float]
@@ -62,7 +69,7 @@ class LegGeometry:
     ankle_height_m: float
 
     def __post_init__(self) -> None:
-        """Refuse lengths that are not positive and yaw axes that turn no foot."""
+        """Refuse lengths that are not positive and yaw axes without a vertical part."""
         for name in ("thigh_m", "tibia_m", "ankle_height_m"):
             length = getattr(self, name)
             if not (math.isfinite(length) and length > 0):
@@ -81,21 +88,31 @@ class LegGeometry:
 
 @dataclass(frozen=True, eq=False)
 class Biped:
-    """A robot as a walk engine sees it.
+    """A robot on two legs as the walk engine needs it.
 
-    Joint arrays are (n, joints); the columns below are those of such arrays.
+    "Columns" below are those of arrays (n, joints) of commands or joint angles.
 
     Attributes:
       leg: lengths and axes of the left leg.
       left_leg: columns of yaw, roll, pitch, knee, ankle pitch and ankle roll.
       right_leg: columns of the right leg's joints, in that order.
-      left_arm: columns of shoulder pitch and, where it has one, of shoulder roll; None
-        without arms.
+      left_arm: columns of shoulder pitch and, if it exists, shoulder roll; None without
+        arms.
       right_arm: columns of the right arm's joints, in that order.
-      joint_range_rad: (joints, 2) lower and upper end.
-      max_speed_rad_s: (joints,) speeds of the motors without load.
-      foot_sensor_xy_m: (8, 2) force sensors: left foot front left, front right, rear
-        left, rear right, then the right foot; each in its own foot's ankle frame.
+      joint_range_rad: (joints, 2) lower and upper end of each joint's range [rad].
+      max_speed_rad_s: (joints,) speeds of the motors without load [rad/s].
+      foot_sensor_xy_m: (8, 2) force sensors [m]: left foot front left, front right,
+        rear left, rear right, then the right foot; each in its own foot's ankle frame.
+      chains: the left and right leg as chains if their axes do not meet, else None.
+      hanging_rad: left and right shoulder pitch [rad] at which the arms hang down.
+      arm_signs: left and right: -1 if the shoulder pitch axis points right, else 1.
+      scale: size relative to the NAO.
+      ankles_ahead_m: distance of the ankles ahead of the hips [m] when the gait
+        parameter `com_offset` is zero.
+
+    Example:
+      >>> robots.biped(robots.get("nao")).joints
+      20
     """
 
     leg: LegGeometry
@@ -113,7 +130,7 @@ class Biped:
     ankles_ahead_m: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse shapes and columns that do not belong together."""
+        """Refuse wrong array shapes, repeated or missing columns and empty ranges."""
         shapes = {
             "joint_range_rad": (self.joints, 2),
             "max_speed_rad_s": (self.joints,),
@@ -142,5 +159,5 @@ class Biped:
 
     @property
     def joints(self) -> int:
-        """Number of joints, that is of columns of a joint array."""
+        """Number of joints, which is the number of columns of joint arrays."""
         return len(self.joint_range_rad)

@@ -1,4 +1,4 @@
-"""Reads a description from TOML, merging fixed links into the links that carry them."""
+"""Reads a robot's description from TOML, merging fixed links into their parents."""
 
 import tomllib
 from collections.abc import Iterable
@@ -27,10 +27,10 @@ T = TypeVar("T")
 
 
 def read_description(path: Path) -> Description:
-    """The robot of a TOML file; `nao.toml` beside this file shows the format.
+    """Read the robot of a TOML file in the format of `robots/nao.toml`.
 
     Raises:
-      UnknownNameError: a joint, foot or pair refers to an unknown name.
+      UnknownNameError: a joint, foot or coupled pair refers to an unknown name.
     """
     table = tomllib.loads(path.read_text())
     joints: dict[str, Table] = table["joint"]
@@ -77,7 +77,17 @@ def read_description(path: Path) -> Description:
 
 
 def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatArray]:
-    """The moving joint (or root) above a joint, and the way from it to the parent."""
+    """The next moving joint (or root) above a joint, and the parent's position in it.
+
+    Args:
+      name: the joint.
+      joints: the file's joint tables by name.
+      root: name of the root link.
+
+    Returns:
+      Name of the moving joint or the root, and the position (3,) of the joint's direct
+      parent in its frame [m], which is not zero if that parent is fixed.
+    """
     offset = np.zeros(3)
     parent = joints[name]["parent"]
     while parent != root:
@@ -91,7 +101,10 @@ def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatA
 
 
 def _carrier(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatArray]:
-    """The moving joint (or root) that carries a joint's link, and where."""
+    """The moving joint (or root) with which a joint's link moves, and its position.
+
+    The position (3,) [m] is the link's in the frame of that joint (or root).
+    """
     if not joints[name].get("fixed", False):
         return name, np.zeros(3)
     parent, offset = _parent(name, joints, root)
@@ -105,7 +118,15 @@ def _link(
     carrier: dict[str, tuple[str, FloatArray]],
     own: Table,
 ) -> Link:
-    """A joint's (or the root's) link, with all that is fixed to it."""
+    """Make the link of a moving joint or the root, with all fixed links merged in.
+
+    Args:
+      link: name of the link.
+      owner: name of the moving joint or the root.
+      joints: the file's joint tables by name.
+      carrier: for each joint, the owner of its link and the link's position in it [m].
+      own: the table of the joint or the root, with mass, inertia and shapes.
+    """
     bodies = [_inertial(own)]
     shapes = [_capsule(shape, np.zeros(3)) for shape in own.get("shapes", ())]
     for name, (carried_by, offset) in carrier.items():
@@ -132,7 +153,7 @@ def _place(values: Iterable[float]) -> tuple[float, float, float]:
 
 
 def _motor(values: Table) -> Motor:
-    """A duty-cycle servo: full duty at an error, damped by its back-EMF."""
+    """Make a servo: its duty cycle follows the position error, back-EMF damps it."""
     stall, no_load = float(values["stall_torque"]), float(values["no_load_speed"])
     return Motor(
         stall_torque_nm=stall,
@@ -152,7 +173,7 @@ def _foot(values: Table, index: dict[str, int]) -> Foot:
 
 
 def _named(kind: str, name: str, known: dict[str, T]) -> T:
-    """Look a name up."""
+    """Look a name up; UnknownNameError if it is missing, with the kind of the name."""
     if name not in known:
         raise UnknownNameError(kind, name, known)
     return known[name]

@@ -14,9 +14,10 @@ class Inertial:
     """Mass, centre of mass and rotational inertia of a rigid body.
 
     Attributes:
-      mass_kg: the mass.
-      com_m: (3,) centre of mass in the frame of the body's joint.
-      inertia_kg_m2: (3, 3) about the centre of mass, axes of the joint frame.
+      mass_kg: mass [kg].
+      com_m: (3,) centre of mass in the frame of the body's joint [m].
+      inertia_kg_m2: (3, 3) inertia about the centre of mass [kg m^2], axes of the joint
+        frame.
     """
 
     mass_kg: float
@@ -24,7 +25,7 @@ class Inertial:
     inertia_kg_m2: FloatArray
 
     def __post_init__(self) -> None:
-        """Refuse a body that cannot exist."""
+        """Refuse a mass that is not positive, and an inertia that no body can have."""
         moments = np.linalg.eigvalsh(self.inertia_kg_m2)
         if not (self.mass_kg > 0 and np.isfinite(self.com_m).all()):
             raise BadValueError(f"a mass of {self.mass_kg} kg; it must be positive")
@@ -35,33 +36,33 @@ class Inertial:
             )
 
     def moved(self, offset_m: FloatArray) -> "Inertial":
-        """This body in a frame that lies at -offset_m, with parallel axes."""
+        """This body as seen from a parallel frame at -offset_m, (3,) [m]."""
         return Inertial(self.mass_kg, self.com_m + offset_m, self.inertia_kg_m2)
 
     def with_rotor(self, axis: FloatArray, rotor_kg_m2: float) -> "Inertial":
         """This body with a geared rotor's inertia about the joint axis added.
 
-        Bullet has no joint armature, and a torque computed outside of it makes the
-        simulation unstable; both engines can carry a disc fixed to
-        the link. A thin disc has half of its axial inertia across the axis:
-        J (E + a a^T) / 2.
+        The rotor is a thin disc fixed to the link, which MuJoCo and Bullet can both
+        simulate: Bullet has no joint armature, and a torque from outside in its place
+        makes the simulation unstable. A thin disc's inertia across its axis is half of
+        that about it, so that its matrix is J (E + a a^T) / 2.
 
         Args:
-          axis: (3,) unit vector of the joint axis.
-          rotor_kg_m2: the rotor's inertia J behind the gear (times gear squared).
+          axis: (3,) unit vector a of the joint axis.
+          rotor_kg_m2: the rotor's inertia J times the gear ratio squared [kg m^2].
         """
         disc = rotor_kg_m2 * (np.eye(3) + np.outer(axis, axis)) / 2
         return Inertial(self.mass_kg, self.com_m, self.inertia_kg_m2 + disc)
 
 
 def inertia_matrix(components: Sequence[float]) -> FloatArray:
-    """The (3, 3) matrix of [ixx, iyy, izz, ixy, ixz, iyz]."""
+    """Make the symmetric (3, 3) inertia matrix of [ixx, iyy, izz, ixy, ixz, iyz]."""
     xx, yy, zz, xy, xz, yz = components
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], float)
 
 
 def combined(bodies: Sequence[Inertial]) -> Inertial:
-    """Bodies that are rigidly joined, all given in one frame, as one body.
+    """Combine rigidly joined bodies, all given in one frame, into one body.
 
     The inertia about the common centre of mass follows from the parallel axis
     theorem, I = sum_i (I_i + m_i (d_i.d_i E - d_i d_i^T)) with d_i from the common

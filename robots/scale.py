@@ -1,8 +1,8 @@
-"""How much larger than the NAO a robot is, so that one gait means the same to both.
+"""Size of a robot relative to the NAO, by which gaits for the NAO are scaled.
 
-Two walks are alike if lengths are in proportion to the legs and times to those of the
-inverted pendulum, sqrt(height / g) (Froude's similarity). Then the same angles follow
-one another at the same parts of a step, and forces are in proportion to the weight.
+Two walks are similar (Froude) if lengths are in proportion to the legs and times to the
+time constant of the inverted pendulum, sqrt(height / g). Then both robots have the same
+joint angles at the same phases of a step, and forces in proportion to their weights.
 """
 
 import math
@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from groundwalk.errors import BadValueError
 
 NAO_HIP_M, NAO_CENTRE_M, NAO_KG = 0.248, 0.277, 5.305
-"""Hip height [m], height of the centre of mass [m] and mass [kg] of nao.toml, with
-straight legs and hanging arms."""
+"""Hip height [m], height of the centre of mass [m] and mass [kg] of nao.toml; heights
+are above the soles with straight legs and hanging arms."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """A robot's size in units of the NAO's.
+    """A robot's size as ratios to the NAO's.
 
     Attributes:
-      length: ratio of hip heights above the sole, legs straight.
-      time: square root of the ratio of the centre of mass's heights above the soles.
+      length: ratio of the hips' heights above the sole, legs straight.
+      time: square root of the ratio of the centres' of mass heights above the soles.
       weight: ratio of the weights.
     """
 
@@ -37,12 +37,12 @@ class Scale:
 
     @classmethod
     def of_robot(cls, hip_m: float, centre_m: float, mass_kg: float) -> "Scale":
-        """Compare a robot with the NAO.
+        """Compute the size of a robot relative to the NAO.
 
         Args:
-          hip_m: height of the hip above the sole, the legs straight.
-          centre_m: height of the centre of mass above the sole, standing.
-          mass_kg: the mass.
+          hip_m: height of the hip above the sole with straight legs [m].
+          centre_m: height of the centre of mass above the sole when standing [m].
+          mass_kg: mass of the robot [kg].
         """
         return cls(
             hip_m / NAO_HIP_M, math.sqrt(centre_m / NAO_CENTRE_M), mass_kg / NAO_KG
@@ -50,15 +50,15 @@ class Scale:
 
     @property
     def speed(self) -> float:
-        """Factor between velocities of the NAO and of this robot."""
+        """Factor from velocities [m/s] of the NAO to those of this robot."""
         return self.length / self.time
 
     def of(self, unit: str) -> float:
         """Factor that turns a value for the NAO into one for this robot.
 
         Args:
-          unit: "m", "s", "m/s", "rad/s", "rad/m", "N", or one without size: "1", "m/m"
-            and "rad".
+          unit: unit of the value: "m", "s", "m/s", "rad/s", "rad/m", "N", or one of
+            "1", "m/m" and "rad", whose factor is 1.
         """
         factors = {
             "m": self.length,

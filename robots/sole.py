@@ -1,4 +1,4 @@
-"""Contact points of a sole, and how a force at each is shared by its sensors."""
+"""Contact points of a sole, and the shares of their forces in the foot's sensors."""
 
 import numpy as np
 
@@ -6,28 +6,28 @@ from groundwalk.arrays import FloatArray
 from robots.description import Foot
 
 CONTACT_RADIUS_M = 0.01
-"""Radius [m] of the spheres that touch the ground: smaller ones, of 3 mm, got caught
-below the ground in Bullet."""
+"""Radius [m] of the spheres under a sole that touch the ground. In Bullet, spheres of
+3 mm sank through the ground and stuck there."""
 
 FRICTION = 0.8
-"""Friction coefficient of plastic soles on carpet: no measurement is known, and
-simulators of the NAO use 0.5 to 1."""
+"""Friction coefficient of plastic soles on carpet. No measurement is known; the NAO's
+simulators use 0.5 to 1."""
 
 RIM_POINTS = 10
-"""Corners kept of a sole's rim: on the NAO ten keep 98 % of the area, and all fifteen
-cost a quarter more time."""
+"""Number of contact points on a sole's rim: on the NAO ten keep 98 % of the area; all
+fifteen corners need a quarter more computing time."""
 
 
 def rim_points(outline_m: FloatArray, count: int = RIM_POINTS) -> FloatArray:
     """Reduce a convex outline to corners that keep most of its area.
 
     Args:
-      outline_m: (points, 2) corners in order.
-      count: how many corners to keep; fewer if the outline has fewer.
+      outline_m: (points, 2) corners in order along the outline [m].
+      count: number of corners to keep; all are kept if the outline has fewer.
 
     Returns:
-      (count, 2) corners [m], after removing one by one the corner that costs the least
-      area.
+      (count, 2) corners [m], left after removing one by one the corner whose removal
+      costs the least area.
     """
     corners = outline_m
     while len(corners) > count:
@@ -39,9 +39,10 @@ def rim_points(outline_m: FloatArray, count: int = RIM_POINTS) -> FloatArray:
 
 
 def contact_points(foot: Foot) -> FloatArray:
-    """(points, 2) contact points [m]: the sole's rim and two places on its midline.
+    """(points, 2) contact points of a sole [m]: up to ten on its rim, two inside.
 
-    The two in the middle let a foot rock on a crest; on level ground they add nothing.
+    The two inside lie on the midline. They let a foot rock on a crest of the ground; on
+    level ground they have no effect.
     """
     low, high = foot.outline_m.min(axis=0), foot.outline_m.max(axis=0)
     middle = low + np.array([[1 / 3, 1 / 2], [2 / 3, 1 / 2]]) * (high - low)
@@ -49,18 +50,18 @@ def contact_points(foot: Foot) -> FloatArray:
 
 
 def sensor_shares(sensors_m: FloatArray, points_m: FloatArray) -> FloatArray:
-    """How a force at each point of a stiff sole is shared by its sensors.
+    """Shares of a foot's four sensors in a vertical force at each point of the sole.
 
-    The sole is a stiff plate on four equal springs, so that the share of sensor i
-    is linear in place, w_i = a + b.(s_i - c) with the springs' centre c. Force and
-    moments balance: sum w_i = 1 and sum w_i s_i = p, which gives
-    w_i = 1/4 + (s_i - c)^T S^-1 (p - c) with S = sum (s_i - c)(s_i - c)^T.
-    A point beyond the springs has negative shares: the plate tips, and a sensor
-    reads nothing where the sum over all points is negative.
+    The sole is a stiff plate on four equal springs at the sensors' positions s_i, so
+    that the share of a sensor is linear in its position, w_i = a + b.(s_i - c) with the
+    centre c of the springs. Force and moments at a point p balance: sum w_i = 1 and
+    sum w_i s_i = p, which gives w_i = 1/4 + (s_i - c)^T S^-1 (p - c) with
+    S = sum (s_i - c)(s_i - c)^T. A point outside of the springs has negative shares, as
+    the plate tips; a sensor whose sum over all points is negative should read 0.
 
     Args:
-      sensors_m: (4, 2) the sensors' places.
-      points_m: (points, 2) where forces act.
+      sensors_m: (4, 2) positions of the sensors [m].
+      points_m: (points, 2) positions of the forces [m].
 
     Returns:
       (points, 4) shares, each row adding up to one.
@@ -73,5 +74,5 @@ def sensor_shares(sensors_m: FloatArray, points_m: FloatArray) -> FloatArray:
 
 
 def contact_shares(foot: Foot) -> FloatArray:
-    """(contact points, 4): how a force at each contact point reaches the sensors."""
+    """(contact points, 4) shares of a foot's sensors in a force at each point."""
     return sensor_shares(foot.sensors_m, contact_points(foot))

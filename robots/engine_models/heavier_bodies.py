@@ -1,4 +1,4 @@
-"""Makes bodies of a compiled MuJoCo model heavier, with consistent inertias."""
+"""Multiplies masses and inertias of bodies in a compiled MuJoCo model."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,15 +9,15 @@ from groundwalk.errors import BadValueError, UnknownNameError
 def scale_mass(model: Any, data: Any, factor: float, bodies: Sequence[str]) -> None:
     """Multiply the masses and rotational inertias of bodies.
 
-    Masses alone would leave the inertias and MuJoCo's derived constants as they were
-    (MuJoCo's issue 609); `mj_setConst` computes those anew. It also puts `data` into
-    the model's reference pose.
+    Changing masses alone would leave the inertias and MuJoCo's derived constants
+    unchanged (MuJoCo issue 609); `mj_setConst` computes the constants again, and also
+    puts `data` into the model's reference pose.
 
     Args:
-      model: an `MjModel`; changed.
-      data: its `MjData`; changed.
-      factor: above 0.
-      bodies: their names; none stands for all.
+      model: an `MjModel`, which is changed.
+      data: its `MjData`, which is changed.
+      factor: factor above 0.
+      bodies: names of the bodies; an empty sequence means all.
 
     Raises:
       BadValueError: the factor is not positive.

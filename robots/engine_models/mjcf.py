@@ -1,8 +1,8 @@
 """Makes the MuJoCo model of a robot from its description.
 
-The ground is not part of the model: a world adds it. Nothing of the robot touches
-anything but the soles' rims: small spheres around each sole, which meet planes
-and heightfields alike in one point each and cost a quarter of what boxes do.
+The ground is not part of the model: a world adds it. The robot's only collision shapes
+are small spheres around each sole, which touch planes and heightfields in one point
+each and need a quarter of the computing time of boxes.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
 
 CONTACT_GROUP, SHAPE_GROUP = 3, 2
 ROOT_JOINT = "root"
-# As stiff as the time step allows: MuJoCo raises the 1 ms to two steps. With its own
-# defaults the two joints of one motor come apart by 2 mrad, with these by 0.1.
+# Coupling of two joints of one motor, as stiff as the time step allows: MuJoCo raises
+# 1 ms to two steps. The joints differ by 0.1 mrad, with MuJoCo's defaults by 2 mrad.
 COUPLING_SOLREF = (0.001, 1.0)
 COUPLING_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
 SIDES = ("left", "right")
 
 
 def quiet_mujoco() -> None:
-    """Switch off MuJoCo's log, on the console and as a file in the working folder.
+    """Switch off MuJoCo's log on the console and in the file MUJOCO_LOG.TXT.
 
-    The log is one for the whole process, and stays off. Worlds report physics that has
-    blown up by themselves, and the deprecated attributes of Gymnasium's models are
-    nothing that a user could change.
+    The log stays off for the whole process. It is not needed: worlds themselves report
+    unstable physics, and users cannot change the deprecated attributes in Gymnasium's
+    models, about which MuJoCo warns.
     """
     import mujoco
 
@@ -40,18 +40,13 @@ def quiet_mujoco() -> None:
 
 
 def mujoco_spec(description: Description) -> "mujoco.MjSpec":
-    """The robot as an editable MuJoCo specification.
+    """Make an editable MuJoCo specification of a robot, without ground.
 
-    Joints and actuators carry the description's joint names in its order, after
-    the floating root. A control is a position target [rad]; the actuator is a DC
+    Joints and actuators have the description's joint names in its order; the floating
+    root comes first. A control is a position target [rad]; the actuator is a DC
     motor whose drive voltage saturates (see `Motor`). Sensors: `gyroscope`,
-    `accelerometer`, and for each contact sphere `touch_<side>_<k>` [N].
-
-    Args:
-      description: the robot.
-
-    Returns:
-      A specification without ground, integrator implicitfast.
+    `accelerometer`, and for each contact sphere `touch_<side>_<k>` [N]. The
+    integrator is implicitfast.
     """
     import mujoco
 
@@ -123,7 +118,7 @@ def _add_shape(body: Any, shape: Capsule) -> None:
 
 
 def _add_motor(spec: Any, joint: Joint) -> None:
-    """Add a DC motor whose drive voltage follows the position error, up to 1."""
+    """Add a joint's DC motor; its voltage follows the position error, up to full."""
     import mujoco
 
     motor = joint.motor

@@ -1,7 +1,6 @@
-"""Writes a compiled MuJoCo model as a URDF that PyBullet and MuJoCo read alike.
+"""Converts a compiled MuJoCo model to a URDF that PyBullet and MuJoCo read alike.
 
-Only moving bodies become links: MuJoCo has merged or placed everything that is fixed,
-and PyBullet would give a massless link a kilogram.
+Only moving bodies become links, because PyBullet would give a massless link 1 kg.
 """
 
 from collections.abc import Iterable
@@ -27,13 +26,13 @@ def model_urdf(
     rotor_kg_m2: float = 0.0,
     effort_nm: float = 1000.0,
 ) -> str:
-    """The model's moving bodies, hinges, and the spheres with which it touches.
+    """Make URDF text of a model's moving bodies, hinges and collision spheres.
 
     Args:
-      model: a tree of hinges, on a fixed base or with a first free joint.
-      name: of the robot.
-      rotor_kg_m2: inertia of a rotor that is lumped into each link.
-      effort_nm: most torque of each joint, as the file states it.
+      model: a tree of hinges, on a fixed base or with a free joint as its first.
+      name: name of the robot in the URDF.
+      rotor_kg_m2: rotor inertia that is lumped into each link [kg m^2].
+      effort_nm: torque limit that the URDF states for each joint [N m].
     """
     import mujoco
 
@@ -56,7 +55,7 @@ def model_urdf(
 
 
 def free_body(model: "mujoco.MjModel") -> int | None:
-    """The body that floats, if one does."""
+    """Index of the body with the free joint; None if the base is fixed."""
     import mujoco
 
     if model.njnt and model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE:
@@ -65,7 +64,7 @@ def free_body(model: "mujoco.MjModel") -> int | None:
 
 
 def hinges(model: "mujoco.MjModel") -> range:
-    """Numbers of the model's hinges."""
+    """Indices of the model's hinge joints: all joints but a first free one."""
     return range(0 if free_body(model) is None else 1, model.njnt)
 
 
@@ -150,7 +149,7 @@ def _add_joint(
 
 
 def _roll_pitch_yaw(turn: FloatArray) -> tuple[float, float, float]:
-    """Fixed-axis angles of a rotation matrix."""
+    """Roll, pitch and yaw [rad] of a (3, 3) rotation, about fixed x, y and z axes."""
     pitch = float(np.arcsin(np.clip(-turn[2, 0], -1.0, 1.0)))
     if abs(turn[2, 0]) > 1 - 1e-12:
         return float(np.arctan2(-turn[1, 2], turn[1, 1])), pitch, 0.0

@@ -1,7 +1,7 @@
 """Makes the URDF of a robot from its description.
 
-Nothing touches anything but the small spheres around the soles, as in the MuJoCo
-model. There are no massless links: PyBullet would give each of them a kilogram.
+The only collision shapes are small spheres around the soles, as in the MuJoCo model.
+There are no massless links: PyBullet would give each of them 1 kg.
 """
 
 from collections.abc import Iterable
@@ -18,10 +18,10 @@ Element = ElementTree.Element
 
 
 def urdf(description: Description) -> str:
-    """The robot as URDF text, with rotor inertia lumped into the links.
+    """Make the URDF text of a robot, with rotor inertias lumped into the links.
 
-    Effort limits are stall torques, velocity limits the speeds without load.
-    Coupled joints carry a `mimic` element; PyBullet does not read it.
+    Effort limits are the motors' stall torques, velocity limits their speeds without
+    load. Coupled joints have a `mimic` element, which PyBullet ignores.
     """
     robot = Element("robot", name=description.name)
     feet = {foot.joint: foot for foot in description.feet}
@@ -78,7 +78,7 @@ def _add_sphere(link: Element, kind: str, place_m: FloatArray, radius_m: float) 
 
 
 def _add_capsule(link: Element, shape: Capsule) -> None:
-    """A capsule as two spheres and a cylinder: URDF knows no capsules."""
+    """Add a capsule to a link as visual spheres and cylinder; URDF has no capsules."""
     start, end = np.array(shape.start_m), np.array(shape.end_m)
     _add_sphere(link, "visual", start, shape.radius_m)
     length = float(np.linalg.norm(end - start))

@@ -1,5 +1,5 @@
 """Descriptions of humanoids made from URDFs: legs, soles, motors and size.
 
-`robots.get` is the way in; nothing of this shelf is needed by others, but the readers
-of mesh files and `package://` paths.
+Call `robots.get` to make a description. Other packages import from this one only the
+readers of mesh files and of `package://` paths.
 """

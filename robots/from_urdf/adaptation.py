@@ -1,4 +1,4 @@
-"""Facts about a robot that its URDF lacks; each of them is optional."""
+"""Facts about a robot that its URDF lacks, read from a TOML file; all are optional."""
 
 import tomllib
 from collections.abc import Mapping
@@ -15,12 +15,14 @@ FORWARD = ("x", "-x", "y", "-y")
 
 @dataclass(frozen=True)
 class SoleBox:
-    """A sole where the URDF has none, in the frame of the foot's joint, x forward.
+    """A rectangular sole for a foot whose URDF has none.
+
+    Coordinates are in the frame of the leg's last joint, x forward, z up.
 
     Attributes:
-      height_m: of the sole; negative.
-      x_m: from heel to toe.
-      y_m: from the inner to the outer edge; positive is outward.
+      height_m: z of the sole [m]; negative.
+      x_m: x of heel and of toe [m].
+      y_m: y of the inner and of the outer edge [m]; positive is outward.
     """
 
     height_m: float
@@ -28,7 +30,7 @@ class SoleBox:
     y_m: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Refuse boxes that are empty or do not lie below the ankle."""
+        """Refuse soles that have no area or do not lie below the ankle."""
         rises = self.x_m[0] < self.x_m[1] and self.y_m[0] < self.y_m[1]
         if not (self.height_m < 0 and rises):
             raise BadValueError(f"sole {self}: height_m < 0, x_m and y_m must rise")
@@ -36,18 +38,22 @@ class SoleBox:
 
 @dataclass(frozen=True)
 class Adaptation:
-    """How a URDF becomes a robot that walks; missing parts follow from the URDF.
+    """How a URDF becomes a walking robot; what is left out follows from the URDF.
 
     Attributes:
-      urdf: a file, or a URDF of example-robot-data, such as "g1_29dof_rev_1_0".
-      forward: which way the robot faces in the root link's frame, one of `FORWARD`.
-      left_leg, right_leg: the joints of the roles `ROLES`, in that order.
+      urdf: a file, or the name of a URDF in the Python package example-robot-data, such
+        as "g1_29dof_rev_1_0".
+      forward: direction in which the robot faces in the root link's frame: "x", "-x",
+        "y" or "-y".
+      left_leg, right_leg: names of the leg's six joints: yaw, roll, pitch, knee, ankle
+        pitch, ankle roll.
       moving: further joints with motors; those of legs and shoulders always have them.
       held: joints of legs or shoulders that are held still.
-      pose_rad: angles of joints without motors; the angle next to zero by default.
-      range_rad: lower and upper ends of joints, in place of the file's [rad].
-      effort_nm: largest torques of motors, in place of the file's [N m].
-      speed_rad_s: largest speeds of motors, in place of the file's [rad/s].
+      pose_rad: angles [rad] of joints without motors, by name; by default the angle of
+        the joint's range that is nearest to zero.
+      range_rad: lower and upper ends of joints [rad], in place of the URDF's.
+      effort_nm: largest torques of motors [N m], in place of the URDF's.
+      speed_rad_s: largest speeds of motors [rad/s], in place of the URDF's.
       sole: the left sole; the right one is its mirror image.
     """
 
@@ -76,18 +82,18 @@ class Adaptation:
             raise BadValueError("name the joints of both legs, or of none")
 
     def joints(self) -> set[str]:
-        """Every joint that the adaptation names."""
+        """Names of all joints that the adaptation mentions."""
         named = {*self.left_leg, *self.right_leg, *self.moving, *self.held}
         tables = (self.pose_rad, self.range_rad, self.effort_nm, self.speed_rad_s)
         return named.union(*tables)
 
 
 def read_adaptation(path: Path) -> Adaptation:
-    """Read an adaptation from a TOML file whose keys are the attributes' names.
+    """Read an `Adaptation` from a TOML file; keys are the names of its attributes.
 
     Raises:
-      BadModelError: the file cannot be read as an adaptation.
-      UnknownNameError: it has a key that is no attribute.
+      BadModelError: the file cannot be read, or a value is of the wrong kind.
+      UnknownNameError: the file has a key that is no attribute.
     """
     try:
         table = tomllib.loads(path.read_text())
@@ -106,8 +112,8 @@ def urdf_path(name: str, folder: Path) -> Path:
     """Find the URDF that an adaptation names.
 
     Args:
-      name: a path, or a URDF of example-robot-data.
-      folder: the folder from which a path is seen.
+      name: a path, or the name of a URDF in the Python package example-robot-data.
+      folder: the folder to which a relative path refers.
 
     Raises:
       UnknownNameError: there is neither such a file nor such an example.
@@ -122,7 +128,7 @@ def urdf_path(name: str, folder: Path) -> Path:
 
 
 def _tuples(value: Any) -> Any:
-    """A value of a TOML file with tuples in place of lists."""
+    """Copy a value of a TOML file with all lists turned into tuples."""
     if isinstance(value, dict):
         return {key: _tuples(item) for key, item in value.items()}
     return tuple(map(_tuples, value)) if isinstance(value, list) else value

@@ -1,10 +1,10 @@
-"""Makes the description of a robot that walks from a URDF.
+"""Makes the description of a walking robot from its URDF.
 
-Legs, feet, arms and the direction that the robot faces follow from the kinematics
+Legs, feet, arms and the direction in which the robot faces follow from the kinematics
 (`leg_roles`, `shoulders`), soles from collision shapes (`foot_shapes`), motors
-from effort and speed (`servo_size`), and the size of its gaits from the legs (`scale`).
-Joints of legs and shoulders have motors; waist, neck, elbows, wrists and fingers are
-held still, and what they carry becomes part of the link that carries them.
+from effort and speed limits (`servo_size`), and the scaling of gaits from the leg
+length (`scale`). Joints of legs and shoulders have motors; waist, neck, elbows, wrists
+and fingers are held still, and their links are merged into the links above them.
 """
 
 import math
@@ -36,9 +36,9 @@ def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
     """Describe the robot of a URDF.
 
     Args:
-      name: the description's name.
-      adaptation: names the URDF, and overrides facts that do not follow from it.
-      folder: the folder from which the URDF's path is seen.
+      name: name of the robot in the description.
+      adaptation: names the URDF, and gives facts that do not follow from it.
+      folder: the folder to which a relative path of the URDF refers.
 
     Raises:
       GroundwalkError: the URDF is no robot on two legs; the message says why.
@@ -56,7 +56,7 @@ def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
 def _held_pose(
     tree: UrdfTree, moving: set[str], adaptation: Adaptation
 ) -> dict[str, float]:
-    """Angles [rad] of joints that are held: given, or as near to zero as possible."""
+    """Angles [rad] of held joints by name: given, or nearest to zero in their range."""
     pose = {
         joint.name: float(np.clip(0.0, *joint.range_rad))
         for joint in tree.joints.values()
@@ -69,7 +69,7 @@ def _held_pose(
 
 @dataclass(frozen=True, eq=False)
 class _Adapter:
-    """Makes the parts of one robot's description."""
+    """Makes the parts of one robot's description from its URDF."""
 
     posed: PosedTree
     legs: Legs
@@ -77,7 +77,7 @@ class _Adapter:
     adaptation: Adaptation
 
     def description(self, name: str) -> Description:
-        """The whole description."""
+        """Make the whole description of the robot."""
         hanging = [hanging_rad(self.posed, joint) for joint in self.shoulders]
         left, right = hanging or (0.0, 0.0)
         return Description(
@@ -99,7 +99,10 @@ class _Adapter:
 
     @cached_property
     def _columns(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Each leg's columns in the order of `ROLES`."""
+        """Columns of the left and the right leg's joints in joint arrays.
+
+        Both are in the order yaw, roll, pitch, knee, ankle pitch, ankle roll.
+        """
         given = self.adaptation.left_leg, self.adaptation.right_leg
         left, right = (
             tuple(self._index[joint] for joint in named or self._by_role(leg))
@@ -126,7 +129,7 @@ class _Adapter:
 
     @cached_property
     def _sole_m(self) -> float:
-        """Height of the left sole in the root's frame [m]."""
+        """Height z of the left sole in the root link's frame [m]."""
         ankle_m = self.posed.origin_m(self.legs.left[-1])
         return float(ankle_m[2]) + self._feet[0].sole_height_m
 
@@ -142,7 +145,7 @@ class _Adapter:
 
     @cached_property
     def _bones_m(self) -> tuple[float, float, float]:
-        """Lengths of thigh and shin from the side, height of ankle above sole [m]."""
+        """Thigh and shin length seen from the side, height of ankle above sole [m]."""
         pitch, knee, ankle = (
             self.posed.origin_m(self.posed.moving[self._columns[0][k]])
             for k in (ROLES.index("pitch"), KNEE, ANKLE)
@@ -204,7 +207,7 @@ class _Adapter:
         )
 
     def _meshes(self, joint: str) -> tuple[VisualMesh, ...]:
-        """Mesh files of everything that moves with a joint, as far as they exist."""
+        """Existing mesh files of all links that move with a joint ("" for the root)."""
         meshes = []
         for link in self.posed.carried(joint):
             for shape in link.visual:

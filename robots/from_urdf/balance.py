@@ -1,4 +1,4 @@
-"""Where a robot's ankles must be for its weight to be over its soles."""
+"""Computes where ankles must be so that a crouched robot's weight is over its soles."""
 
 import math
 from collections.abc import Mapping
@@ -7,18 +7,18 @@ from robots.description import Foot
 from robots.from_urdf.posed_tree import PosedTree
 
 SOLE_PART, HIP_PART, HIPS_AHEAD_M = 0.43, 0.927, 0.010
-"""Walk2014's gait on the NAO: where over the sole its centre of mass is, as a part
-of the way from heel to toe; the height of its hips, as a part of that with straight
-legs; and the way from ankles to hips."""
+"""Posture of the NAO in Walk2014's gait: position of the centre of mass over the sole,
+as a share of the distance from heel to toe; height of the hips, as a share of that with
+straight legs; and distance of the hips ahead of the ankles [m]."""
 
 
 def crouch_rad(thigh_m: float, tibia_m: float, hip_m: float) -> tuple[float, float]:
-    """Hip pitch and knee of a leg with level sole, by the law of cosines.
+    """Hip pitch and knee angle [rad] of a crouched leg with its ankle below its hip.
 
     Args:
-      thigh_m: hip to knee.
-      tibia_m: knee to ankle.
-      hip_m: the hip's height above the ankle.
+      thigh_m: length from hip to knee [m].
+      tibia_m: length from knee to ankle [m].
+      hip_m: height of the hip above the ankle [m].
     """
     bend = (hip_m**2 - thigh_m**2 - tibia_m**2) / (2 * thigh_m * tibia_m)
     knee = math.acos(min(max(bend, -1.0), 1.0))
@@ -29,16 +29,16 @@ def crouch_rad(thigh_m: float, tibia_m: float, hip_m: float) -> tuple[float, flo
 def ankles_ahead_m(
     posed: PosedTree, crouch: Mapping[str, float], foot: Foot, scale: float
 ) -> float:
-    """How far ahead of the hips the ankles are when a gait asks for no offset.
+    """Distance of the ankles ahead of the hips [m] for a gait's `com_offset` of zero.
 
-    So far that with Walk2014's offset the weight is over the same part of the sole as
-    on the NAO.
+    The distance is chosen so that with Walk2014's `com_offset` of 10 mm, scaled to the
+    robot, the weight is over the same part of the sole as on the NAO.
 
     Args:
       posed: the robot.
-      crouch: angles of the legs' joints, the ankles below the hips.
+      crouch: angles [rad] of the legs' joints that put the ankles below the hips.
       foot: the left foot.
-      scale: the robot's length in units of the NAO's.
+      scale: ratio of the robot's leg length to the NAO's.
     """
     crouched = posed.in_pose(crouch)
     ankle_m = crouched.origin_m(posed.moving[foot.joint])

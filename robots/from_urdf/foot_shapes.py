@@ -1,4 +1,4 @@
-"""Finds the sole of a foot in the shapes of a URDF."""
+"""Finds the sole of a foot in the collision or visual shapes of a URDF."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ from robots.from_urdf.posed_tree import PosedTree
 from robots.from_urdf.urdf_tree import UrdfShape
 
 THICKNESS_M = 0.005
-"""Points less than this above the lowest one belong to the sole [m]."""
+"""Points of a foot less than this height [m] above its lowest point form the sole."""
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
 _AROUND = np.linspace(0, 2 * np.pi, 24, endpoint=False)
@@ -24,14 +24,14 @@ _AROUND = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def foot(
     posed: PosedTree, joint: str, index: int, box: SoleBox | None, side: int
 ) -> Foot:
-    """Describe a foot; its sole is the bottom of its collision shapes, or as given.
+    """Describe a foot, whose sole is given or the bottom of its collision shapes.
 
-    Its force sensors are at the corners of the rectangle around the sole.
+    Its four force sensors are at the corners of the rectangle around the sole.
 
     Args:
-      posed: the robot, its soles level.
-      joint: the last one of the leg.
-      index: that joint's column.
+      posed: the robot in a pose with level soles.
+      joint: name of the leg's last joint.
+      index: column of that joint in joint arrays.
       box: the left sole; None to take it from the shapes.
       side: 1 left, -1 right.
 
@@ -59,7 +59,7 @@ def foot(
 
 
 def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
-    """(points, 3) corners of a shape in its own frame [m]; rims for round shapes."""
+    """(points, 3) corners of a shape in its own frame [m]; for cylinders 24-gons."""
     values = shape.values
     if shape.kind == "mesh":
         path = mesh_path(posed.tree.path, values["filename"])
@@ -77,7 +77,10 @@ def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
 
 
 def _points(posed: PosedTree, joint: str) -> FloatArray:
-    """(points, 3) of all collision shapes, or else visual ones, in the root's frame."""
+    """(points, 3) points [m] of a foot's shapes in the root's frame.
+
+    The visual shapes are used if there are no collision shapes.
+    """
     for kind in ("collision", "visual"):
         parts = list(_of_kind(posed, joint, kind))
         if parts:

@@ -1,9 +1,9 @@
-"""Finds the legs of a URDF, and the direction that the robot faces.
+"""Finds the legs of a URDF, and the direction in which the robot faces.
 
-No name is looked at. The feet are the two lowest ends of the tree of moving joints;
-a leg is the joints above one foot but not above the other: three at the hip, the knee,
-two at the ankle (`leg_axes` finds the role of each). Knees bend one way: the robot
-faces where a knee goes when it bends as far as it can.
+Names of joints play no part. The feet are the two lowest ends of the tree of moving
+joints; a leg consists of the joints above one foot but not above the other: three at
+the hip, the knee, two at the ankle (`leg_axes` finds the role of each). Knees bend one
+way: the robot faces in the direction in which a knee moves when it bends.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,8 +26,8 @@ class Legs(NamedTuple):
     """The legs of a robot.
 
     Attributes:
-      left, right: joints from the root to the foot.
-      turn: (3, 3) from the root link's frame to x forward, y left, z up.
+      left, right: names of the leg's joints from the hip to the foot.
+      turn: (3, 3) rotation from the root link's frame to x forward, y left, z up.
     """
 
     left: tuple[str, ...]
@@ -41,12 +41,13 @@ def find_legs(
     """Find the legs from the kinematics, unless the adaptation names them.
 
     Args:
-      tree: the robot, z up.
-      placed: where each link is in the root's frame.
+      tree: the robot's URDF, z up.
+      placed: placement of each link in the root link's frame.
       adaptation: the user's facts about the robot.
 
     Raises:
-      BadModelError: there are no two legs of six joints, or no knee bends one way.
+      BadModelError: there are no two legs of six joints, or the knees' ranges do not
+        show which way is forward.
     """
     for name in adaptation.joints():
         if name not in tree.joints:
@@ -72,7 +73,7 @@ def find_legs(
 
 
 def _in_order(tree: UrdfTree, leg: Sequence[str]) -> tuple[str, ...]:
-    """A leg's joints from the root to the foot."""
+    """Sort the names of a leg's joints from the hip to the foot."""
     deepest = max(leg, key=lambda name: len(tree.chain(tree.joints[name].child)))
     chain = tree.chain(tree.joints[deepest].child)
     if not set(leg) <= set(chain):
@@ -83,7 +84,13 @@ def _in_order(tree: UrdfTree, leg: Sequence[str]) -> tuple[str, ...]:
 def _legs(
     tree: UrdfTree, placed: Mapping[str, Placement], held: Sequence[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Both chains, whichever is the left one."""
+    """Names of the six joints of each leg, from hip to foot; the legs in any order.
+
+    Args:
+      tree: the robot's URDF.
+      placed: placement of each link in the root link's frame.
+      held: names of joints that are held still.
+    """
     free = [one for one in tree.joints.values() if one.moving and one.name not in held]
     carriers = {name for joint in free for name in tree.chain(joint.parent)}
     ends = [joint for joint in free if joint.name not in carriers]
@@ -113,10 +120,16 @@ def _facing(
     legs: Sequence[Sequence[str]],
     across: FloatArray,
 ) -> str:
-    """The direction in which the knees go when they bend.
+    """Direction "x", "-x", "y" or "-y" in which the knees move when they bend.
 
     A knee with the range [a, b] about an axis can bend by a + b more one way than the
-    other. A shin swings backward in a turn about the axis that points left.
+    other. A positive turn about an axis that points left swings the shin backward.
+
+    Args:
+      tree: the robot's URDF.
+      placed: placement of each link in the root link's frame.
+      legs: names of the joints of both legs, from hip to foot.
+      across: (2,) horizontal unit vector between the feet.
     """
     bend = np.zeros(3)
     for leg in legs:

@@ -1,8 +1,8 @@
 """Reads mesh files (STL, OBJ and COLLADA) as triangles.
 
-trimesh reads STL. The other two formats are read here, because a foot's size follows
-from them: of COLLADA files trimesh 5.2 ignores the unit and which axis points up, of
-OBJ files it takes an index such as -1 for the file's last point, not the last one yet.
+trimesh reads STL. The other two formats are read here, because sizes of feet depend on
+them: of COLLADA files trimesh 5.2 ignores the unit and the up axis; in OBJ files it
+takes index -1 for the last point of the whole file, not for the last one read so far.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 Element = ElementTree.Element
 
 _Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-"""Rotation that turns the y axis, COLLADA's default for "up", into the z axis."""
+"""Rotation that turns the y axis, COLLADA's default up axis, into the z axis."""
 
 
 def read_mesh(path: Path) -> "Trimesh":
-    """Read all surfaces of a mesh file as one; larger faces become triangles.
+    """Read all surfaces of a mesh file as one mesh of triangles.
 
     Args:
-      path: a .stl, .obj or .dae file.
+      path: a .stl, .obj or .dae (COLLADA) file.
 
     Returns:
       A mesh with `vertices` (points, 3) [m] and `faces` (triangles, 3), whose corners
       run counterclockwise seen from outside. Points that the file has twice are kept
-      twice. In COLLADA files z is up.
+      twice. COLLADA meshes are turned so that z is up.
 
     Raises:
       BadModelError: the file cannot be read, or has another format.
@@ -74,20 +74,20 @@ def _read_obj(path: Path) -> "Trimesh":
             points.append([float(number) for number in rest[:3]])
         elif word == "f":
             corners = [int(corner.partition("/")[0]) for corner in rest]
-            # Counted from 1, or backward from the last point so far.
+            # Indices count from 1, or backward from the last point so far.
             faces.append([at + len(points) if at < 0 else at - 1 for at in corners])
     return _mesh(np.array(points, float).reshape(-1, 3), _triangles(faces))
 
 
 def _mesh(points_m: FloatArray, triangles: IntArray) -> "Trimesh":
-    """A mesh with exactly these points and triangles."""
+    """Make a mesh of points (points, 3) and triangles without merging equal points."""
     import trimesh
 
     return trimesh.Trimesh(points_m, triangles, process=False)
 
 
 def _triangles(faces: Sequence[npt.ArrayLike]) -> IntArray:
-    """(triangles, 3) of faces with three corners or more; each becomes a fan."""
+    """Divide faces, each a list of 3 or more point indices, into triangles (k, 3)."""
     from trimesh.geometry import triangulate_quads
 
     return np.asarray(triangulate_quads(faces)).reshape(-1, 3)
@@ -119,7 +119,7 @@ def _read_collada(path: Path) -> "Trimesh":
 
 
 def joined(meshes: "Sequence[Trimesh]") -> "Trimesh":
-    """Several meshes, or none, as one."""
+    """Join several meshes into one; without any, the result is an empty mesh."""
     import trimesh
 
     whole = trimesh.util.concatenate(meshes) if meshes else trimesh.Trimesh()
@@ -127,7 +127,7 @@ def joined(meshes: "Sequence[Trimesh]") -> "Trimesh":
 
 
 def _positions(shape: Element) -> FloatArray:
-    """(points, 3) vertices of one COLLADA geometry, in the file's unit."""
+    """(points, 3) vertices of one COLLADA geometry, in the file's length unit."""
     sources = {
         source.get("id", ""): source.findtext("float_array") or ""
         for source in shape.iterfind("mesh/source")
@@ -141,7 +141,7 @@ def _positions(shape: Element) -> FloatArray:
 
 
 def _faces(shape: Element) -> IntArray:
-    """(triangles, 3) indices of one COLLADA geometry's vertices."""
+    """(triangles, 3) vertex indices of the triangles of one COLLADA geometry."""
     return _triangles(
         [
             face
@@ -153,7 +153,7 @@ def _faces(shape: Element) -> IntArray:
 
 
 def _polygons(group: Element) -> list[IntArray]:
-    """The vertices of each face in a group of COLLADA faces."""
+    """Vertex indices of each face of a COLLADA triangles, polylist or polygons."""
     offsets = {
         entry.get("semantic"): int(entry.get("offset", "0"))
         for entry in group.iterfind("input")
@@ -179,7 +179,12 @@ def _polygons(group: Element) -> list[IntArray]:
 def _instances(
     node: Element, placement: FloatArray
 ) -> Iterator[tuple[str, FloatArray]]:
-    """Name and (4, 4) placement of each geometry below a node of a COLLADA scene."""
+    """Name and (4, 4) placement of each geometry below a node of a COLLADA scene.
+
+    Args:
+      node: the node.
+      placement: (4, 4) transform from the node's frame to the scene's.
+    """
     for element in node:
         if element.tag == "instance_geometry":
             yield element.get("url", "")[1:], placement
@@ -195,7 +200,7 @@ def _floats(text: str) -> FloatArray:
 
 
 def _placement(turn: FloatArray, shift: FloatArray | Sequence[float]) -> FloatArray:
-    """(4, 4) of a (3, 3) rotation and a (3,) translation."""
+    """Make the (4, 4) transform of a (3, 3) rotation and a (3,) translation."""
     move = np.eye(4)
     move[:3, :3], move[:3, 3] = turn, shift
     return move
@@ -209,4 +214,5 @@ _MOVES: dict[str, Callable[[FloatArray], FloatArray]] = {
     ),
     "scale": lambda values: np.diag([*values, 1.0]),
 }
-"""What each element of a COLLADA node does, as a (4, 4) matrix of its numbers."""
+"""For each transform element of a COLLADA node: function from its numbers to a (4, 4)
+matrix."""

@@ -1,4 +1,4 @@
-"""Finds files that a URDF names, and the URDFs of example-robot-data."""
+"""Finds files that a URDF names, and the URDFs in the package example-robot-data."""
 
 import os
 from collections import Counter
@@ -14,10 +14,10 @@ _PACKAGE, _FILE = "package://", "file://"
 
 @cache
 def example_robots() -> dict[str, Path]:
-    """URDF files of the installed example-robot-data by name.
+    """URDF files of the Python package example-robot-data, by name; none without it.
 
-    The name is the file's stem, such as "go2"; where two files share it, their
-    folder's name stands before it, such as "anymal_b_simple_description/anymal".
+    A name is the file's stem, such as "go2"; if two files have the same stem, the name
+    starts with their folder's, such as "anymal_b_simple_description/anymal".
     """
     try:
         listed = files(_COLLECTION) or []
@@ -36,14 +36,14 @@ def example_robots() -> dict[str, Path]:
 def mesh_path(urdf: Path, name: str) -> Path:
     """Find a file that a URDF names.
 
-    A `package://NAME/...` is looked for in the folders of the environment variable
-    ROS_PACKAGE_PATH, as ROS does; then in the folders above the URDF, one of which is
-    usually the package or holds it; last where example-robot-data is installed, so that
-    a copy of one of its URDFs works anywhere.
+    An address `package://NAME/...` is searched in the folders of the environment
+    variable ROS_PACKAGE_PATH, as in ROS; then in the folders above the URDF, one of
+    which is usually the package or contains it; last where example-robot-data is
+    installed, so that a copy of one of its URDFs works anywhere.
 
     Args:
-      urdf: the file that names the other one.
-      name: a path, seen from the URDF's folder, or a file:// or package:// address.
+      urdf: the URDF file.
+      name: a path relative to the URDF's folder, or a file:// or package:// address.
 
     Raises:
       BadModelError: there is no such file.
@@ -72,7 +72,7 @@ def _ros_folders() -> list[Path]:
 
 @cache
 def _example_folders() -> tuple[Path, ...]:
-    """The installed folders that hold packages of example-robot-data."""
+    """Installed folders in which packages of example-robot-data lie; () without it."""
     some = next(iter(example_robots().values()), None)
     if some is None:
         return ()

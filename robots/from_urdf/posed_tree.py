@@ -1,4 +1,4 @@
-"""A URDF with most joints held in a pose: which links move together, and where."""
+"""A URDF with most joints fixed in a pose: which links move together, and where."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,13 +17,16 @@ _NOISE = 12
 
 @dataclass(frozen=True, eq=False)
 class PosedTree:
-    """A robot whose frames are all seen from its root: x forward, y left, z up.
+    """A URDF's robot in one pose, in a frame at its root: x forward, y left, z up.
+
+    Where a joint's name is asked for, "" stands for the root. "The root frame" is the
+    frame above; joints that do not move are fixed at their angles.
 
     Attributes:
       tree: the URDF.
-      turn: (3, 3) from the root link's frame to those axes.
-      moving: joints that move, parents first.
-      pose_rad: angles of joints; zero where they are not named, as all that move.
+      turn: (3, 3) rotation from the URDF's root link frame to the root frame.
+      moving: names of the joints that move, parents first.
+      pose_rad: angles [rad] of joints by name; joints without an entry are at zero.
     """
 
     tree: UrdfTree
@@ -33,14 +36,14 @@ class PosedTree:
 
     @cached_property
     def placed(self) -> dict[str, Placement]:
-        """Where every link is."""
+        """Placement of every link in the root frame (x forward, y left, z up)."""
         turned = Placement(self.turn, np.zeros(3))
         placed = self.tree.placements(self.pose_rad)
         return {name: turned @ placement for name, placement in placed.items()}
 
     @cached_property
     def carriers(self) -> dict[str, str]:
-        """The moving joint that each link moves with, "" for the root."""
+        """By link: name of the moving joint with which it moves, "" for the root."""
         carriers = {self.tree.root: ""}
         for joint in self.tree.joints.values():
             above = carriers[joint.parent]
@@ -48,40 +51,42 @@ class PosedTree:
         return carriers
 
     def in_pose(self, angles_rad: Mapping[str, float]) -> "PosedTree":
-        """This robot with further joints held at the given angles."""
+        """Copy of this robot with further joints at the given angles [rad]."""
         return replace(self, pose_rad={**self.pose_rad, **angles_rad})
 
     def carried(self, joint: str) -> list[UrdfLink]:
-        """The links that move with a joint, "" for the root."""
+        """Links that move rigidly with a moving joint, or with the root for ""."""
         links = self.tree.links
         return [links[name] for name, by in self.carriers.items() if by == joint]
 
     def parent(self, joint: str) -> str:
-        """The moving joint above a joint, "" for the root."""
+        """Name of the next moving joint above a joint, "" if that is the root."""
         return self.carriers[self.tree.joints[joint].parent]
 
     def origin_m(self, joint: str) -> FloatArray:
-        """(3,) where a joint is, (0, 0, 0) for the root."""
+        """(3,) position of a joint in the root frame [m], zeros for the root ""."""
         if not joint:
             return np.zeros(3)
         return self.placed[self.tree.joints[joint].child].position_m
 
     def axis(self, joint: str) -> FloatArray:
-        """(3,) a joint's axis, without the last digits that turning frames leaves."""
+        """(3,) unit vector of a joint's axis in the root frame, with 12 decimals."""
         urdf = self.tree.joints[joint]
         axis = np.round(self.placed[urdf.child].rotation @ urdf.axis, _NOISE)
         return np.asarray(axis / np.linalg.norm(axis) + 0.0)  # no negative zeros
 
     def offset_m(self, joint: str) -> FloatArray:
-        """(3,) from the joint above to a joint."""
+        """(3,) vector from the next moving joint above (or root) to a joint [m]."""
         offset = self.origin_m(joint) - self.origin_m(self.parent(joint))
         return np.asarray(np.round(offset, _NOISE) + 0.0)
 
     def inertial(self, joint: str) -> Inertial:
-        """The links that move with a joint, without joints below, as one body.
+        """Inertial of all links that move rigidly with a joint, in the joint's frame.
+
+        Links below the next moving joint do not count; "" stands for the root.
 
         Raises:
-          BadModelError: it has no mass.
+          BadModelError: these links have no mass.
         """
         bodies = self._bodies([joint])
         if not bodies:
@@ -91,7 +96,7 @@ class PosedTree:
         return combined(bodies).moved(-self.origin_m(joint))
 
     def below(self, joint: str) -> list[str]:
-        """A joint and the moving joints that hang on it; all for the root."""
+        """Names of a joint and all moving joints below it; all for the root ""."""
         return [
             name
             for name in ("", *self.moving)
@@ -100,11 +105,11 @@ class PosedTree:
         ]
 
     def hanging(self, joint: str) -> Inertial:
-        """Everything that a joint carries, joints below included, as one body."""
+        """Inertial, in the root frame, of all links below a joint ("": the robot)."""
         return combined(self._bodies(self.below(joint)))
 
     def _bodies(self, joints: Sequence[str]) -> list[Inertial]:
-        """The bodies that move with some joints, in the root's frame."""
+        """Inertials, in the root frame, of the links that move with some joints."""
         bodies = []
         for link in (link for joint in joints for link in self.carried(joint)):
             if link.inertial is not None:

@@ -1,4 +1,4 @@
-"""Capsules for a robot that has none: along its bones, as thick as they are heavy."""
+"""Draws a robot without shapes of its own as capsules between joints, sized by mass."""
 
 import math
 
@@ -9,29 +9,30 @@ from robots.description import Capsule
 from robots.from_urdf.posed_tree import PosedTree
 
 DENSITY_KG_M3 = 1000.0
-"""Assumed mean density [kg/m^3]: that of water, and about that of robots."""
+"""Assumed mean density of links [kg/m^3]: that of water, and about that of robots."""
 
 _THINNEST, _THICKEST = 0.02, 0.09
-"""Bounds of radii, as shares of the robot's height above its soles; chosen by eye."""
+"""Smallest and largest capsule radius, as shares of the root's height above the soles;
+chosen by eye."""
 
 _SHORTEST_M = 0.01
-"""Shorter bones [m] are not drawn."""
+"""Smallest distance [m] between two joints of a link at which a capsule is drawn."""
 
 _END = 0.005
-"""A link with nothing on it is drawn if it has this share of the robot's mass."""
+"""Share of the robot's mass above which a link that carries no joint is drawn."""
 
 
 def round_shapes(posed: PosedTree, joint: str, height_m: float) -> tuple[Capsule, ...]:
-    """All links that move with a joint as capsules, in the joint's frame.
+    """Capsules of all links that move with a joint, in the joint's frame.
 
-    There is a capsule from each link's joint to every joint that hangs on it; the
-    capsules of a link share its volume. A link with mass and nothing on it is a ball
-    around its centre of mass, joined to what carries it by a thin neck.
+    A capsule runs from each link's joint to every joint that the link carries; the
+    capsules of a link share its volume. A link with mass that carries no joint becomes
+    a ball around its centre of mass, connected to the link above by a thin neck.
 
     Args:
       posed: the robot.
       joint: the joint's name, "" for the root.
-      height_m: of the root above the soles [m]; bounds the radii.
+      height_m: height of the root above the soles [m]; it bounds the radii.
     """
     origin_m = posed.origin_m(joint)
     least_m, most_m = _THINNEST * height_m, _THICKEST * height_m
@@ -59,7 +60,7 @@ def round_shapes(posed: PosedTree, joint: str, height_m: float) -> tuple[Capsule
 
 
 def _carrier_m(posed: PosedTree, link: str) -> FloatArray:
-    """(3,) where a link begins: at its joint or, if that is held, at the link above."""
+    """(3,) start of a link [m] in the root's frame: its joint, or parent if fixed."""
     above = posed.tree.above.get(link)
     if above is not None and posed.carriers[above.parent] == posed.carriers[link]:
         return posed.placed[above.parent].position_m
@@ -67,14 +68,17 @@ def _carrier_m(posed: PosedTree, link: str) -> FloatArray:
 
 
 def _bones_m(posed: PosedTree, link: str) -> list[tuple[FloatArray, FloatArray]]:
-    """From a link's joint to each joint that it carries, in the root's frame [m]."""
+    """Start and end of the lines from a link's joint to the joints that it carries [m].
+
+    Points (3,) are in the root's frame; lines shorter than `_SHORTEST_M` are left out.
+    """
     start = posed.placed[link].position_m
     ends = _ends(posed, link)
     return [(start, end) for end in ends if np.linalg.norm(end - start) > _SHORTEST_M]
 
 
 def _ends(posed: PosedTree, link: str) -> list[FloatArray]:
-    """Places of those joints of a link that carry any mass, in the root's frame [m]."""
+    """Positions (3,) in the root's frame [m] of a link's joints that carry any mass."""
     return [
         posed.placed[joint.child].position_m
         for joint in posed.tree.joints.values()

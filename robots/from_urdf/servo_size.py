@@ -1,11 +1,11 @@
-"""Sizes servos of a robot of which only effort and speed of its motors are known.
+"""Chooses servo gains for a robot of whose motors only effort and speed are known.
 
-Gains follow from a natural frequency and a damping ratio about a reflected inertia,
-kp = I (w^2 + g / h) and kd = 2 z I w. For a leg's joint that is the whole robot on one
-ankle, I = m h^2 with the centre of mass at h above the sole, an inverted pendulum that
-gravity topples with m g h: in the stance all joints of the leg carry it in a row. For
-any other joint it is what hangs on the joint. Frequencies are in units of the
-pendulum's own, sqrt(g / h), so that a robot of any size stands as firmly as the NAO.
+A joint of a leg has to hold the whole robot as an inverted pendulum on one ankle: with
+mass m and the centre of mass at h above the sole, the inertia is I = m h^2 and gravity
+topples it with m g h per radian. For a natural frequency w and a damping ratio z the
+gains are kp = I (w^2 + g / h) and kd = 2 z I w. Any other joint holds the links below
+it, with their inertia I, and the term g / h is left out. The frequency w is a multiple
+of sqrt(g / h), so that a robot of any size stands as firmly as the NAO.
 """
 
 import math
@@ -18,10 +18,11 @@ from robots.description import Motor
 
 @dataclass(frozen=True)
 class Firmness:
-    """How a servo holds its load.
+    """Natural frequency and damping ratio with which a servo holds its load.
 
     Attributes:
-      frequency: natural frequency in units of the pendulum's.
+      frequency: natural frequency as a multiple of sqrt(g / h), h the height of the
+        robot's centre of mass above the soles.
       damping: damping ratio.
     """
 
@@ -29,9 +30,9 @@ class Firmness:
     damping: float
 
 
-# The NAO of nao.toml, 5.305 kg with its centre of mass 0.277 m above its soles, has
-# kp = 59.9 and kd = 1.216 in its pitch joints; at the shoulder 25.9 and 0.41 for an
-# arm of 0.008 kg m^2.
+# They come from the NAO in nao.toml, 5.305 kg with its centre of mass 0.277 m above the
+# soles: its legs' pitch joints have kp = 59.9 N m/rad and kd = 1.216 N m s/rad, its
+# shoulders 25.9 and 0.41 for an arm of 0.008 kg m^2.
 IN_STANCE = Firmness(frequency=2.0, damping=0.19)
 FREE = Firmness(frequency=9.0, damping=0.5)
 
@@ -41,8 +42,8 @@ class Pendulum:
     """The robot as an inverted pendulum on one ankle.
 
     Attributes:
-      mass_kg: the mass.
-      height_m: of the centre of mass above the soles.
+      mass_kg: mass of the robot [kg].
+      height_m: height of the centre of mass above the soles [m].
     """
 
     mass_kg: float
@@ -50,12 +51,12 @@ class Pendulum:
 
     @property
     def frequency_rad_s(self) -> float:
-        """sqrt(g / h)."""
+        """Gravity's rate of toppling, sqrt(g / h) [rad/s], h the height of the mass."""
         return math.sqrt(GRAVITY_M_S2 / self.height_m)
 
     @property
     def inertia_kg_m2(self) -> float:
-        """About the ankle, the mass in one point."""
+        """Inertia about the ankle [kg m^2], with all mass in one point."""
         return self.mass_kg * self.height_m**2
 
 
@@ -65,16 +66,17 @@ def servo(
     pendulum: Pendulum,
     hanging_kg_m2: float | None,
 ) -> Motor:
-    """A servo with that effort as stall torque and that speed without load.
+    """Make a servo whose stall torque and no-load speed are a URDF's joint limits.
 
-    The back-EMF of such a motor is a damping of effort / speed; the servo's is never
-    less. Nothing is known of rotors: their inertia is left out.
+    The back-EMF of such a motor is a damping of effort / speed; the servo's damping is
+    never less. The rotor inertia is unknown and left out.
 
     Args:
-      effort_nm: largest torque.
-      speed_rad_s: largest speed.
+      effort_nm: effort limit of the joint [N m].
+      speed_rad_s: velocity limit of the joint [rad/s].
       pendulum: the robot.
-      hanging_kg_m2: the load of a joint that is in no leg; None for a leg's.
+      hanging_kg_m2: inertia of the links below the joint about its axis [kg m^2]; None
+        for a joint of a leg.
 
     Raises:
       BadValueError: effort or speed is not positive.

@@ -12,18 +12,24 @@ from robots.from_urdf.urdf_tree import UrdfTree
 
 _ACROSS = math.cos(math.radians(45))
 _ASIDE = 0.1
-"""An arm begins this part of the distance between the feet away from the middle."""
+"""Smallest distance of a shoulder from the robot's middle plane, as a share of the
+distance between the feet."""
 
 
 def find_shoulders(
     tree: UrdfTree, placed: Mapping[str, Placement], legs: Legs, held: Sequence[str]
 ) -> list[str]:
-    """The joints that swing an arm forth and back: left and right, or none.
+    """Names of the left and right joint that swing an arm forth and back, or no names.
 
-    A shoulder is the first moving joint on its way from the root that lies on one
-    side; of several on one side (ears, eyes), the one that moves the most mass. It
-    counts if its axis is within 45 degrees of the y axis: with other axes an arm does
-    not swing.
+    A shoulder is the first moving joint on a path from the root that lies to the left
+    or right of the middle; of several on one side (such as ears), the one that moves
+    the most mass. Its axis must be within 45 degrees of the lateral axis.
+
+    Args:
+      tree: the robot's URDF.
+      placed: placement of each link in the root link's frame.
+      legs: names of the legs' joints, and the turn to x forward, y left, z up.
+      held: names of joints that are held still.
     """
     feet = [placed[tree.joints[leg[-1]].child].position_m for leg in legs[:2]]
     aside_m = _ASIDE * float(np.linalg.norm(feet[0] - feet[1]))
@@ -49,11 +55,12 @@ def find_shoulders(
 
 
 def hanging_rad(posed: PosedTree, joint: str) -> float:
-    """The angle within a shoulder's range at which the arm hangs lowest [rad].
+    """Angle in a shoulder joint's range [rad] at which the arm hangs lowest.
 
-    With the axis a and the centre of mass at c from it, the height is
-    z(q) = (c_a)_z + cos(q) (c - c_a)_z + sin(q) (a x c)_z, c_a being the part of c
-    along a: it is least where cos(q) and sin(q) point against these two numbers.
+    With the joint's axis a, the vector c from the joint to the arm's centre of mass and
+    c_a its part along a, the centre's height at the angle q is
+    z(q) = (c_a)_z + cos(q) (c - c_a)_z + sin(q) (a x c)_z. It is least where
+    (cos(q), sin(q)) points against ((c - c_a)_z, (a x c)_z).
     """
     axis = posed.axis(joint)
     arm_m = posed.hanging(joint).com_m - posed.origin_m(joint)
@@ -72,7 +79,7 @@ def _swings(
 
 
 def _mass_kg(tree: UrdfTree, link: str) -> float:
-    """The mass of a link with all that hangs on it."""
+    """Mass [kg] of a link and of all links below it."""
     own = tree.links[link].inertial
     below = (joint.child for joint in tree.joints.values() if joint.parent == link)
     return (own.mass_kg if own else 0.0) + sum(_mass_kg(tree, name) for name in below)

@@ -1,8 +1,8 @@
 """A URDF as data: links with their inertials and shapes, and the joints between them.
 
-Nothing is interpreted here: frames, names and signs are those of the file. Unlike the
-libraries yourdfpy and urdf_parser_py, it names the file in each error and mends
-inertias that no body can have.
+Frames, names and signs are those of the file. Unlike the libraries yourdfpy and
+urdf_parser_py, this module names the file in each error and replaces inertias that no
+body can have.
 """
 
 from collections.abc import Mapping
@@ -27,12 +27,12 @@ _AXES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 @dataclass(frozen=True, eq=False)
 class UrdfShape:
-    """A shape of a URDF's link.
+    """A visual or collision shape of a link in a URDF.
 
     Attributes:
       kind: "box", "cylinder", "sphere" or "mesh".
-      values: its attributes, such as size, radius, length, filename and scale.
-      placement: in the link's frame.
+      values: the XML attributes as text, such as size, radius, length, filename, scale.
+      placement: placement of the shape in the link's frame.
     """
 
     kind: str
@@ -42,7 +42,7 @@ class UrdfShape:
 
 @dataclass(frozen=True, eq=False)
 class UrdfLink:
-    """A link; its inertial is in the link's frame, None where it has no mass."""
+    """A link of a URDF; its inertial is in the link's frame, None if it has no mass."""
 
     name: str
     inertial: Inertial | None
@@ -56,13 +56,13 @@ class UrdfJoint:
 
     Attributes:
       name: the joint's name.
-      moving: whether it is a hinge.
-      parent, child: names of links.
-      placement: of the child's frame in the parent's, the joint at zero.
-      axis: (3,) unit vector in the child's frame.
-      range_rad: lower and upper end; a whole turn to both sides without any.
-      effort_nm: the motor's largest torque; None where the file does not say.
-      speed_rad_s: its largest speed; None where the file does not say.
+      moving: whether it is a hinge that moves by itself, no `mimic` of another joint.
+      parent, child: names of the links that the joint connects.
+      placement: placement of the child's frame in the parent's, the joint at zero.
+      axis: (3,) unit vector of the joint's axis in the child's frame.
+      range_rad: lower and upper end [rad]; -2 pi and 2 pi if the file has no limits.
+      effort_nm: the motor's largest torque [N m]; None if the file does not say.
+      speed_rad_s: the motor's largest speed [rad/s]; None if the file does not say.
     """
 
     name: str
@@ -78,7 +78,7 @@ class UrdfJoint:
 
 @dataclass(frozen=True, eq=False)
 class UrdfTree:
-    """A robot: its links, and its joints in an order in which parents come first."""
+    """The robot of a URDF: links and joints by name; parent joints come first."""
 
     path: Path
     root: str
@@ -87,11 +87,11 @@ class UrdfTree:
 
     @cached_property
     def above(self) -> dict[str, UrdfJoint]:
-        """The joint that carries a link, by the link's name; none for the root."""
+        """For each link but the root, the joint of which it is the child."""
         return {joint.child: joint for joint in self.joints.values()}
 
     def chain(self, link: str) -> list[str]:
-        """The moving joints from the root to a link."""
+        """Names of the moving joints on the path from the root to a link."""
         names: list[str] = []
         while link != self.root:
             joint = self.above[link]
@@ -101,7 +101,11 @@ class UrdfTree:
         return names
 
     def placements(self, angles_rad: Mapping[str, float]) -> dict[str, Placement]:
-        """Where every link is in the root's frame, at some angles and else at zero."""
+        """Placement of every link in the root link's frame.
+
+        Args:
+          angles_rad: joint angles [rad] by name; other joints are at zero.
+        """
         placed = {self.root: Placement.none()}
         for joint in self.joints.values():
             turn = angles_rad.get(joint.name, 0.0) * joint.axis
@@ -112,10 +116,10 @@ class UrdfTree:
 
 
 def read_urdf(path: Path) -> UrdfTree:
-    """The robot of a URDF file.
+    """Read the robot of a URDF file.
 
     Raises:
-      BadModelError: the file is no URDF, or its joints make no tree.
+      BadModelError: the file cannot be read, is no URDF, or its joints form no tree.
     """
     try:
         robot = ElementTree.parse(path).getroot()
@@ -139,7 +143,7 @@ def read_urdf(path: Path) -> UrdfTree:
 
 
 def _sorted(root: str, joints: list[UrdfJoint]) -> dict[str, UrdfJoint]:
-    """Joints by name, depth first, each after the one that carries it."""
+    """Joints by name, each after its parent joint (depth first from the root link)."""
     below: dict[str, list[UrdfJoint]] = {}
     for joint in joints:
         below.setdefault(joint.parent, []).append(joint)
@@ -162,7 +166,10 @@ def _link(element: Element) -> UrdfLink:
 
 
 def _inertial(element: Element | None) -> Inertial | None:
-    """Mass and inertia; an inertia that no body has is made one that has."""
+    """Read mass and inertia; an impossible inertia is replaced by a close possible one.
+
+    The result is None without an element or with a mass of zero.
+    """
     mass = 0.0 if element is None else _number(element.find("mass"), "value") or 0.0
     if element is None or mass <= 0:
         return None
@@ -175,12 +182,12 @@ def _inertial(element: Element | None) -> Inertial | None:
 
 
 def _possible(inertia: FloatArray, mass_kg: float) -> FloatArray:
-    """The matrix if a body of that mass can have it, else one that is close.
+    """Return an inertia matrix (3, 3) if a body can have it, else a close possible one.
 
-    A body with next to no inertia, such as iCub's right leg, gets that of a ball of
-    water. Principal moments that are not positive become next to nothing; if two
-    of them do not add up to the third, all become their mean, as with MuJoCo's
-    `balanceinertia`.
+    If all moments are below a thousandth of those of a ball of water of that mass, as
+    in iCub's right leg, the ball's are used. Principal moments that are not positive
+    become a thousandth of the largest; if two do not add up to the third, all become
+    their mean, as with MuJoCo's `balanceinertia`.
     """
     moments, axes = np.linalg.eigh(inertia)
     radius_m = (3 * mass_kg / (4 * np.pi * _WATER_KG_M3)) ** (1 / 3)
