@@ -1,7 +1,7 @@
 """The NAO's walks in sims that are grounded on real walks, and ratings of gaits there.
 
-The folder belongs to `experiments` and not to `sgat`, because it combines rooms: trials
-of gaits, grounding, and sims that a diagnosis has corrected.
+The folder belongs to `experiments` and not to `sgat`, because it combines packages:
+trials of gaits, grounding, and sims that a diagnosis has corrected.
 """
 
 from experiments.grounded_walks.courses import (

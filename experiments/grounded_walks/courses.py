@@ -1,4 +1,4 @@
-"""Where gaits walk: the real world's course, or a sim, flat or uneven."""
+"""Places where gaits walk: a course in the real world, or a flat or uneven sim."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -18,10 +18,10 @@ from worlds.hidden.effects import Hidden
 
 @dataclass(frozen=True)
 class RealCourse:
-    """The real world that a gait is tuned for.
+    """The real world that a gait is tuned for: its ground and its physics.
 
     Attributes:
-      terrain: its ground in words, such as "lumps:amplitude_m=0.01".
+      terrain: name and parameters of the ground, such as "lumps:amplitude_m=0.01".
       hidden: physics of the real world that the sim's model lacks.
 
     Example:
@@ -55,11 +55,11 @@ class RealCourse:
 
 
 LUMPS_M = (0.002, 0.005, 0.008, 0.011, 0.014)
-"""Amplitudes [m] of the lumps of uneven sims that are tried."""
+"""Amplitudes [m] of lumps with which uneven sims are tried."""
 
 START_M, SHORT_START_M = 0.35, 0.1
-"""Radius [m] of the flat ground around the start of a course (0.35), and of walks of
-a few seconds (0.1), which would otherwise spend half of their time on it."""
+"""Radius [m] of the flat ground around the start: for a course, and for walks of a few
+seconds, which would spend half of their time within 0.35 m."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class SimPlace:
         has a random one. At 0 the ground is flat and the sensors have no noise;
         otherwise they have the real world's.
       start_m: radius of the flat ground around the start [m].
-      correction: folder or file of a diagnosis; the sim has the effects that it found.
+      correction: folder or file of a diagnosis; the effects that it found are added.
 
     Example:
       >>> place = SimPlace(lumps_m=0.008)
@@ -88,7 +88,7 @@ class SimPlace:
             raise BadValueError("lumps_m is empty; give at least one amplitude")
 
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
-        """One ground for each seed: flat, or lumps as long as the real world's."""
+        """One ground for each seed: flat, or lumps of the real world's wavelength."""
         if not self.lumps_m:
             return [terrain.make("flat", 0)] * len(seeds)
         return [self._lumps(seed) for seed in seeds]
@@ -103,7 +103,7 @@ class SimPlace:
 
     @property
     def options(self) -> WorldOptions:
-        """Options of the world that computes the physics."""
+        """Options of the sim; its sensors are noisy if the ground has lumps."""
         return noisy_sim() if self.lumps_m else worlds.kind("sim").options
 
 
@@ -113,14 +113,7 @@ def world_at(
     grounds: Sequence[Heightfield],
     seeds: Sequence[np.random.SeedSequence],
 ) -> World:
-    """A world with one robot on each ground.
-
-    Args:
-      place: which world.
-      description: the robot.
-      grounds: n grounds.
-      seeds: n seeds of the sensors' noise.
-    """
+    """A world with one robot on each of n grounds; n seeds of the sensors' noise."""
     if isinstance(place, RealCourse):
         return worlds.make("real", description, grounds, seeds, place.options)
     return make_sim(description, grounds, seeds, place.options, place.correction)
@@ -155,5 +148,5 @@ class Places:
     def sim(
         self, lumps_m: float | tuple[float, ...] = 0.0, start_m: float = SHORT_START_M
     ) -> SimPlace:
-        """The sim, flat or on lumps; arguments in m, see `SimPlace`."""
+        """The sim, by the amplitude of its lumps and its flat start's radius, in m."""
         return SimPlace(lumps_m, start_m, self.correction)

@@ -22,9 +22,9 @@ ON_COURSE = TrialRules(limit_s=15.0, start_spread_rad=0.01)
 """A walk of 15 s: the time that a course of 3 m takes."""
 
 FLAT_TICKS = 300
-"""Ticks (3 s) at the start of a walk on lumps that are not used. The ground around the
-start is flat and shows nothing of the lumps; a grounding that averages over both falls
-less often than the real robot."""
+"""Ticks (3 s) at the start of a real walk that a grounding does not learn from: the
+ground is flat there, and a sim grounded on flat ground and lumps alike has fewer falls
+than the real world."""
 
 
 def walk(
@@ -41,7 +41,7 @@ def walk(
       place: the world and its grounds.
       description: the robot.
       vectors: (n, 16) gaits, in the units of `walk_engine.PARAMETERS`.
-      seed: of grounds, sensor noise, start poses and exploration.
+      seed: seed of grounds, sensor noise, start poses and noise on commands.
       exploration_rad: standard deviations [rad] of noise on the joint commands; the
         gaits get them in turn.
       rules: when a walk is over.

@@ -22,16 +22,15 @@ from sgat.walks.walk_senses import WalkSenses, leg_senses
 NONE = "no grounding"
 GAT, SGAT = "GAT", "SGAT"
 ENSEMBLE, UNEVEN = "SGAT, ensemble", "SGAT, uneven sim"
-"""Titles of groundings in `sgat.transformers`, by which the studies' pages call
-them."""
+"""Titles of groundings in `sgat.transformers`, by which results name them."""
 
 LARGEST_ACTION_RAD = 1.0
 """Bound of an action [rad], which is a joint command relative to the joint's position.
-It is wide: only extrapolations of a network are cut."""
+It is so wide that only extrapolations of a network are cut."""
 
 LOOKED_AT = 72
-"""Number of real walks that are repeated in the sim to match its lumps: enough to know
-a share of falls to about 6 % (one standard error)."""
+"""Largest number of real walks that are repeated in the sim to find the height of its
+lumps: enough to know a share of falls to about 6 % (one standard error)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +39,8 @@ class WalkModels:
 
     Attributes:
       records: walks that the models learn from.
-      seed: of all trainings.
-      places: the two worlds of the walks.
+      seed: seed of all trainings.
+      places: the real world and the sim of the walks.
 
     Example:
       See docs/python.md, "Learn with Gymnasium".
@@ -53,7 +52,7 @@ class WalkModels:
 
     @cached_property
     def data(self) -> GroundingData:
-        """The walks in the form that every grounding of `sgat` learns from."""
+        """The walks as the data that every grounding in `sgat` learns from."""
         senses, bound = _senses(), _bound()
         return GroundingData(
             real=self.records.real,
@@ -71,9 +70,9 @@ class WalkModels:
 
     @cached_property
     def lumps_m(self) -> float:
-        """Amplitude [m] of lumps at which gaits fall as often in the sim as on real.
+        """Amplitude [m] of lumps with which gaits fall as often in the sim as on real.
 
-        Looked for with the grounding `UNEVEN`, among the amplitudes `LUMPS_M`.
+        The sim is grounded by `UNEVEN`; shares of falls are interpolated in `LUMPS_M`.
         """
         vectors = self.records.vectors[-LOOKED_AT:]
         fell = self.records.fell[-LOOKED_AT:]
@@ -88,7 +87,7 @@ class WalkModels:
         return float(np.interp(fell.mean(), rising, LUMPS_M))
 
     def grounded(self, name: str) -> GroundedSim:
-        """The sim as one grounding makes it.
+        """The sim, grounded by one of the groundings.
 
         Args:
           name: name or title of a grounding in `sgat.transformers`, or `NONE` for the
@@ -110,7 +109,7 @@ class WalkModels:
 
 
 def action_envelope(deviation_rad: float) -> ActionNoise:
-    """Action noise envelope (ANE): white noise [rad] on the legs' commands."""
+    """Action noise envelope (ANE): white noise on the legs' commands."""
     bound = _bound()
     return ActionNoise(deviation_rad, -bound, bound)
 

@@ -1,4 +1,4 @@
-"""Raters for a search: each lets gaits walk in one kind of world and gives rewards."""
+"""Raters of gaits for a search: each lets them walk in one world and gives rewards."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,18 +18,17 @@ from terrain import Heightfield
 from worlds import WorldOptions
 
 RATED = TrialRules(limit_s=7.5, start_spread_rad=0.01)
-"""A walk that is rated: 7.5 s, as in the search in the plain sim; start poses vary
-by 0.01 rad per joint."""
+"""Rules of a walk that is rated: it lasts 7.5 s, as in searches in the plain sim; start
+poses vary by 0.01 rad per joint (standard deviation)."""
 
 FALL_PENALTY_WALK_CM_S = 60.0
-"""What a fall costs in a rated walk [cm/s]: four times the SGAT paper's 15. With 15,
-a gait of 25 cm/s that falls on every second course is worth as much as one of 18
-cm/s that hardly ever falls. On the course of 3 m, where falls are counted, a walk
-lasts more than twice as long."""
+"""Cost of a fall in a rated walk [cm/s]: four times the SGAT paper's 15. With 15, a
+gait of 25 cm/s that falls on every second course is worth as much as one of 18 cm/s
+that hardly ever falls; and the courses of 3 m take more than twice as long."""
 
 REAL_GROUNDS = 10
-"""Number of grounds in a generation on real: on a single one, all gaits may fall, or
-none."""
+"""Number of grounds for a generation of a search in the real world: on a single ground
+all gaits may fall, or none."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +36,8 @@ class GroundedRater:
     """Rates gaits in the sim, grounded or not.
 
     Attributes:
-      sim: the sim.
-      repeats: walks of each gait.
+      sim: the sim, with its action transformer if it is grounded.
+      repeats: number of walks of each gait.
       rules: when a walk is over.
     """
 
@@ -58,7 +57,7 @@ class RandomisedRater:
     """Rates gaits in the sim with random dynamics: dynamics randomisation.
 
     Attributes:
-      repeats: walks of each gait, each in its own dynamics.
+      repeats: number of walks of each gait, each in other dynamics.
       latency_s: least and largest time until a command takes effect [s].
       friction: least and largest coefficient between sole and ground.
     """
@@ -91,7 +90,7 @@ class RandomisedRater:
 class RealRater:
     """Rates gaits in the real world, with one walk of 15 s each.
 
-    A search with it shows how well a gait could do if real walks cost nothing.
+    A search with it shows how good a gait could be if real walks cost nothing.
 
     Attributes:
       course: the ground, and the physics that the sim lacks.
@@ -119,7 +118,7 @@ def _walk(
     options: WorldOptions,
     rules: TrialRules = RATED,
 ) -> Trials:
-    """Let every gait walk once, with the same noise and from the same start pose."""
+    """Let every gait (n, 16) walk once, all with the same noise and start pose."""
     seeds: Sequence[np.random.SeedSequence] = [seed] * len(vectors)
     world = worlds.make(world_name, robots.get(ROBOT), grounds, seeds, options)
     try:

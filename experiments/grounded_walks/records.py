@@ -14,20 +14,20 @@ from sgat.noise import child_of
 from sgat.transitions import Transitions
 
 EXPLORATION_RAD = (0.0, 0.01, 0.02, 0.04)
-"""Standard deviations [rad] of the noise on commands in the sim, one walk each in turn:
-without noise, data do not show the effect of a single action."""
+"""Standard deviations [rad] of the noise on commands in the sim; the walks get them in
+turn. Without noise, data do not show the effect of a single action."""
 
 REAL_EXPLORATION_RAD = (0.0, 0.03)
 """Standard deviations [rad] of the noise on commands in the real world: every second
-walk has noise. A gait changes all commands smoothly, and from its data alone the
-latency of the roll joints was learned at half its length."""
+walk has noise. Gaits change commands smoothly: from walks without noise, models learned
+half of the true latency of the roll joints."""
 
 
 class RealWalks(NamedTuple):
     """Walks of the real world.
 
     Attributes:
-      noted: transitions on the lumps, without the flat start.
+      noted: transitions, without those on the flat ground around the start.
       vectors: (n, 16) gaits that walked without exploration.
       fell: (n,) whether each of these fell.
     """
@@ -42,7 +42,7 @@ class WalkRecords:
     """Walks of both worlds.
 
     Attributes:
-      real: transitions on the real world's lumps.
+      real: transitions of the real world, without the flat ground around the start.
       sim: transitions of the flat sim.
       uneven: transitions of the sim on lumps of all sizes, with sensors as noisy as the
         real world's.

@@ -15,12 +15,12 @@ from sgat.walks.grounded_world import GroundedWorld
 from sgat.walks.walk_senses import leg_senses
 
 ROBOT = "nao"
-"""The robot of all studies of this folder."""
+"""Name of the robot that walks in all studies with grounded sims."""
 
 
 @dataclass(frozen=True)
 class GroundedSim:
-    """The sim that gaits walk in.
+    """The sim that gaits walk in, grounded or not.
 
     Attributes:
       transformer: changes the joint commands; None leaves the sim as it is.
@@ -51,9 +51,9 @@ def walk_in_sim(
       sim: grounded or not.
       vectors: (gaits, 16) in the units of `walk_engine.PARAMETERS`.
       repeats: walks of each gait.
-      seed: of grounds, start poses and the transformer's noise.
+      seed: seed of grounds, start poses and the transformer's noise.
       rules: when a walk is over.
-      own_seeds: give every gait random numbers of its own instead.
+      own_seeds: whether every gait gets random numbers of its own instead.
 
     Returns:
       gaits * repeats trials; those of one gait follow each other.

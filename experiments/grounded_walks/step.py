@@ -1,4 +1,4 @@
-"""One grounding step: walks in both worlds, models of them, a sim to search in."""
+"""A grounding step: walks in both worlds, models learned from them, a grounded sim."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -21,13 +21,13 @@ from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import Gait
 
 LUMPS_MARGIN = 1.2
-"""Height of a search's lumps over the height that matches real falls. Gaits tuned on
-lumps of the matching height are at the edge of falling: two of them fell on 10 and on
-15 of 40 real courses."""
+"""Ratio of the lumps' height in a search to the height at which the sim has as many
+falls as the real world. Gaits tuned at a ratio of 1 are at the edge of falling: two of
+them fell on 10 and on 15 of 40 real courses."""
 
 
 class GroundingStep:
-    """One grounding step: its data, and the models learned from them when asked for.
+    """A grounding step: its walks and models, computed when first asked for.
 
     Example:
       See docs/python.md, "Learn with Gymnasium".
@@ -43,17 +43,17 @@ class GroundingStep:
         places: Places | None = None,
         beside: "GroundingStep | None" = None,
     ) -> None:
-        """Describe the step; nothing walks yet.
+        """Describe the step; no robot walks yet.
 
         Args:
-          around: the gait in the middle of those that walk.
-          cloud: draws the gaits that walk.
+          around: the gait that the gaits to walk with vary.
+          cloud: draws the gaits to walk with.
           walks: numbers of walks in the real world and in the sim.
-          seed: of gaits, walks and trainings.
-          before: the previous step, whose data are used as well.
+          seed: seed of gaits, walks and trainings.
+          before: the previous step, whose walks are used as well.
           places: the two worlds; by default the real world's own terrain, and the sim
             without a diagnosis.
-          beside: a step with the same gait and seed, whose real walks are shared.
+          beside: a step with the same gait and seed, whose real walks are used.
         """
         self._around, self._cloud, self._walks = around, cloud, walks
         self._seeds = [child_of(seed, use) for use in range(4)]
@@ -81,14 +81,14 @@ class GroundingStep:
         return WalkModels(self.records, self._seeds[3], self._places)
 
     def rater(self, name: str, repeats: int) -> GroundedRater:
-        """Rates gaits in the sim as one grounding makes it.
+        """A rater of gaits in the sim, grounded by one of the groundings.
 
         Args:
           name: name or title of a grounding in `sgat.transformers`.
-          repeats: walks of each gait.
+          repeats: number of walks of each gait.
 
         Raises:
-          UnknownNameError: there is no such grounding; nothing has walked then.
+          UnknownNameError: there is no such grounding; raised before any walk.
         """
         uneven = grounding(name).uneven_sim
         sim = self.models.grounded(name)

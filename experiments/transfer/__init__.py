@@ -20,4 +20,4 @@ STUDIES = {
         "does the grounded sim know which gaits fall?",
     ),
 }
-"""The studies by their names on the command line."""
+"""The studies of this folder, by their names on the command line."""

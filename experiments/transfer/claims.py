@@ -1,4 +1,4 @@
-"""Claims of a paper, checked by a study, and the page that shows them."""
+"""Claims that a study checks, most of them the SGAT paper's, and the study's page."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -12,12 +12,12 @@ from experiments.runs.folder import RunFolder
 
 @dataclass(frozen=True)
 class Claim:
-    """Something that the paper says, and whether the study confirms it.
+    """A statement, mostly of the SGAT paper, and whether a study confirms it.
 
     Attributes:
-      text: the claim.
+      text: the statement.
       holds: whether the study confirms it.
-      found: the numbers that decide it, in words.
+      found: the numbers that decide it, as text.
     """
 
     text: str
@@ -25,7 +25,7 @@ class Claim:
     found: str
 
     def to_json(self) -> dict[str, Any]:
-        """The claim as plain values."""
+        """The attributes by name."""
         return dataclasses.asdict(self)
 
 
@@ -36,14 +36,14 @@ def write_transfer_page(
     body: Sequence[str],
     answer: Sequence[str] = (),
 ) -> None:
-    """Write `result.md` and `report.html`: answer, claims, then the body.
+    """Write a study's `result.md` and `report.html`: answer, claims, then the body.
 
     Args:
-      folder: of the run; the pictures are in it already.
+      folder: the run's folder; the pictures are in it already.
       title: the study's question, as a heading.
-      claims: what the study checks.
+      claims: claims that the study has checked.
       body: lines of Markdown.
-      answer: in plain words; if empty, the number of claims that hold.
+      answer: sentences that answer the question; if empty, how many claims hold.
     """
     lines = [*claim_lines(claims), "", *body]
     answer = answer or claims_answer(claims)
@@ -61,7 +61,7 @@ def claims_answer(claims: Sequence[Claim]) -> list[str]:
 
 
 def claim_lines(claims: Sequence[Claim]) -> list[str]:
-    """A Markdown list of the claims, each with its verdict in front."""
+    """A Markdown list of claims; each begins with whether it holds."""
     return [
         f"- **{'holds' if claim.holds else 'does not hold'}**: {claim.text}: "
         f"{claim.found}"

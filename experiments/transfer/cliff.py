@@ -24,14 +24,14 @@ VERB = "transfer-cliff"
 
 @dataclass(frozen=True)
 class TransferCliff(RunOptions):
-    """Walk along a cliff with random moves: no grounding, GAT, SGAT and the optimum.
+    """Compare GAT, SGAT, no grounding and the optimum in cliff walking with noise.
 
     Attributes:
-      rows: rows of the grid.
-      columns: columns of the grid.
+      rows: number of rows of the grid.
+      columns: number of columns of the grid.
       noise: probabilities of a random move; each makes a real world of its own.
-      episodes: real episodes in which each policy is tried.
-      real_episodes: real episodes that a grounding step learns from.
+      episodes: number of real episodes in which each policy is tried.
+      real_episodes: number of real episodes that each grounding step learns from.
     """
 
     rows: int = 4
@@ -54,7 +54,7 @@ class TransferCliff(RunOptions):
 
 
 def main(config: TransferCliff) -> None:
-    """Compare the methods for every noise value, and write everything down."""
+    """Compare the methods for every noise value, and write results and page."""
     folder, config = open_run(VERB, config)
     rows = _compare_all(config, folder)
     claims = check_claims(rows)
@@ -74,7 +74,7 @@ def main(config: TransferCliff) -> None:
 
 
 def _compare_all(config: TransferCliff, folder: RunFolder) -> list[Row]:
-    """Results for all noise values; those in the run's history are kept."""
+    """Results for all noise values; those that an earlier run has written are kept."""
     rows = folder.read_json(HISTORY)["rows"] if folder.has(HISTORY) else []
     seeds = np.random.SeedSequence(config.seed).spawn(len(config.noise))
     with progress("cliff walking", len(config.noise), done=len(rows)) as bar:

@@ -26,18 +26,16 @@ from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, Job,
 
 @dataclass(frozen=True)
 class TransferGym(RunOptions):
-    """Options of a study; a subclass names its domain and its page's title.
-
-    Options that are not given follow from the size.
+    """Options of a Gymnasium study; a subclass sets its domain and its page's title.
 
     Attributes:
-      size: gives the values of all options that are not given.
+      size: size of the study, which sets all options that are not given.
       seeds: number of trainings of each method.
-      noises: noise on the actions of the real worlds to try, as standard deviations in
-        fractions of half of the action's range.
+      noises: standard deviations of the noise on the real world's actions, as fractions
+        of half of the action's range; each makes a real world of its own.
       methods: methods to compare.
-      timesteps: environment steps in each training.
-      episodes: real episodes in which each policy is tried.
+      timesteps: number of environment steps in each training.
+      episodes: number of real episodes in which each policy is tried.
       threads: number of trainings at a time, each in its own process.
     """
 
@@ -79,7 +77,7 @@ class TransferGym(RunOptions):
 
 @dataclass(frozen=True)
 class TransferInvertedPendulum(TransferGym):
-    """Train for noisy, heavier pendulums: no grounding, GAT, SGAT, ANE, real."""
+    """Compare groundings and baselines for a noisy pendulum with a heavier pole."""
 
     domain: ClassVar[Domain] = INVERTED_PENDULUM
     title: ClassVar[str] = (
@@ -89,7 +87,7 @@ class TransferInvertedPendulum(TransferGym):
 
 @dataclass(frozen=True)
 class TransferHalfCheetah(TransferGym):
-    """Train cheetahs for noisy, heavier worlds: no grounding, GAT, SGAT, ANE, real."""
+    """Compare groundings and baselines for noisy cheetahs, some of them heavier."""
 
     domain: ClassVar[Domain] = HALF_CHEETAH
     title: ClassVar[str] = (
@@ -98,7 +96,7 @@ class TransferHalfCheetah(TransferGym):
 
 
 def main(config: TransferGym) -> None:
-    """Compare the methods in every real world, and write everything down."""
+    """Compare the methods in every real world, and write results and page."""
     verb = f"transfer-{config.domain.name}"
     figure = f"{verb.replace('-', '_')}.png"
     folder, config = open_run(verb, config)
@@ -125,7 +123,7 @@ def main(config: TransferGym) -> None:
 
 
 def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
-    """Compute the cells whose files are missing in the run's folder, and read all."""
+    """Do the jobs whose files the run's folder lacks; read the results of all."""
     stages = study.stages()
     every = [job for stage in stages for job in stage]
     done = sum(folder.has(job.file) for job in every)

@@ -42,7 +42,7 @@ from worlds.real.hidden_robot import check_hidden
 VERB = "transfer-nao"
 SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,
             "more_real_walks": 2, "sim_walks": 2, "real_generations": 1}  # fmt: skip
-"""Least value of each option with which a study can run."""
+"""Least value of each option with which the study can run."""
 
 
 @dataclass(frozen=True)
@@ -51,21 +51,22 @@ class TransferNao(RunOptions):
 
     Attributes:
       methods: methods to compare; the start gait is always tried.
-      terrain: ground of the real world's courses of 3 m.
+      terrain: ground of the real world's courses, which are 3 m long.
       hidden: physics of the real world that the sim's model lacks, such as
         speed_limit@LKneePitch:speed=3.
       sim: folder of a diagnosis of the real robot; the sim that it corrects is tried
         beside the plain one.
-      trials: real courses on which each gait that was found is tried.
-      population: gaits in a generation of a search in the sim.
+      trials: number of real courses on which each gait that was found is tried.
+      population: number of gaits in a generation of a search in the sim.
       generations: number of generations of a search in the sim.
-      sigma: spread of the first generation, as a share of each parameter's range.
-      repeats: walks of each gait, for its rating in a sim with random numbers.
+      sigma: standard deviation of the first generation, as a share of each parameter's
+        range.
+      repeats: number of walks that rate a gait in a sim with random numbers.
       real_walks: number of real walks that the first grounding step learns from.
       more_real_walks: number of real walks that each further step adds.
       sim_walks: number of walks in the sim for each grounding step.
-      real_population: gaits in a generation of the search on real.
-      real_generations: number of generations of the search on real.
+      real_population: number of gaits in a generation of the search in the real world.
+      real_generations: number of generations of the search in the real world.
     """
 
     methods: tuple[str, ...] | None = None
@@ -111,7 +112,7 @@ class TransferNao(RunOptions):
 
     @property
     def plan(self) -> tuple[tuple[str, int], ...]:
-        """Method and grounding step of each cell to compute."""
+        """Method and grounding step of each gait to find and try."""
         return tuple(cell for cell in PLAN if cell[0] in (START, *self.compared))
 
     @property
@@ -134,7 +135,7 @@ class TransferNao(RunOptions):
 
 
 def main(config: TransferNao) -> None:
-    """Compute and try every cell's gait; cells of an earlier run are kept."""
+    """Find and try a gait by every method; results of an earlier run are kept."""
     folder, config = open_run(VERB, config)
     study = NaoStudy(folder, config.effort, config.places, config.seed)
     if study.cells:

@@ -47,11 +47,11 @@ class TransferNaoFalls(RunOptions):
     """Predict speed and falls of gaits that no grounding has seen.
 
     Attributes:
-      gaits: number of gaits that are held out of the grounding data.
-      trials: real walks of each held-out gait, on uneven ground.
-      rollouts: walks of each held-out gait in every grounded sim.
-      real_walks: real walks of other gaits, which the groundings learn from.
-      sim_walks: walks of other gaits in the sim, which the groundings learn from.
+      gaits: number of gaits that no grounding learns from.
+      trials: number of real walks of each of these gaits, on uneven ground.
+      rollouts: number of walks of each of these gaits in every grounded sim.
+      real_walks: number of real walks of other gaits, which the groundings learn from.
+      sim_walks: number of walks of other gaits in the sim, also to learn from.
     """
 
     gaits: int = 24
@@ -69,7 +69,7 @@ class TransferNaoFalls(RunOptions):
 
 
 def main(config: TransferNaoFalls) -> None:
-    """Walk, learn, predict and compare; stages of an earlier run are kept."""
+    """Walk, learn, predict and compare; results of an earlier run are kept."""
     folder, config = open_run(VERB, config)
     state = folder.read_json(HISTORY) if folder.has(HISTORY) else {}
     with progress("predicting falls", STAGES, done=len(state)) as bar:
@@ -94,7 +94,7 @@ def main(config: TransferNaoFalls) -> None:
 def _stages(
     config: TransferNaoFalls, done: Mapping[str, Any]
 ) -> Iterator[tuple[str, Any]]:
-    """Compute what is missing, stage by stage, and yield each result."""
+    """Compute the stages that are not `done`; yield the name and result of each."""
     description, start = robots.get(ROBOT), gaits.get("start")
     held_out = GaitCloud().draw(start, config.gaits, _seed(config, 0))
     if "real" not in done:
@@ -120,12 +120,12 @@ def _stages(
 
 
 def _seed(config: TransferNaoFalls, use: int) -> np.random.SeedSequence:
-    """The seed of one use, always the same for the same number."""
+    """The seed of the use with a number, which is the same at each call."""
     return np.random.SeedSequence(config.seed, spawn_key=(use,))
 
 
 def _per_gait(trials: Trials, count: int) -> dict[str, list[float]]:
-    """Fall rate and mean speed [cm/s] of each gait; its trials follow each other."""
+    """Fall rate and mean speed [cm/s] of `count` gaits, in the order of the trials."""
     return {
         "fall_rate": trials.fell.reshape(count, -1).mean(axis=1).tolist(),
         "speed_cm_s": trials.speed_cm_s.reshape(count, -1).mean(axis=1).tolist(),

@@ -36,15 +36,15 @@ NOTES = (
     '"from counts".',
 )
 FIRST = 0
-"""State in which the choice is made."""
+"""Number of the state in which the choice is made."""
 
 
 @dataclass(frozen=True)
 class TransferToy(RunOptions):
-    """Find the best action in the paper's toy worlds, grounded by GAT and by SGAT.
+    """Find the best action in the SGAT paper's toy worlds, without and with grounding.
 
     Attributes:
-      episodes: random real transitions from which forward models are counted.
+      episodes: number of random real transitions that estimate the forward models.
     """
 
     episodes: int = 30_000
@@ -56,7 +56,7 @@ class TransferToy(RunOptions):
 
 
 def main(config: TransferToy) -> None:
-    """Solve the toy worlds, and write everything down."""
+    """Solve the toy worlds, and write results and page."""
     folder, config = open_run(VERB, config)
     if not folder.has(RESULT):
         folder.write_json(RESULT, _solve_all(config))
@@ -78,7 +78,7 @@ def main(config: TransferToy) -> None:
 
 
 def _answer(toys: Mapping[str, Any]) -> str:
-    """In how many worlds planning in each sim finds the real world's best action."""
+    """A sentence on how often planning in each sim finds the best real action."""
     found = dict.fromkeys(("sim", "GAT", "SGAT"), 0)
     for toy in toys.values():
         best = {row["world"]: row["best"] for row in toy["planned"]}
@@ -110,9 +110,9 @@ def solve(
     """The best action in the sim, in both grounded sims and in the real world.
 
     Args:
-      toy: the worlds.
-      episodes: random real transitions from which forward models are counted.
-      generator: draws them.
+      toy: the sim and the real world.
+      episodes: number of random real transitions that estimate a forward model.
+      generator: draws these transitions.
     """
     anything = np.zeros(toy.sim.states, np.intp)
     seen = roll_out(toy.real, anything, episodes, generator, exploration=1.0).counts
@@ -142,7 +142,7 @@ def _planned_in(toy: Toy, forward: FloatArray) -> dict[str, FiniteMdp]:
 
 
 def _first_values(mdp: FiniteMdp) -> FloatArray:
-    """(A,) value of each action in the first state, after which an episode ends."""
+    """(A,) expected reward of each action in the first state; then the episode ends."""
     values: FloatArray = action_values(mdp, np.zeros(mdp.states))[FIRST]
     return values
 

@@ -10,14 +10,14 @@ from sgat.tabular.mdp import FiniteMdp
 
 @dataclass(frozen=True, eq=False)
 class Toy:
-    """A simulator, a real world, and the paper's statements about them.
+    """A simulator, a real world, and the SGAT paper's statements about them.
 
     Attributes:
-      figures: where the paper shows the toy, by the order of figures in its source.
+      figures: the paper's figures of this toy, counted in its LaTeX source.
       sim: the simulator.
       real: the real world.
-      best: the best action in the sim, both grounded sims and the real world, according
-        to the paper.
+      best: the best action according to the paper, by "sim", "GAT", "SGAT" and "real":
+        the world that is planned in.
     """
 
     figures: str
@@ -55,4 +55,4 @@ TOYS = {
         best={"sim": "a3", "GAT": "a1", "SGAT": "a2", "real": "a2"},
     ),
 }
-"""The toys, by what their real world is like."""
+"""The toys, by whether their real world is deterministic or stochastic."""

@@ -1,4 +1,4 @@
-"""A walk as an environment of Gymnasium."""
+"""A walking robot as a Gymnasium environment."""
 
 from experiments.walk_env.ids import IDS, register_envs
 

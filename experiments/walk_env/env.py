@@ -107,15 +107,16 @@ class WalkEnv(Environment):
           world: "sim", "real", or "grounded": the sim behind an action transformer.
           action: meaning of an action; see the class.
           robot: name of a robot, or a description.
-          gait: that residual actions are added to: a name, a JSON file or a gait.
-          terrain: such as "lumps:amplitude_m=0.005", drawn anew at each reset, or a
-            ground; the world's own if None.
+          gait: gait to whose commands residual actions are added: a name, a JSON file
+            or a gait.
+          terrain: ground in words, such as "lumps:amplitude_m=0.005", drawn anew at
+            each reset, or a fixed ground; the world's own if None.
           limit_s: time limit of an episode [s].
           residual_rad: what an action of 1 adds to a joint's command [rad].
           start_spread_rad: standard deviation of the joints at the start [rad].
-          transformer: of a grounded world: an object, which is copied, or a folder that
-            `sgat.transformers.write_transformer` has written.
-          options: of the world, such as its latency; its own if None.
+          transformer: action transformer of a grounded world: an object, which is
+            copied, or a folder that `sgat.transformers.write_transformer` has written.
+          options: options of the world, such as its latency; its own if None.
 
         Raises:
           BadValueError: a value is impossible, or world and transformer do not fit.
@@ -144,11 +145,11 @@ class WalkEnv(Environment):
         """Start an episode; everything random in it follows from the seed.
 
         Args:
-          seed: of this episode and all that follow; see `gymnasium.Env.reset`.
+          seed: seed of this episode and all that follow; see `gymnasium.Env.reset`.
           options: not used.
 
         Returns:
-          The observation, with the columns of the class's table, and `info`.
+          The observation, whose columns the class lists, and `info`.
         """
         super().reset(seed=seed)
         self.close()
@@ -190,7 +191,7 @@ class WalkEnv(Environment):
         self._episode = WalkEpisode(self._world, gait, self._rules, self._of_pose)
 
     def _tick(self, added_rad: FloatArray) -> float:
-        """Walk for one tick; the gain in reward [cm/s]."""
+        """Walk for one tick, adding (joints,) [rad] to commands; its reward [cm/s]."""
         assert self._episode is not None
         before = self._worth()
         if not self._episode.is_over:

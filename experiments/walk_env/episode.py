@@ -1,4 +1,4 @@
-"""One robot that walks tick by tick, with additions to the engine's commands."""
+"""One robot that walks tick by tick, with additions to the walk engine's commands."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ class WalkEpisode:
     If nothing is added to the commands, it is equal to that trial to the last bit.
 
     Attributes:
-      command_rad: (joints,) the engine's command for the next tick [rad].
+      command_rad: (joints,) the walk engine's command for the next tick [rad].
       observation: measurements of the last tick.
       ticks: number of ticks so far.
       distance_m: distance walked so far, along the x axis [m].
@@ -27,10 +27,10 @@ class WalkEpisode:
         """Put the robot on its ground, ready to walk.
 
         Args:
-          world: with one robot.
-          gait: that the robot walks.
+          world: a world with one robot.
+          gait: gait with which the robot walks.
           rules: when the trial is over.
-          seed: of the start pose, if poses vary.
+          seed: seed of the start pose, if poses vary.
         """
         self._world, self._rules = world, rules
         self._engine = WalkEngine(biped(world.description), [gait], TICK_S)
@@ -45,8 +45,8 @@ class WalkEpisode:
         """Walk for one tick.
 
         Args:
-          added_rad: (joints,) is added to the engine's command [rad], which does not
-            know of it; the sum is held within the joints' ranges.
+          added_rad: (joints,) addition to the walk engine's command [rad]; the sum is
+            held within the joints' ranges. The engine does not see it.
         """
         low, high = self._world.description.joint_range_rad.T
         # the engine's own commands may be past a range's end by the last bit
@@ -89,7 +89,7 @@ class WalkEpisode:
         return Trials(np.array([self.distance_m]), time_s, (self.ended,))
 
     def _ask(self) -> None:
-        """Get the engine's next command for the last measurements."""
+        """Get the walk engine's next command for the last measurements."""
         seen = self.observation
         self.command_rad: FloatArray = self._engine.step(
             Velocity.forward(), seen.gyroscope_rad_s, seen.foot_force_n

@@ -1,11 +1,4 @@
-"""The walking environments by name.
-
-import gymnasium as gym
-from experiments.walk_env.ids import register_envs
-
-register_envs()
-env = gym.make("Groundwalk/Nao-Sim-v0")
-"""
+"""Registers the walking environments with Gymnasium by their ids."""
 
 ENTRY_POINT = "experiments.walk_env.env:WalkEnv"
 IDS = {
@@ -13,11 +6,11 @@ IDS = {
     "Groundwalk/Nao-Real-v0": "real",
     "Groundwalk/Nao-Grounded-v0": "grounded",
 }
-"""Ids and worlds. All take the arguments of `experiments.walk_env.env.WalkEnv`."""
+"""Ids of the environments, and their worlds; all take the arguments of `WalkEnv`."""
 
 
 def register_envs() -> None:
-    """Register the ids of `IDS` with Gymnasium; it may be called again.
+    """Register the walking environments with Gymnasium; it may be called again.
 
     The code of an environment is imported when one is made.
 

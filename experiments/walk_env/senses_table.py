@@ -14,7 +14,7 @@ HEAVIEST_N, LONGEST_STEP_S = 10_000.0, 10.0
 
 
 def senses_box(joints: int) -> Box:
-    """The space of the vectors of `senses_of`, for a number of joints."""
+    """Bounds of the observations of `WalkEnv`, for a robot with this many joints."""
     parts = (
         (joints, -TURN_RAD, TURN_RAD),
         (joints, -FASTEST_RAD_S, FASTEST_RAD_S),
@@ -31,9 +31,9 @@ def senses_box(joints: int) -> Box:
 
 
 def senses_of(episode: WalkEpisode, box: Box) -> FloatArray:
-    """(n,) measurements of the last tick and the engine's next command.
+    """(columns,) measurements of the last tick and the walk engine's next command.
 
-    Columns and units are in the docstring of `WalkEnv`; values beyond the box are cut.
+    `WalkEnv` lists columns and units; values outside the box are clipped.
     """
     seen = episode.observation
     vector = np.concatenate(

@@ -21,16 +21,16 @@ WorldName = Literal["sim", "real", "grounded"]
 
 @dataclass(frozen=True, eq=False)
 class EnvWorld:
-    """Makes a world with one robot, for one episode after the other.
+    """Makes a world with one robot for each episode.
 
     Attributes:
-      name: "sim", "real", or "grounded": the sim behind a transformer.
+      name: "sim", "real", or "grounded": the sim behind an action transformer.
       description: the robot.
-      terrain: in words, drawn anew for each episode, or a ground; the world's own if
-        None.
-      transformer: of a grounded world: an object, which is copied so that no two
-        environments share one, or the folder of a written one.
-      options: of the world inside; its own if None.
+      terrain: ground in words, drawn anew for each episode, or a fixed ground; the
+        world's own if None.
+      transformer: action transformer of a grounded world: an object, which is copied so
+        that no two environments share one, or the folder of a written one.
+      options: options of the sim or the real world; its own if None.
     """
 
     name: WorldName
@@ -56,13 +56,13 @@ class EnvWorld:
 
     @property
     def inner(self) -> str:
-        """Name of the world that computes the physics."""
+        """Name of the world that computes the physics: "sim" or "real"."""
         return "sim" if self.name == "grounded" else self.name
 
     def make(
         self, of_ground: np.random.SeedSequence, of_noise: np.random.SeedSequence
     ) -> World:
-        """The world of one episode, by the seeds of its ground and of its noise."""
+        """The world of one episode, from the seeds of its ground and of its noise."""
         grounds = [self._ground(of_ground)]
         robot, seeds = self.description, [of_noise]
         world = worlds.make(self.inner, robot, grounds, seeds, self.options)

@@ -1,4 +1,4 @@
-"""The paper's claims on cliff walking, checked against the returns."""
+"""The SGAT paper's claims on cliff walking, checked against the returns."""
 
 from collections.abc import Sequence
 
@@ -6,11 +6,11 @@ from experiments.transfer.claims import Claim
 from experiments.transfer.cliff_study.study import GAT, OPTIMUM, SGAT, Row
 
 ROUNDING = 1e-9
-"""Differences of returns up to this are rounding."""
+"""Largest difference of two returns that counts as rounding."""
 
 
 def check_claims(rows: Sequence[Row]) -> list[Claim]:
-    """The claims that these noise values can show, with their critical numbers."""
+    """The claims that these noise values can decide, with the numbers that decide."""
     ends = [row for row in rows if row["noise"] in (0, 1)]
     between = [row for row in rows if row["noise"] not in (0, 1)]
     claims = []
@@ -60,6 +60,6 @@ def _optimal(rows: Sequence[Row]) -> Claim:
 
 
 def _more(row: Row, method: str, other: str, value: str) -> float:
-    """Return of one method minus that of another."""
+    """Return of one method minus that of another; `value` is "mean" or "exact"."""
     methods = row["methods"]
     return float(methods[method][value] - methods[other][value])

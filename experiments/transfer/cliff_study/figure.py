@@ -28,9 +28,11 @@ CLIFF_COLOUR, GOAL_COLOUR = "#f4c7b8", "#bfe3d0"
 def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":
     """Returns of all methods above; below, the paths of GAT and SGAT.
 
+    The paths are those at the noise value where the two methods differ most.
+
     Args:
-      rows: the results for each noise value; at least one.
-      grid: number of rows and columns.
+      rows: results, one entry for each noise value; at least one.
+      grid: number of rows and of columns of the grid world.
     """
     from matplotlib.figure import Figure
 
@@ -42,7 +44,7 @@ def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":
 
 
 def _gap(row: Row) -> float:
-    """Return of SGAT's policy minus that of GAT's."""
+    """Exact return of SGAT's policy minus that of GAT's."""
     return float(row["methods"][SGAT]["exact"] - row["methods"][GAT]["exact"])
 
 

@@ -7,26 +7,26 @@ from groundwalk.errors import BadValueError
 from sgat.tabular.mdp import FiniteMdp
 
 MOVES = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}
-"""Change of row and column by each action, in the SGAT paper's order."""
+"""Change of (row, column) by each action, in the SGAT paper's order."""
 
 GOAL, CLIFF, STEP = 100.0, -10.0, -0.1
-"""Rewards of the SGAT paper: for the goal, for the cliff, and for every step, also
-the last one."""
+"""Rewards of the SGAT paper: for the goal, for the cliff, and for every step, the last
+one included."""
 
 LEAST_ROWS, LEAST_COLUMNS = 2, 3
-"""Smallest grid that has a cliff."""
+"""Numbers of rows and columns of the smallest grid that has a cliff."""
 
 
 def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
-    """The grid world of the SGAT paper's figures on cliff walking.
+    """The grid world in the SGAT paper's study of cliff walking.
 
     Cell (row, column) is state row * columns + column, with the first row on top.
     Episodes begin at the bottom left. They end at the goal, bottom right, or in the
     cliff: the cells of the bottom row in between. A move into a wall has no effect.
 
     Args:
-      rows: rows of the grid.
-      columns: columns of the grid.
+      rows: number of rows of the grid.
+      columns: number of columns of the grid.
       noise: probability, at each step, that the move is a random one of the four
         instead of the chosen one. Without noise this world is the simulator.
 
@@ -56,11 +56,11 @@ def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
 
 
 def intended_path(sim: FiniteMdp, policy: IntArray) -> list[int]:
-    """The states that a policy passes if no move is random.
+    """The states that a policy visits if no move is random.
 
     Args:
-      sim: a deterministic world.
-      policy: (S,) actions.
+      sim: a deterministic world with S states.
+      policy: (S,) action in each state.
 
     Returns:
       States from the start to an end, or to the first state that is visited twice.

@@ -1,4 +1,4 @@
-"""Tables and page of cliff walking."""
+"""Tables and result page of the study of cliff walking."""
 
 from collections.abc import Sequence
 
@@ -30,12 +30,15 @@ and right is taken.
 
 
 def returns_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows of mean returns with their standard errors."""
+    """Headings and rows of each method's mean return with its standard error."""
     return _table(rows, "{mean:.2f} ± {standard_error:.2f}")
 
 
 def _table(rows: Sequence[Row], form: str) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows, with a column for each method."""
+    """Headings and rows: a row for each noise value, a column for each method.
+
+    `form` formats a method's results, for example "{exact:.3f}".
+    """
     texts = [
         [f"{row['noise']:g}"]
         + [form.format_map(row["methods"][name]) for name in METHODS]
@@ -66,10 +69,10 @@ def write_cliff_page(
     """Write `result.md` and `report.html`; the figure is in the folder already.
 
     Args:
-      folder: of the run.
-      study: how the methods were compared.
-      rows: results for each noise value.
-      claims: the paper's claims, checked.
+      folder: the run's folder.
+      study: settings with which the methods were compared.
+      rows: results, one entry for each noise value.
+      claims: the SGAT paper's claims, checked.
     """
     cut = sum(method["cut"] for row in rows for method in row["methods"].values())
     notes = NOTES.format(

@@ -14,24 +14,25 @@ from sgat.tabular.planning import expected_return, policy_iteration
 from sgat.tabular.rollouts import STEP_LIMIT, roll_out
 
 UNGROUNDED, GAT, SGAT, OPTIMUM = METHODS = ("no grounding", "GAT", "SGAT", "optimum")
-"""Methods: planned in the sim, in the sim grounded by GAT or by SGAT, and in the
-  real world itself."""
+"""Methods: planning in the sim, in the sim grounded by GAT or by SGAT, and in the real
+world itself."""
 
 SAMPLES = {GAT: False, SGAT: True}
-"""Whether a grounding samples next states; see `grounded_sim`."""
+"""Whether a grounding samples next states, or takes the most likely one."""
 
 Row = dict[str, Any]
-"""Results for one `noise` value: numbers of each of its `methods`."""
+"""Results in one real world: its `noise`, and the numbers of each method under
+`methods`."""
 
 
 @dataclass(frozen=True)
 class CliffStudy:
-    """How methods are compared.
+    """Settings with which methods are compared in cliff walking.
 
     Attributes:
-      rows: rows of the grid.
-      columns: columns of the grid.
-      episodes: real episodes in which each policy is tried.
+      rows: number of rows of the grid.
+      columns: number of columns of the grid.
+      episodes: number of real episodes in which each policy is tried.
       loop: settings of grounding and planning.
     """
 
@@ -51,10 +52,10 @@ def compare(study: CliffStudy, noise: float, seed: np.random.SeedSequence) -> Ro
     """Find each method's policy, and try it in the real world.
 
     Args:
-      study: the grid, and how much is tried.
+      study: settings of the comparison.
       noise: probability of a random move in the real world.
-      seed: of the real world's outcomes; all methods get the same random numbers, so
-        that differences come from the methods.
+      seed: seed of the real world's outcomes; all methods get the same random numbers,
+        so that differences come from the methods.
     """
     of_data, of_trials = seed.spawn(2)
     sim = cliff_walking(study.rows, study.columns)

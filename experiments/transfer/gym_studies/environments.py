@@ -16,8 +16,7 @@ from sgat.transformers.transformer import Transformer
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 
 NOISY_SIM, NOISY_REAL = "noisy-sim", "noisy-real"
-"""Settings of a real world: it differs from the sim by noise on actions only, or by
-noise and masses."""
+"""Ways in which a real world differs from the sim: noise on actions; noise and mass."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +24,12 @@ class Domain:
     """An environment of Gymnasium, which is the sim, and how its real world differs.
 
     Attributes:
-      name: of the domain, as on the command line.
+      name: name of the domain on the command line.
       environment: id of the environment in Gymnasium.
       mass_factor: mass and inertia of the real world's heavier bodies over the sim's.
       heavy_bodies: names of those bodies; all bodies if empty.
-      control_cost: what the reward charges for the square of an action of 1.
-      settings: of real worlds that the SGAT paper shows.
+      control_cost: cost in the reward per squared action.
+      settings: real worlds of the SGAT paper, `NOISY_SIM` or `NOISY_REAL`.
     """
 
     name: str
@@ -43,12 +42,15 @@ class Domain:
     def sim(self, transformer: Transformer | None = None) -> Environment:
         """The sim, behind an action transformer if one is given.
 
-        The reward is that of the policy's own action, as in the SGAT paper.
+        The reward charges for the policy's own action, as in the SGAT paper.
         """
         return self._behind(transformer, self._plain())
 
     def noisy_sim(self, noise: float) -> Environment:
-        """The sim with noise on its actions, in the unit of `real`."""
+        """The sim with Gaussian noise on its actions.
+
+        Its standard deviation is a fraction of half of the action's range.
+        """
         return self._behind(self._noise(noise), self._plain())
 
     def real(self, setting: str, noise: float) -> Environment:
@@ -86,7 +88,7 @@ class Domain:
         return GroundedEnv(env, transformer, self._reward_of())
 
     def _reward_of(self) -> RewardOf | None:
-        """Corrects the reward: the control cost is that of the policy's action."""
+        """A function that makes the reward charge for the policy's own action."""
         if not self.control_cost:
             return None
 

@@ -1,4 +1,4 @@
-"""Figure of a Gymnasium study: each method's return on real, over noise."""
+"""Figure of a Gymnasium study: each method's return in the real world, over noise."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ GROUP_WIDTH = 0.8
 
 
 def returns_figure(rows: Sequence[Row]) -> "Figure":
-    """Bars for the methods over noise, a dashed line for training on real.
+    """Bars for the methods over noise, dashed lines for training in the real world.
 
     Args:
       rows: results from `rows_of`, at least one; each setting has its own axes.

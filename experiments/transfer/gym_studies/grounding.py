@@ -21,22 +21,22 @@ if TYPE_CHECKING:
     from sb3_contrib import TRPO
 
 REAL_EXPLORATION, SIM_EXPLORATION = 0.1, 0.5
-"""Shares of random actions while data are collected in the real world and in the sim:
-the inverse model of the sim needs varied actions."""
+"""Shares of random actions while data are collected, in the real world and in the sim,
+whose inverse model needs varied actions."""
 
 LOOKED_AT = 500
 """Largest number of real transitions on which transformed actions are measured."""
 
 HELD_OUT = 0.2
-"""Share of the data that models do not learn from, for their measures."""
+"""Share of the data that models do not learn from, but are measured on."""
 
 STRETCH = 50
-"""Consecutive steps that are held out together."""
+"""Number of consecutive steps that are held out together."""
 
 
 @dataclass(frozen=True)
 class GroundingConfig:
-    """How much data a grounding step collects.
+    """Number of transitions that a grounding step collects.
 
     Attributes:
       real_steps: number of transitions of the real world.
@@ -72,12 +72,12 @@ def ground(
     """Collect data in both worlds with a policy, and fit the models.
 
     Args:
-      model: the policy, trained in the sim so far.
+      model: the policy, which was trained in the sim.
       domain: the environment.
       real: setting and noise of the real world; see `Domain.real`.
-      config: how much data.
-      name: of a grounding in `sgat.transformers`.
-      seed: of everything except the policy's own random actions.
+      config: number of transitions to collect.
+      name: name of a grounding in `sgat.transformers`.
+      seed: seed of everything except the policy's own random actions.
     """
     low, high = domain.bounds()
     of_real, of_sim, of_forward, of_inverse, of_look, of_more = seed.spawn(6)
@@ -107,7 +107,10 @@ def _collect(
     exploration: float,
     seed: np.random.SeedSequence,
 ) -> tuple[Transitions, Transitions]:
-    """Transitions to learn from, and transitions that are held out."""
+    """Run a policy; give transitions to learn from, and transitions that are held out.
+
+    `exploration` is the share of random actions, from 0 to 1.
+    """
     rng = np.random.default_rng(seed)
     policy = exploring(model, env.action_space, exploration, rng)
     return in_stretches(collect(env, policy, steps, rng)).split(HELD_OUT, rng)
@@ -129,7 +132,7 @@ def in_stretches(transitions: Transitions) -> Transitions:
 def _actions(
     transformer: Transformer, real: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, float]:
-    """Mean and spread of what the transformer adds to actions, in the action's unit."""
+    """Mean and standard deviation of what a transformer adds, in the action's unit."""
     n = min(LOOKED_AT, real.n)
     transformer.reset(seed.spawn(n))
     asked = real.action[:n]
@@ -146,16 +149,16 @@ def noise_ratio(
     """Noise that a transformer adds to actions, relative to the real world's noise.
 
     Both are root mean squares. The real world's noise is expressed as actions of the
-    sim: the action that leads to the real next state, minus the action that leads to
-    the predicted mean of it. Below 1 the grounded sim is less noisy than the real
-    world. That happens for distributions with independent dimensions if one noise moves
-    several dimensions: the inverse model averages out what the samples disagree on.
+    sim: the action that leads to the real next state, minus the one that leads to the
+    predicted mean. Below 1, the grounded sim is less noisy than the real world. That
+    happens if one noise moves several dimensions, but the model samples each dimension
+    independently: the inverse model then averages the differences out.
 
     Args:
-      transformer: one that adds noise.
+      transformer: a transformer that adds noise.
       inverse: its inverse model.
-      real: transitions that the models have not seen.
-      seed: of the transformer's noise.
+      real: real transitions that the models have not seen.
+      seed: seed of the transformer's noise.
     """
     n = min(LOOKED_AT, real.n)
     state, asked = real.state[:n], real.action[:n]

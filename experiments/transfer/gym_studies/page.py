@@ -54,7 +54,7 @@ def write_gym_page(
     """Write `result.md` and `report.html` into the run's folder.
 
     Args:
-      folder: of the run; the figure is in it already.
+      folder: the run's folder; the figure is in it already.
       title: the study's question.
       figure: file name of the figure.
       what: name of the size, and the study.

@@ -17,18 +17,15 @@ NUMBERS = (
 )  # fmt: skip
 
 Row = dict[str, Any]
-"""Results in one real world: a `setting`, a `noise`, and numbers of each of its
-`methods`."""
+"""Results in one real world: its `setting` and `noise`, and the numbers of each method
+under `methods`."""
 
 
 def rows_of(cells: Sequence[Cell]) -> list[Row]:
     """A row for each setting and noise, in the order of the cells.
 
-    Returns are means over seeds with their standard errors, and the values of each
-    seed. All other numbers of a method's cells are averaged.
-
-    Args:
-      cells: results of single seeds.
+    A cell is the result of one method with one seed. A row has the mean return over
+    seeds, its standard error, and each seed's return; all other numbers are averaged.
     """
     worlds = dict.fromkeys((cell["setting"], cell["noise"]) for cell in cells)
     rows = []
@@ -61,7 +58,7 @@ def _mean(values: FloatArray) -> dict[str, float]:
 
 
 def check_claims(rows: Sequence[Row]) -> list[Claim]:
-    """The claims that these methods can show, about deterministic policies."""
+    """The claims that these rows can decide, all about deterministic policies."""
     claims = []
     for setting in dict.fromkeys(row["setting"] for row in rows):
         row = max(
@@ -78,7 +75,7 @@ def check_claims(rows: Sequence[Row]) -> list[Claim]:
 
 
 def _more_than_gat(row: Row, sampled: str) -> Claim:
-    """The paper's main claim, in a setting's noisiest world."""
+    """The claim that `sampled`, a kind of SGAT, returns more than GAT."""
     sgat, gat = (row["methods"][name][WAYS[0]] for name in (sampled, GAT))
     more = _mean(np.subtract(sgat["returns"], gat["returns"]))
     return Claim(
@@ -89,7 +86,7 @@ def _more_than_gat(row: Row, sampled: str) -> Claim:
 
 
 def _below_real(row: Row) -> Claim:
-    """Whether the training on real was long enough to be an upper bound."""
+    """The claim that no method returns more than training on real, an upper bound."""
     found = {name: method[WAYS[0]] for name, method in row["methods"].items()}
     best = max(found, key=lambda name: float(found[name]["mean"]))
     return Claim(
@@ -101,7 +98,7 @@ def _below_real(row: Row) -> Claim:
 
 
 def returns_table(rows: Sequence[Row], way: str) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows of mean returns on real, tried in one of `WAYS`."""
+    """Headings and rows of mean returns on real; `way` is one of `WAYS`."""
     names = list(rows[0]["methods"])
     texts = [
         [row["setting"], f"{row['noise']:g}"]
@@ -112,7 +109,7 @@ def returns_table(rows: Sequence[Row], way: str) -> tuple[list[str], list[list[s
 
 
 def measures_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows of numbers on how each policy was found."""
+    """Headings and rows of the cost and quality of each method's grounding."""
     texts = []
     for row in rows:
         for name, method in row["methods"].items():

@@ -17,14 +17,17 @@ SizeName = Literal["full", "reduced", "smoke"]
 class Size:
     """Values for the options of a study that are not given.
 
+    Noises and envelopes are standard deviations of the noise on actions, as fractions
+    of half of the action's range.
+
     Attributes:
       seeds: number of trainings of each method.
-      noises: of the real worlds' actions; see `Domain.real`.
+      noises: noise of each real world.
       timesteps: environment steps in each training.
       episodes: real episodes in which each policy is tried.
       real_steps: transitions of the real world that a grounding collects.
       sim_steps: transitions of the sim that a grounding collects.
-      envelopes: noise levels that ANE chooses from; units as in `Domain.real`.
+      envelopes: noise levels that the action noise envelope (ANE) chooses from.
       search_episodes: real episodes by which ANE judges a level.
       trpo: parameters of the training algorithm.
     """
@@ -42,10 +45,10 @@ class Size:
 
 PENDULUM_TRPO = TrpoConfig(5000, 0.98, 0.9, 0.01, 20, 2.35e-4, 10, 0.00428, 125)
 CHEETAH_TRPO = TrpoConfig(2048, 0.99, 0.95, 0.01, 15, 0.1, 5, 1e-3, 128)
-"""Parameters from `rl_gat`, later code by the authors of the grounding papers."""
+"""Parameters from `rl_gat`, later code by the authors of the GAT and SGAT papers."""
 
 SMOKE_TRPO = TrpoConfig(64, 0.99, 0.95, 0.01, 5, 0.1, 1, 1e-3, 64)
-"""Parameters that train nothing useful, but everything runs once."""
+"""Parameters for a smoke test: every step runs, but nothing useful is learned."""
 
 SMOKE = Size(2, (0.5,), 64, 2, 200, 200, (0.2, 0.5), 1, SMOKE_TRPO)
 
@@ -101,4 +104,4 @@ SIZES: Mapping[str, Mapping[SizeName, Size]] = {
         "smoke": SMOKE,
     },
 }
-"""Sizes by the name of the domain."""
+"""Sizes of the studies, by the domain's name and the size's."""

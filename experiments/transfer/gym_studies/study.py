@@ -1,4 +1,4 @@
-"""The grid of a Gymnasium study: its jobs, and how each policy and cell is computed."""
+"""The jobs of a Gymnasium study: train policies, and try them in the real world."""
 
 import itertools
 from dataclasses import dataclass
@@ -26,15 +26,14 @@ NONE, GAT, SGAT, SGAT_FULL, ANE, REAL = METHODS = (
     "none", "gat", "sgat", "sgat-full", "ane", "real"
 )  # fmt: skip
 """Methods that are compared by default: no grounding, three groundings by their names
-in `sgat.transformers`, action noise envelope, training in the real world."""
+in `sgat.transformers`, action noise envelope (ANE), training in the real world."""
 
 KNOWN = (*METHODS, "sgat-low-rank", "sgat-mixture")
-"""Plan of the study: all methods that can be compared. To try another grounding, add
-its name here."""
+"""All methods that can be compared. To try another grounding, add its name here."""
 
 OF_SIM, OF_DATA, OF_TRAINING, OF_TRIALS, OF_SEARCH = range(5)
-"""Numbers of the streams of random numbers; all methods share them, so that differences
-between results come from the methods."""
+"""Numbers by which seeds are derived for different uses; all methods share the seeds,
+so that differences between results come from the methods."""
 
 Cell = dict[str, Any]
 """The result of one method with one seed in one real world."""
@@ -44,19 +43,22 @@ Cell = dict[str, Any]
 class GymStudy:
     """Everything that the results of a study depend on.
 
+    Noises and envelopes are standard deviations of the noise on actions, as fractions
+    of half of the action's range.
+
     Attributes:
       domain: the environment.
-      settings: of the real world.
-      noises: of the real worlds' actions; see `Domain.real`.
-      methods: to compare, some of `KNOWN`.
+      settings: how real worlds differ from the sim; see `Domain.real`.
+      noises: noise of each real world.
+      methods: methods to compare, some of `KNOWN`.
       seeds: number of trainings of each method, at least 2.
       timesteps: environment steps in each training.
       episodes: real episodes in which each policy is tried, at least 2.
       trpo: parameters of the training algorithm.
-      grounding: how much data a grounding collects.
-      envelopes: noise levels that ANE chooses from; units as in `Domain.real`.
+      grounding: number of transitions that a grounding collects.
+      envelopes: noise levels that the action noise envelope (ANE) chooses from.
       search_episodes: real episodes by which ANE judges a level.
-      seed: all random numbers follow from it.
+      seed: number from which all random numbers follow.
     """
 
     domain: Domain
@@ -93,7 +95,10 @@ class GymStudy:
                 raise BadValueError(f"no {kind} is given; known are {known}")
 
     def stages(self) -> list[list["Job"]]:
-        """All jobs in three stages; each stage needs the files of those before it."""
+        """All jobs in three stages: policies of the sim, policies of ANE, all results.
+
+        Each stage needs the files of those before it.
+        """
         every = range(self.seeds)
         sims = [Job(k, NONE) for k in every]
         levels = self.envelopes if ANE in self.methods else ()
@@ -103,7 +108,7 @@ class GymStudy:
         return [sims, around, cells]
 
     def seed_of(self, k: int, stream: int) -> np.random.SeedSequence:
-        """The seed of training number `k` for one stream, such as `OF_DATA`."""
+        """The seed of training number `k` for one use, such as `OF_DATA`."""
         return np.random.SeedSequence(self.seed, spawn_key=(k, stream))
 
 
@@ -114,8 +119,8 @@ class Job:
     Attributes:
       k: number of the training, from 0.
       method: one of `KNOWN`.
-      noise: of the real world, or of the envelope if there is no real world.
-      setting: of the real world; empty for a policy that never sees it.
+      noise: noise on actions of the real world, or of ANE's sim if `setting` is empty.
+      setting: kind of real world; empty for a policy that never sees it.
     """
 
     k: int
@@ -133,12 +138,12 @@ class Job:
 
 
 def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
-    """Train a policy that other jobs start from, or compute a cell.
+    """Train a policy that other jobs start from, or compute a method's result (cell).
 
     Args:
       study: the study that the job is a part of.
-      folder: of the run, with the policies of earlier stages.
-      job: what to do.
+      folder: the run's folder, with the policies of earlier stages.
+      job: the job to do.
 
     Returns:
       A cell, which the caller writes into the job's file; None if the job was to train
@@ -160,7 +165,7 @@ def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
 
 
 def _cell(study: GymStudy, folder: Path, job: Job) -> Cell:
-    """Find the method's policy, and try its mean and its random actions on real."""
+    """Find a method's policy; try its mean and its random actions in the real world."""
     found, facts = _policy(study, folder, job)
     cell: Cell = {
         "setting": job.setting,
@@ -181,7 +186,7 @@ def _cell(study: GymStudy, folder: Path, job: Job) -> Cell:
 
 
 def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, float]]:
-    """The policy of a cell's method, and numbers on how it was found."""
+    """The policy that a job's method finds, and the cost and quality of the way."""
     start = folder / Job(job.k, NONE).file
     if job.method == NONE:
         return load(start), {"real_steps": 0}
@@ -214,7 +219,7 @@ def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, flo
 def _best_envelope(
     study: GymStudy, folder: Path, job: Job
 ) -> tuple[Any, dict[str, float]]:
-    """ANE: of the policies for all noise levels, the one that returns most on real."""
+    """The policy of ANE: of those for all noise levels, the best in the real world."""
     seed = number(study.seed_of(job.k, OF_SEARCH))
     found, steps = [], 0
     for level in study.envelopes:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MakeEnvironment: TypeAlias = Callable[[], Environment]
 
 ENVIRONMENTS = 8
-"""Environments side by side in one training: the policy answers all in one call."""
+"""Number of environments side by side in a training; one call gives all actions."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class TrpoConfig:
       batch: steps between two updates, in all environments together.
       gamma: discount factor per step.
       gae_lambda: decay of the generalised advantage estimate.
-      max_kl: trust region: largest mean KL divergence of an update.
+      max_kl: largest mean KL divergence of an update: the trust region.
       cg_steps: largest number of conjugate-gradient steps.
-      cg_damping: added to the diagonal of the Fisher matrix.
+      cg_damping: number added to the diagonal of the Fisher matrix.
       value_epochs: passes of the value function through a batch.
       value_rate: learning rate of the value function.
       value_batch: size of the value function's minibatches.
@@ -80,10 +80,10 @@ def train(
     seed: int,
     start: Path | None = None,
 ) -> "TRPO":
-    """A policy after at least a given number of steps of training.
+    """Train a policy for at least a given number of steps.
 
-    Stable-Baselines draws from the global generators of torch and NumPy, and seeds
-    them: call this in a process of its own.
+    Stable-Baselines seeds and uses the global generators of torch and NumPy: call this
+    in a process of its own.
 
     Args:
       make: makes a new environment.
@@ -112,7 +112,7 @@ def save(model: "TRPO", path: Path) -> None:
 
 
 def load(path: Path) -> "TRPO":
-    """Read a file of `save`. It can run code of the file: use own files only."""
+    """Read a file that `save` wrote; it may run code in it, so trust its source."""
     from sb3_contrib import TRPO
 
     return TRPO.load(path, device="cpu")
@@ -120,7 +120,7 @@ def load(path: Path) -> "TRPO":
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """Results of some episodes.
+    """Returns of episodes, and their number of steps.
 
     Attributes:
       returns: (episodes,) undiscounted sums of rewards.
@@ -172,13 +172,15 @@ def exploring(
     exploration: float,
     rng: np.random.Generator,
 ) -> Policy:
-    """The policy with random actions, of which a share is drawn evenly from the space.
+    """The policy, with a share of its actions replaced by uniformly random ones.
+
+    The policy's own actions are random as well.
 
     Args:
       model: the policy.
-      space: of the actions.
-      exploration: share of evenly drawn actions, from 0 to 1.
-      rng: decides which actions are evenly drawn.
+      space: the actions' space, from which the random ones are drawn.
+      exploration: share of actions that are replaced, from 0 to 1.
+      rng: decides which actions are replaced, and by which.
     """
     space.seed(int(rng.integers(2**31)))
 

@@ -1,4 +1,4 @@
-"""Figure of predicted against real fall rates and speeds."""
+"""Figure of each gait's predicted fall rate and speed against the real ones."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -11,15 +11,14 @@ if TYPE_CHECKING:
 FIGURE = "transfer_nao_falls.png"
 
 PANELS = (("fall_rate", "fall rate", 1.0), ("speed_cm_s", "speed [cm/s]", 40.0))
-"""For each row of panels: key of the results, label, and end of the axes."""
+"""For each row of panels: key of the results, label, and upper end of the axes."""
 
 
 def falls_figure(state: Mapping[str, Any]) -> "Figure":
     """A column for each grounding: fall rates above, speeds below.
 
-    Args:
-      state: fall rates and speeds [cm/s] of each gait, for "real" and for each
-        grounding.
+    `state` has the fall rates and speeds [cm/s] of the gaits, in the real world
+    ("real") and as each grounding's sim predicts them.
     """
     from matplotlib.figure import Figure
 

@@ -1,4 +1,4 @@
-"""Measures of the groundings' models, before any gait is tried in a grounded sim."""
+"""Measures of the groundings' forward models, before gaits walk in grounded sims."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -28,11 +28,10 @@ if TYPE_CHECKING:
 
 MEASURES_FIGURE = "transfer_nao_falls_measures.png"
 GROUNDINGS = (NONE, GAT, SGAT, ENSEMBLE, UNEVEN)
-"""Plan of the study of falls: sims whose predictions are compared, by the titles of
-their groundings."""
+"""Sims whose predictions of falls are compared, by the titles of their groundings."""
 
 MEASURED = (SGAT, ENSEMBLE)
-"""Groundings whose models are measured: those that predict a distribution."""
+"""Groundings whose forward models are measured: those that predict a distribution."""
 
 ROWS = 500
 """Largest number of states at which transformed actions are examined."""
@@ -68,8 +67,8 @@ def measures_of(
       seed: of the transformers' noise.
 
     Returns:
-      For each grounding the fields of `GroundingReport`, and mean and spread of what
-      its transformer adds to the commands [rad, by joint].
+      For each grounding the attributes of `GroundingReport`, and the mean and standard
+      deviation of what its transformer adds to each joint's command [rad].
     """
     senses = leg_senses(robots.get(ROBOT))
     found = {}
@@ -91,7 +90,7 @@ def measures_of(
 def _added(
     transformer: ActionTransformer, unseen: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, list[float]]:
-    """Mean and spread of what a transformer adds to each joint's command [rad]."""
+    """Mean and standard deviation of a transformer's addition to each command [rad]."""
     rows = np.random.default_rng(seed).choice(unseen.n, min(ROWS, unseen.n), False)
     transformer.reset(np.random.SeedSequence(seed.entropy).spawn(len(rows)))
     action = unseen.action[rows]
@@ -103,7 +102,7 @@ def _added(
 
 
 def measure_rows(measures: Measures) -> list[list[str]]:
-    """A row of the table for each grounding: medians over joints or dimensions."""
+    """A row of texts for each grounding: medians over joints or a state's columns."""
     joints = _leg_joints()
     rows = []
     for name, found in measures.items():
@@ -130,11 +129,11 @@ def measure_rows(measures: Measures) -> list[list[str]]:
 
 
 def measures_figure(measures: Measures) -> "Figure":
-    """Four panels on how good the models of each grounding are.
+    """Four panels on how well the forward models of each grounding predict.
 
     From left to right: share of one tick's change that is predicted; error of the
-    joints over the ticks predicted ahead; share of residuals within each interval;
-    correlation of residuals over time.
+    joints [mrad] over the time predicted ahead [ms]; share of residuals within each
+    interval; correlation of residuals over time.
     """
     from matplotlib.figure import Figure
 

@@ -1,4 +1,4 @@
-"""Predicted against real falls and speeds: numbers, table and page."""
+"""How well sims predict real falls and speeds of gaits: numbers, table and page."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -21,7 +21,7 @@ from groundwalk.arrays import FloatArray
 from sgat.transformers.catalogue import grounding
 
 GOAL = 0.7
-"""Correlation of predicted and real fall rates that is aimed for."""
+"""Correlation of predicted and real fall rates with which a sim counts as good."""
 MEASURES = "measures"
 """Key of the models' measures in the run's results."""
 HEADINGS = (
@@ -34,12 +34,11 @@ HEADINGS = (
 )
 
 Row = dict[str, Any]
-"""Numbers of one grounding: its name, and correlation and errors of falls and
-speeds."""
+"""Numbers of a grounding: its name, and how well it predicts fall rates and speeds."""
 
 
 def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
-    """How well each grounding predicts the falls and speeds of the stage "real"."""
+    """How well each grounding in `state` predicts the real fall rates and speeds."""
     real = {name: np.array(values) for name, values in state["real"].items()}
     rows: list[Row] = []
     for name in GROUNDINGS:
@@ -57,14 +56,14 @@ def prediction_rows(state: Mapping[str, Any]) -> list[Row]:
 
 
 def correlation(predicted: FloatArray, real: FloatArray) -> float | None:
-    """Pearson's correlation of (gaits,) values; None if one side does not vary."""
+    """Pearson's correlation of two arrays (gaits,); None if one of them is constant."""
     if predicted.std() == 0 or real.std() == 0:
         return None
     return float(np.corrcoef(predicted, real)[0, 1])
 
 
 def table_of(rows: Sequence[Row]) -> list[list[str]]:
-    """The cells of the page's table, as text."""
+    """A row of texts for each grounding, under `HEADINGS`."""
     table = []
     for row in rows:
         falls, speed = row["fall_rate"], row["speed_cm_s"]
@@ -103,8 +102,8 @@ def write_falls_page(
     """Write `result.md` and `report.html`.
 
     Args:
-      folder: of the run.
-      rows: from `prediction_rows`.
+      folder: the run's folder.
+      rows: numbers of each grounding, from `prediction_rows`.
       state: the results that the rows were made from.
       trials: number of real walks of each gait.
     """

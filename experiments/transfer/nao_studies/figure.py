@@ -14,10 +14,9 @@ COLOURS = ("0.6", "#56b4e9", "#0072b2")
 
 
 def cells_figure(cells: Sequence[Mapping[str, Any]]) -> "Figure":
-    """A row for each cell: speed with its spread, share of falls with its interval.
+    """A row for each cell: speed with standard deviation, falls with 95 % interval.
 
-    Args:
-      cells: results of the study; see `NaoStudy`.
+    A cell is the result of one method after one grounding step.
     """
     from matplotlib.figure import Figure
 

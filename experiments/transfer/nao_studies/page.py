@@ -20,7 +20,7 @@ from terrain import Flat, Lumps, configuration, parse
 
 CELLS = "cells"
 DIAGNOSED = "diagnosed"
-"""Marks methods that use the sim corrected by a diagnosis."""
+"""Word in the names of methods whose sim a diagnosis has corrected."""
 DIAGNOSED_SIM = f"{DIAGNOSED} sim"
 HEADINGS = ("method", "step", "speed [cm/s]", "falls", "95 % interval", "real walks")
 GOAL_SPEED_CM_S, GOAL_FALLS, SIGNIFICANT = 18.0, 0.1, 0.05
@@ -28,11 +28,11 @@ GOAL_SPEED_CM_S, GOAL_FALLS, SIGNIFICANT = 18.0, 0.1, 0.05
 the SGAT paper; and the p value below which a difference is called significant."""
 
 Cell = Mapping[str, Any]
-"""Result of one method after one grounding step; see `NaoStudy`."""
+"""Result of one method after one grounding step: its gait, speed [cm/s] and falls."""
 
 
 def table_of(cells: Sequence[Cell]) -> list[list[str]]:
-    """The cells of the page's table, as text."""
+    """A row of texts for each cell, under `HEADINGS`; a cell is a method's result."""
     rows = []
     for cell in sorted(cells, key=lambda cell: cell["step"]):
         low, high = wilson(cell["falls"], cell["trials"])
@@ -50,9 +50,9 @@ def table_of(cells: Sequence[Cell]) -> list[list[str]]:
 
 
 def more_falls_p(often: Cell, seldom: Cell) -> float:
-    """Fisher's exact test, one-sided: p value of the first cell's more frequent falls.
+    """Fisher's exact test that the first method's gait falls more often: p, one-sided.
 
-    The null hypothesis is that both cells fall equally often (Fisher 1922).
+    The null hypothesis is that both gaits fall equally often (Fisher 1922).
     """
     from scipy.stats import fisher_exact
 
@@ -63,9 +63,9 @@ def more_falls_p(often: Cell, seldom: Cell) -> float:
 
 
 def faster_p(fast: Cell, slow: Cell) -> float:
-    """Welch's test, one-sided: p value of the first cell's higher speed.
+    """Welch's test that the first method's gait is faster: p value, one-sided.
 
-    The null hypothesis is that both cells are equally fast (Welch 1947).
+    The null hypothesis is that both gaits are equally fast (Welch 1947).
     """
     from scipy.stats import ttest_ind_from_stats
 
@@ -81,7 +81,7 @@ def faster_p(fast: Cell, slow: Cell) -> float:
 def claims_of(cells: Sequence[Cell]) -> list[Claim]:
     """The claims of the SGAT paper's table, checked on the study's cells.
 
-    There are none if a method that they are about was not tried.
+    The list is empty if a method that they need was not tried.
     """
     at = {(cell["method"], cell["step"]): cell for cell in cells}
     if all((name, 1) in at for name in (NONE, DIAGNOSED_SIM)):
@@ -132,10 +132,10 @@ def write_nao_page(
     """Write `result.md` and `report.html`.
 
     Args:
-      folder: of the run.
-      cells: results so far.
+      folder: the run's folder.
+      cells: results so far, each of a method after a grounding step.
       planned: number of cells that the study will have.
-      course: on which gaits were tried.
+      course: real course on which the gaits were tried.
     """
     trials = cells[0]["trials"]
     missing = planned - len(cells)
@@ -180,7 +180,7 @@ def _ground(course: RealCourse) -> str:
 
 
 def _own_groundings(cells: Sequence[Cell]) -> list[str]:
-    """Explains the groundings among the cells that are not the SGAT paper's."""
+    """Markdown lines on those of the cells' groundings that the SGAT paper lacks."""
     lines: list[str] = []
     for one in groundings().values():
         if any(cell["method"].startswith(one.title) for cell in cells):
@@ -194,7 +194,7 @@ def _own_groundings(cells: Sequence[Cell]) -> list[str]:
 
 
 def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
-    """Lines on hidden physics of the real world, and on what a diagnosis does."""
+    """Markdown lines on the physics that the sim lacks, and on diagnosed sims."""
     if not course.hidden:
         return []
     found = any(DIAGNOSED in cell["method"] for cell in cells)
@@ -208,7 +208,7 @@ def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
 
 
 def answer_of(cells: Sequence[Cell]) -> list[str]:
-    """The best gait beside the one tuned in the plain sim, and whether it is good."""
+    """Sentences: the best gait, the one tuned in the plain sim, is the goal reached."""
     best = max(cells, key=worth_cm_s)
     step = f", step {best['step']}" if best["step"] else ""
     good = "It reaches" if _is_good(best) else "It does not reach"
@@ -236,12 +236,11 @@ def _walked(cell: Cell) -> str:
 
 
 def worth_cm_s(cell: Cell) -> float:
-    """Speed minus the SGAT paper's cost of falls [cm/s]: what a gait is worth on real.
+    """Speed minus the SGAT paper's cost of falls [cm/s], by which gaits are compared.
 
     Searches in a grounded sim charge `FALL_PENALTY_WALK_CM_S`, four times as much,
-    since their walks are short. Here, where whole courses were walked, the paper's
-    value is
-    used: to name the best gait, and for ANE to choose its level of noise.
+    since their walks are short. Here whole courses were walked, so the paper's value is
+    used.
     """
     falls = FALL_PENALTY_CM_S * cell["falls"] / cell["trials"]
     return float(cell["speed_mean"] - falls)

@@ -41,12 +41,13 @@ from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import Gait, gaits
 
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"
-"""Methods without a grounding: the gait that all searches start from; the action noise
-envelope; random dynamics in the sim; a search in the real world itself."""
+"""Methods without a grounding: the gait that all searches start from; searches in the
+sim with the action noise envelope (ANE), with random dynamics, and in the real
+world."""
 
 _ON_DIAGNOSED = f", {DIAGNOSED}"
 DIAGNOSED_UNEVEN, DIAGNOSED_SGAT = UNEVEN + _ON_DIAGNOSED, SGAT + _ON_DIAGNOSED
-"""Groundings of a sim that a diagnosis has corrected."""
+"""Methods that ground a sim which a diagnosis has corrected."""
 
 PLAN = (
     (START, 0),
@@ -66,7 +67,7 @@ PLAN = (
     (ANE, 1),
     (REAL, 1),
 )
-"""Method and grounding step of every cell, in the order in which they are computed."""
+"""Method and grounding step of each result, in the order of computation."""
 
 METHODS = tuple(
     dict.fromkeys(name for name, _ in PLAN if name != START and DIAGNOSED not in name)
@@ -77,29 +78,29 @@ WITH_SIM = (NONE, UNEVEN, DIAGNOSED_SIM, DIAGNOSED_UNEVEN)
 """Methods that are compared by default with a diagnosed sim, on uneven real ground."""
 
 WITH_SIM_ON_FLAT = (NONE, SGAT, DIAGNOSED_SIM, DIAGNOSED_SGAT)
-"""Methods that are compared by default with a diagnosed sim, on flat real ground: lumps
-in the sim would not explain why gaits fall there."""
+"""Methods that are compared by default with a diagnosed sim, on flat real ground. They
+have no uneven sim, since lumps would not explain why gaits fall on flat ground."""
 
 ENVELOPES_RAD = (0.02, 0.05)
-"""Noise levels [rad] that ANE chooses from, a coarse grid."""
+"""Standard deviations [rad] of the noise on commands that ANE chooses from."""
 
 ENVELOPE_WALKS = 12
-"""Real walks by which ANE judges each level."""
+"""Number of real walks by which ANE judges each standard deviation of its noise."""
 
 OF_DATA, OF_SEARCH, OF_TRIALS, OF_ENVELOPES = range(4)
-"""Numbers of the streams of random numbers; all cells share them, so that differences
-between cells come from their methods."""
+"""Numbers by which seeds are derived for different uses; all methods share the seeds,
+so that differences between results come from the methods."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is walked and searched.
+    """Numbers of walks and sizes of searches.
 
     Attributes:
-      trials: real courses on which each cell's gait is tried.
-      repeats: walks of each gait, for its rating in a sim with random numbers.
-      walks: real walks for the first grounding step, and for each further step.
-      sim_walks: walks in the sim for each grounding step.
+      trials: number of real courses on which each gait that was found is tried.
+      repeats: number of walks that rate a gait in a sim with random numbers.
+      walks: numbers of real walks for the first grounding step, and for each further.
+      sim_walks: number of walks in the sim for each grounding step.
       sim: size of a search in the sim.
       real: size of the search in the real world.
     """
@@ -113,7 +114,7 @@ class Effort:
 
 
 class NaoStudy:
-    """Computes the cells one by one; several of them share a grounding step.
+    """Computes the cells one by one: results of a method after a grounding step.
 
     Attributes:
       cells: all that are known so far, as plain values.
@@ -125,10 +126,10 @@ class NaoStudy:
         """Start a study, or continue the one that the folder holds.
 
         Args:
-          folder: of the run.
-          effort: how much is walked and searched.
+          folder: the run's folder.
+          effort: numbers of walks and sizes of searches.
           places: the real course, and the diagnosis that corrects the sim.
-          seed: all random numbers follow from it.
+          seed: number from which all random numbers follow.
         """
         self._folder, self._effort, self._entropy = folder, effort, seed
         self._diagnosed, self._plain = places, Places(places.real)
@@ -155,14 +156,14 @@ class NaoStudy:
         return self._plain.real
 
     def cell(self, method: str, step: int) -> Mapping[str, Any] | None:
-        """A cell that has been computed, or None."""
+        """The result of a method after a grounding step; None if there is none yet."""
         for cell in self.cells:
             if (cell["method"], cell["step"]) == (method, step):
                 return cell
         return None
 
     def compute(self, method: str, step: int) -> None:
-        """Find a cell's gait, try it in the real world, and write the cell down."""
+        """Find a method's gait, try it in the real world, and write the result."""
         gait, facts = self._find(method, step)
         score = self._try(gait, self._effort.trials, OF_TRIALS)
         cell = {"method": method, "step": step, **score, **facts, "gait": dict(gait)}
@@ -194,7 +195,7 @@ class NaoStudy:
     ) -> tuple[Gait, dict[str, Any]]:
         """A gait tuned in a grounded sim, and the number of real walks it took.
 
-        All methods share the data of step 1, since all begin at the start gait.
+        All methods share the walks of step 1, since all begin at the same gait.
         """
         effort, start = self._effort, gaits.get("start")
         data, places = self._first, self._plain
@@ -217,7 +218,7 @@ class NaoStudy:
         return gait, {"real_walks": walks}
 
     def _best_envelope(self, checkpoint: Path) -> tuple[Gait, dict[str, Any]]:
-        """The gait of ANE: tuned at each noise level, the best on real is taken."""
+        """The gait of ANE: of those tuned at each noise level, the best on real."""
         found = []
         for level in ENVELOPES_RAD:
             path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.pkl")
