@@ -85,7 +85,10 @@ class TorqueEffect(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Note the values; several at one joint are added."""
+        """Note the values; those of several effects at one joint are added.
+
+        A law that is not linear in its values has to override this.
+        """
         noted = variants.torque_values(self, len(values))
         noted[row, variants.column(place)] += values
 

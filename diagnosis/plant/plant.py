@@ -14,15 +14,8 @@ Base = Literal["fixed", "floating"]
 """How a robot's base is held: welded to the world, or free to move."""
 ROOT = "root"
 """Name of a floating base's free joint."""
-_SLIDING = {
-    "rad": "m",
-    "rad/s": "m/s",
-    "N m": "N",
-    "N m/rad": "N/m",
-    "N m s/rad": "N s/m",
-    "kg m^2": "kg",
-}
-"""Unit of a quantity at a sliding joint, by its unit at a turning joint."""
+_SLIDING = (("kg m^2", "kg"), ("N m", "N"), ("rad", "m"))
+"""Parts of units at turning joints, and their counterparts at sliding joints."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +103,10 @@ class Plant:
           unit: the unit for a joint that turns, such as "N m/rad".
           place: name of a joint; for other names the unit stays as it is.
         """
-        return _SLIDING.get(unit, unit) if place in self.slides else unit
+        if place in self.slides:
+            for turning, sliding in _SLIDING:
+                unit = unit.replace(turning, sliding)
+        return unit
 
     @cached_property
     def bodies(self) -> tuple[str, ...]:

@@ -151,7 +151,7 @@ def write_nao_page(
         "",
         *markdown_table(HEADINGS, table_of(cells)),
         "",
-        f"{SGAT}'s noise is white, as in the SGAT paper.",
+        *_white_noise(cells),
         *_own_groundings(cells),
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
@@ -179,11 +179,20 @@ def _ground(course: RealCourse) -> str:
             return f"of `{course.terrain}`"
 
 
+def _white_noise(cells: Sequence[Cell]) -> list[str]:
+    """Says how SGAT's noise was drawn, if SGAT is among the cells."""
+    if all(cell["method"] != SGAT for cell in cells):
+        return []
+    return [f"{SGAT}'s noise is white, as in the SGAT paper."]
+
+
 def _own_groundings(cells: Sequence[Cell]) -> list[str]:
     """Markdown lines on those of the cells' groundings that the SGAT paper lacks."""
     lines: list[str] = []
     for one in groundings().values():
-        if any(cell["method"].startswith(one.title) for cell in cells):
+        if any(
+            cell["method"] in (one.title, f"{one.title}, diagnosed") for cell in cells
+        ):
             lines += one.means
             if one.uneven_sim:
                 lines.append(

@@ -90,7 +90,8 @@ class HiddenKind:
     Attributes:
       name: the `name` in an effect's text `name@place:parameter=value`.
       rank: position in the list from which cases are drawn. Ranks of existing kinds are
-        fixed: a change would draw other cases from the same seed.
+        fixed: a change would draw other cases from the same seed. A new kind does so,
+        too: sets that were sealed before are made with the commit that they state.
       place: "joint", "body", or the one word that is this kind's only place.
       quantities: its parameters.
       outside: whether the diagnosis has no effect of this name.
