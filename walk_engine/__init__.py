@@ -1,7 +1,7 @@
 """The walk engine: turns gait parameters into joint commands, for n robots at once.
 
-It never steps a world: it is given measurements and returns commands. Gaits that have a
-name are in `walk_engine.gaits`.
+It never steps a world: it gets measurements and returns commands. Built-in gaits are in
+`walk_engine.gaits`.
 
 Example:
   >>> engine = WalkEngine(robots.biped(robots.get("nao")), [gaits.get("walk2014")])

@@ -1,4 +1,4 @@
-"""Gyroscope feedback to the ankles.
+"""Gyroscope feedback to the ankle angles, which balances a walking robot.
 
 Turning rates are positive about the torso's axes (x forward, y left, z up); ankle
 angles are positive about the same axes when the leg is straight. A torso that pitches
@@ -18,13 +18,13 @@ from walk_engine.walk_state import StateArray, WalkState
 
 
 def weight_of_new(gait: GaitColumns, tick_s: float, config: EngineConfig) -> FloatArray:
-    """Weight (n,) of a new gyroscope sample in the low-pass filter.
+    """Weight (n,), 0 to 1, of a new gyroscope sample in the low-pass filter.
 
-    The gait's parameter `gyro_filter` holds for 100 Hz; this is the weight with the
-    same time constant at another tick.
+    The gait parameter `gyro_filter` is the weight for samples at 100 Hz; the result has
+    the same time constant at another sampling time.
 
     Args:
-      gait: values of the n robots by parameter.
+      gait: values of the n robots by gait parameter.
       tick_s: time between two samples [s].
       config: the engine's constants.
     """
@@ -35,15 +35,21 @@ def weight_of_new(gait: GaitColumns, tick_s: float, config: EngineConfig) -> Flo
 def low_pass(
     before_rad_s: FloatArray, rate_rad_s: FloatArray, weight: FloatArray
 ) -> FloatArray:
-    """Filter rates (k, n) [rad/s] at first order; the new ones have weights (n,)."""
+    """Low-pass filter of first order: filtered turning rates (k, n) [rad/s].
+
+    Args:
+      before_rad_s: (k, n) filtered rates of the last tick.
+      rate_rad_s: (k, n) new measurements.
+      weight: (n,) weight of the new measurements, 0 to 1.
+    """
     return before_rad_s + weight * (rate_rad_s - before_rad_s)
 
 
 def feedback_share(state: StateArray, support: StateArray) -> FloatArray:
-    """Share (2, n), 0 or 1, of the feedback that each ankle gets: left, then right.
+    """Factor (2, n), 0 or 1, of the gyroscope feedback to each ankle: left, then right.
 
-    While stepping the ankle of the support foot gets it, in the state READY none, in
-    all other states both.
+    During a step only the ankle of the support foot gets feedback, in the state READY
+    none, in all other states both.
 
     Args:
       state: (n,) states of the robots, `WalkState`.

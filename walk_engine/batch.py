@@ -1,7 +1,7 @@
-"""Changes records of arrays over n robots, for some of the robots only.
+"""Merges two states of n robots: the new one for some robots, the old for the others.
 
-A record is a NamedTuple of arrays, or of records. The last axis of every array counts
-the robots.
+A state is a record: a NamedTuple of arrays, or of further records. The last axis of
+every array counts the robots.
 """
 
 from typing import NamedTuple, TypeVar
@@ -14,12 +14,12 @@ Record = TypeVar("Record", bound=NamedTuple)
 
 
 def select(chosen: BoolArray, new: Record, old: Record) -> Record:
-    """Merge two records: the new one for chosen robots, the old one for the others.
+    """Merge two records: `new` for chosen robots, `old` for the others.
 
     Args:
-      chosen: (n,) mask of the robots.
-      new: record of arrays (..., n).
-      old: record of the same kind.
+      chosen: (n,) whether a robot is chosen.
+      new: NamedTuple of arrays (..., n), or of such NamedTuples.
+      old: NamedTuple of the same kind.
     """
     fields = (
         select(chosen, one, other)

@@ -20,26 +20,28 @@ from groundwalk.arrays import FloatArray
 from robots.leg_geometry import LEG_JOINTS, LegChain
 
 STEPS = 5
-"""Number of Gauss-Newton steps."""
+"""Number of Gauss-Newton steps, the same for all robots; they start near the solution,
+so that few are enough."""
 
 DAMPING = 0.003
-"""The damping d, in leg lengths per radian."""
+"""Damping d of the Gauss-Newton steps, in leg lengths per radian; it keeps steps finite
+when the leg is straight."""
 
 LONGEST_RAD = 0.5
-"""Largest change of an angle in one step [rad]."""
+"""Largest change of a joint angle in one Gauss-Newton step [rad]."""
 
 
 class ChainLegs:
     """Solves the inverse kinematics of a left and a right leg of six joints each."""
 
     def __init__(self, chains: tuple[LegChain, LegChain], length_m: float) -> None:
-        """Prepare.
+        """Prepare the solver for a robot's legs.
 
         Args:
           chains: the left leg and the right one.
           length_m: length of a leg [m], the unit of lengths in the equations.
         """
-        # Second axis: the two legs, one for each of the first axis' joints.
+        # First axis: the joints of a leg; second axis: the two legs.
         self._origins = np.stack([chain.origins_m for chain in chains], axis=1)
         self._axes = np.stack([chain.axes for chain in chains], axis=1)
         self._chains = chains
@@ -49,17 +51,17 @@ class ChainLegs:
     def angles(
         self, by_role_rad: FloatArray, ankle_m: FloatArray, foot: FloatArray
     ) -> FloatArray:
-        """Angles that put both feet at their targets, ordered by role.
+        """Joint angles that put both feet at their targets.
 
         Args:
-          by_role_rad: (6, 2, n) angles to start from, those of the most similar leg
-            whose axes meet.
-          ankle_m: (2, n, 3) target positions of the ankles in the torso's frame.
-          foot: (2, n, 3, 3) rotations from the feet's frames to the torso's.
+          by_role_rad: (6, 2, n) angles to start from [rad]: those of the most similar
+            leg whose axes meet, ordered like the result.
+          ankle_m: (2, n, 3) target positions of the ankles in the torso's frame [m].
+          foot: (2, n, 3, 3) target rotations from the feet's frames to the torso's.
 
         Returns:
-          (6, 2, n) of yaw, roll, pitch, knee, ankle pitch and ankle roll, as the
-          robot's joints count them.
+          (6, 2, n) angles [rad] of yaw, roll, pitch, knee, ankle pitch and ankle roll,
+          in the signs and zeros of the robot's joints.
         """
         start = np.stack(
             [
@@ -80,12 +82,13 @@ class ChainLegs:
     def error(
         self, q: FloatArray, target_m: FloatArray, foot: FloatArray
     ) -> FloatArray:
-        """Deviation (2, n, 6) from a target pose.
+        """Deviation (2, n, 6) of the feet from their targets.
 
         Args:
           q: (6, 2, n) joint angles in the order of the chain [rad].
-          target_m: (2, n, 3) target positions of the last joints [m].
-          foot: (2, n, 3, 3) target rotations of the feet.
+          target_m: (2, n, 3) target positions of the last joints in the torso's frame
+            [m].
+          foot: (2, n, 3, 3) target rotations from the feet's frames to the torso's.
 
         Returns:
           Three deviations in leg lengths, then three in radians.
@@ -94,7 +97,10 @@ class ChainLegs:
         return self._error(places[-1], rotations, target_m, foot)
 
     def _in_chain(self, chain: LegChain, by_role_rad: FloatArray) -> FloatArray:
-        """Convert angles (6, n) by role to the joints' own, in the chain's order."""
+        """Convert angles (6, n) [rad] by role to the joints' own, in the chain's order.
+
+        Angles by role are those of yaw, roll, pitch, knee, ankle pitch and ankle roll.
+        """
         own = chain.signs[:, None] * (by_role_rad - chain.zero_rad[:, None])
         angles = np.empty_like(own)
         angles[chain.order] = own
@@ -127,7 +133,15 @@ class ChainLegs:
         return np.concatenate([shift, turn], axis=-1)
 
     def _forward(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions (6, 2, n, 3) of the joints, rotations of the feet, joint axes."""
+        """Forward kinematics of both legs in the torso's frame.
+
+        Args:
+          q: (6, 2, n) joint angles in the order of the chain [rad].
+
+        Returns:
+          Positions of the joints (6, 2, n, 3) [m], rotations from the feet's frames
+          (2, n, 3, 3), and axes of the joints (6, 2, n, 3).
+        """
         sine, cosine = np.sin(q)[..., None, None], 1.0 - np.cos(q)[..., None, None]
         shape = (*q.shape[1:], 3, 3)
         rotation = np.broadcast_to(np.eye(3), shape)
@@ -144,6 +158,6 @@ class ChainLegs:
 
 
 def _skew(axis: FloatArray) -> FloatArray:
-    """The matrix (3, 3) whose product with a vector is the axis' cross product."""
+    """Matrix (3, 3) whose product with a vector v is the cross product axis x v."""
     a, b, c = axis
     return np.array([[0.0, -c, b], [c, 0.0, -a], [-b, a, 0.0]])

@@ -1,4 +1,4 @@
-"""The walk engine: requests and sensor readings in, joint commands out."""
+"""The walk engine: turns velocity requests and sensor readings into joint commands."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -22,7 +22,7 @@ from walk_engine.walk_state import StateArray
 
 
 class _Memory(NamedTuple):
-    """The engine's state between two ticks; the last axis of arrays counts robots."""
+    """State of the walk engine between two ticks; the last axis of arrays is robots."""
 
     progress: Progress
     rate_rad_s: FloatArray  # (2, n) filtered pitch and roll rate
@@ -30,11 +30,11 @@ class _Memory(NamedTuple):
 
 
 class WalkEngine:
-    """Walk2014's gait generator for n robots of one kind, each with its own gait.
+    """Gait generator (rUNSWift Walk2014) for n equal robots, each with its own gait.
 
-    It knows no world: call `step` once a tick with the robots' measurements, and send
-    them the commands that it returns. Robots do not influence each other, not even in
-    the last bit. Mirrored input gives mirrored commands.
+    The engine knows no world: call `step` once per tick with the robots' measurements,
+    and send the robots the commands that it returns. Robots do not influence each
+    other, not even in the last bit. Mirrored input gives mirrored commands.
 
     Example:
       >>> engine = WalkEngine(robots.biped(robots.get("nao")), [gaits.get("start")])
@@ -55,15 +55,15 @@ class WalkEngine:
 
         Args:
           biped: the robots' legs and joints.
-          gaits: n gaits, or their vectors as an (n, 16) array, for the NAO's size; they
-            are scaled to the robot's size.
+          gaits: n gaits, or their vectors as an (n, 16) array, with values for the
+            NAO; they are scaled to the robot's size.
           tick_s: time between two calls of `step` [s].
           first_swing: the foot that swings first.
-          config: constants that are the same for all gaits.
+          config: constants that are the same for all gaits, for the NAO; scaled, too.
 
         Raises:
-          BadValueError: no gait is given or a bad one, the tick is not positive, or
-            `first_swing` is no foot.
+          BadValueError: no gait is given, a gait is out of bounds, the tick is not
+            positive, or `first_swing` is neither "left" nor "right".
         """
         if not (np.isfinite(tick_s) and tick_s > 0):
             raise BadValueError(f"the tick is {tick_s} s; it must be positive")
@@ -94,7 +94,7 @@ class WalkEngine:
 
     @property
     def state(self) -> StateArray:
-        """(n,) the state of each robot, a `WalkState`."""
+        """(n,) the `WalkState` of each robot, such as READY or WALKING, as a number."""
         return self._memory.progress.state.copy()
 
     @property
@@ -104,17 +104,17 @@ class WalkEngine:
 
     @property
     def step_time_s(self) -> FloatArray:
-        """(n,) time since the current step or move began [s]; 0 at rest."""
+        """(n,) time since the step, crouching or rising began [s]; 0 at rest."""
         return self._memory.progress.ticks * self._tick_s
 
     def start_pose(self) -> FloatArray:
-        """(n, joints) the crouched pose [rad] in which a robot is ready to walk."""
+        """(n, joints) joint angles [rad] of the crouch in which walking starts."""
         feet = resting_feet(self._gait["com_offset"])
         target = self._posture.targets(feet, np.ones(self.n), np.zeros((2, 2, self.n)))
         return self._limits.within_range(target).T.copy()
 
     def reset(self) -> None:
-        """Forget everything: each robot is READY in its `start_pose`."""
+        """Put each robot back into the state READY, crouched in its `start_pose`."""
         self._memory = _Memory(
             progress=self._stepper.start(self._left_first),
             rate_rad_s=np.zeros((2, self.n)),
@@ -128,14 +128,15 @@ class WalkEngine:
         foot_force_n: FloatArray,
         active: BoolArray | None = None,
     ) -> FloatArray:
-        """Advance by one tick.
+        """Advance all robots by one tick, and return their joint commands.
 
         Args:
-          request: the request to the robots; it is read when a step begins.
-          gyroscope_rad_s: (n, 3) turning rates of the torso about its axes [rad/s].
-          foot_force_n: (n, 8) readings of the force sensors [N], in the order of
-            `biped.foot_sensor_xy_m`.
-          active: (n,) whether a robot takes part; all do by default. Time stands still
+          request: requested velocities; they are read when a step begins.
+          gyroscope_rad_s: (n, 3) turning rates of the torso about its x (forward),
+            y (left) and z (up) axes [rad/s].
+          foot_force_n: (n, 8) readings of the force sensors [N]: left foot front left,
+            front right, rear left, rear right, then the right foot.
+          active: (n,) whether a robot takes part; by default all do. Time stands still
             for the others, whose last command is repeated.
 
         Returns:
@@ -166,7 +167,7 @@ class WalkEngine:
         foot_force_n: FloatArray,
         active: BoolArray | None,
     ) -> None:
-        """Refuse arrays that do not fit n robots."""
+        """Refuse arrays whose shapes do not fit the number of robots."""
         n = self.n
         _require_shape("gyroscope_rad_s", gyroscope_rad_s, (n, 3))
         _require_shape("foot_force_n", foot_force_n, (n, FOOT_SENSORS))
@@ -178,6 +179,6 @@ class WalkEngine:
 
 
 def _require_shape(name: str, array: npt.ArrayLike, shape: tuple[int, ...]) -> None:
-    """Refuse an array of another shape."""
+    """Raise BadValueError with the array's name if it has another shape."""
     if np.shape(array) != shape:
         raise BadValueError(f"{name} has shape {np.shape(array)}; it must be {shape}")

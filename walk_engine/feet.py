@@ -1,13 +1,14 @@
 """Positions of the feet relative to the hips during a step; equations of Walk2014.
 
-Let f, l and u be the plan's distance forward, distance to the left and turn, s the
-linear and w the parabolic profile over the step:
+Let f, l and u be the planned distance forward, distance to the left and turn of a cycle
+of two steps. Let s and w rise from 0 to 1 over the step, s at constant speed and w with
+constant acceleration, then constant deceleration:
 
 - the support foot moves to f/4 behind the hip with s, the swing foot to f/4 ahead of it
   with w; in steady walking both take steps of length f/2;
 - if the foot on the side of l swings, it opens the legs with w to half the angle that l
-  subtends at the hip; an opening of the step before closes with 1 - w, so that the
-  other foot brings the legs together again;
+  subtends at the hip; the opening left by the step before closes with 1 - w, so that
+  the other foot brings the legs together again;
 - the toes turn with w: outward by 2/3 of u if the outer foot swings, inward by 1/3 if
   the inner foot swings;
 - the swing foot rises to the plan's lift and comes down again.
@@ -31,14 +32,17 @@ from walk_engine.time_profiles import (
 
 
 class Feet(NamedTuple):
-    """Positions of the feet; only `behind_m` and `lift_m` differ between the feet.
+    """Positions of the feet of n robots relative to their hips.
+
+    Arrays (2, n) hold the left foot in row 0 and the right one in row 1; the other
+    attributes are the same for both feet.
 
     Attributes:
-      behind_m: (2, n) distance of the ankle behind the hip, without com_offset_m.
-      lift_m: (2, n) height of the sole above the ground.
-      opening_rad: (n,) outward turn of the legs about the hips' x axes.
-      toe_out_rad: (n,) outward turn of the toes by the hip yaw joints.
-      com_offset_m: (n,) distance of the hip ahead of the middle of the ankles.
+      behind_m: (2, n) distance of the ankle behind the hip, without com_offset_m [m].
+      lift_m: (2, n) height of the sole above the ground [m].
+      opening_rad: (n,) outward turn of the legs about the hips' x axes [rad].
+      toe_out_rad: (n,) outward turn of the toes by the hip yaw joints [rad].
+      com_offset_m: (n,) distance of the hip ahead of the middle of the ankles [m].
     """
 
     behind_m: FloatArray
@@ -49,7 +53,11 @@ class Feet(NamedTuple):
 
 
 def resting_feet(com_offset_m: FloatArray) -> Feet:
-    """Feet side by side on the ground, for the com_offset_m (n,) of n robots."""
+    """Feet of n robots side by side on the ground.
+
+    Args:
+      com_offset_m: (n,) distance of the hips ahead of the ankles [m].
+    """
     n = len(com_offset_m)
     pair, zero = np.zeros((2, n)), np.zeros(n)
     return Feet(pair, pair, zero, zero, com_offset_m)
@@ -97,7 +105,14 @@ def feet_in_step(
 def _opening(
     outward_m: FloatArray, progress: FloatArray, origin: Feet, leg_height_m: FloatArray
 ) -> FloatArray:
-    """Opening (n,) [rad] for a cycle's distance to the side of the swing foot."""
+    """Outward turn (n,) of the legs about the hips' x axes during a step [rad].
+
+    Args:
+      outward_m: (n,) distance in a cycle of two steps to the swing foot's side [m].
+      progress: (n,) progress of the step, 0 to 1.
+      origin: positions of the feet when the step began.
+      leg_height_m: (n,) height of the hip above the ankle [m].
+    """
     step = np.arctan(np.maximum(outward_m, 0.0) * progress / leg_height_m)
     return 0.5 * step + origin.opening_rad * (1.0 - progress)
 
@@ -105,7 +120,14 @@ def _opening(
 def _toe_out(
     outward_rad: FloatArray, progress: FloatArray, origin: Feet, config: EngineConfig
 ) -> FloatArray:
-    """Toe angle (n,) [rad]; `outward_rad` is the turn to the swing foot's side."""
+    """Outward turn (n,) of the toes during a step [rad].
+
+    Args:
+      outward_rad: (n,) turn in a cycle of two steps to the swing foot's side [rad].
+      progress: (n,) progress of the step, 0 to 1.
+      origin: positions of the feet when the step began.
+      config: the engine's constants.
+    """
     outer = config.outward_turn_share
     target = np.where(outward_rad > 0, outer, 1.0 - outer) * outward_rad
     return origin.toe_out_rad + (target - origin.toe_out_rad) * progress

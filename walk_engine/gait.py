@@ -21,9 +21,9 @@ _HIGH = np.array([parameter.high for parameter in PARAMETERS])
 
 @dataclass(frozen=True)
 class Gait(Mapping[str, float]):
-    """An immutable mapping from the 16 parameter names to their values.
+    """Values of the 16 walk-engine parameters: an immutable mapping from their names.
 
-    Every gait is complete and within the bounds of `PARAMETERS`.
+    Every gait is complete and within the bounds that `PARAMETERS` lists.
 
     Attributes:
       vector: the 16 values in the order of `PARAMETERS`.
@@ -47,13 +47,14 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def from_vector(cls, vector: npt.ArrayLike) -> "Gait":
-        """Make a gait from its vector.
+        """Make a gait from an array of its values.
 
         Args:
           vector: (16,) values in the order of `PARAMETERS`.
 
         Raises:
-          BadValueError: a parameter is out of bounds; the message names the first one.
+          BadValueError: the number of values is wrong or a value is out of bounds; the
+            message names the first such parameter.
         """
         values = np.asarray(vector, dtype=np.float64)
         if values.ndim != 1:
@@ -65,7 +66,7 @@ class Gait(Mapping[str, float]):
         """Make a gait from the values of all parameters, by name.
 
         Raises:
-          UnknownNameError: a name is not that of a parameter.
+          UnknownNameError: no parameter has one of the names.
           BadValueError: a parameter is missing, not a number or out of bounds.
         """
         for name in values:
@@ -78,10 +79,10 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def load(cls, path: Path) -> "Gait":
-        """Read a gait from JSON: `{"gait": {name: value}}` or `{name: value}`.
+        """Read a gait from a JSON file: `{"gait": {name: value}}` or `{name: value}`.
 
         Raises:
-          BadValueError: the file holds no gait; the message says why.
+          BadValueError: the file cannot be read or holds no gait; the message says why.
         """
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
@@ -96,7 +97,7 @@ class Gait(Mapping[str, float]):
             raise BadValueError(f"{path}: {error}") from error
 
     def save(self, path: Path) -> None:
-        """Write the gait as JSON that `load` reads back exactly."""
+        """Write the gait to a JSON file, which `Gait.load` reads back exactly."""
         write_text(path, json.dumps({"gait": dict(self)}, indent=2) + "\n")
 
     def to_vector(self) -> FloatArray:
@@ -104,7 +105,7 @@ class Gait(Mapping[str, float]):
         return np.array(self.vector)
 
     def replace(self, **changes: float) -> "Gait":
-        """A copy of the gait with some parameters changed, given by name."""
+        """Copy the gait with other values of some parameters, given by name."""
         return Gait.from_mapping({**self, **changes})
 
     def __getitem__(self, name: str) -> float:
@@ -123,13 +124,13 @@ class Gait(Mapping[str, float]):
 
 
 def stack(gaits: Sequence[Gait] | FloatArray) -> FloatArray:
-    """Put gaits into one (n, 16) array.
+    """Put n gaits into one (n, 16) array, parameters in the order of `PARAMETERS`.
 
     Args:
-      gaits: gaits, or an (n, 16) array of their vectors.
+      gaits: gaits, or an (n, 16) array of their values, which is checked.
 
     Raises:
-      BadValueError: no gait is given, or a vector is no gait.
+      BadValueError: no gait is given, or a value is out of bounds.
     """
     rows = [
         gait if isinstance(gait, Gait) else Gait.from_vector(gait) for gait in gaits
@@ -140,13 +141,13 @@ def stack(gaits: Sequence[Gait] | FloatArray) -> FloatArray:
 
 
 def to_unit(vectors: npt.ArrayLike) -> FloatArray:
-    """Scale (..., 16) gait vectors so that the bounds become 0 and 1."""
+    """Scale gait vectors (..., 16) so that each parameter's bounds become 0 and 1."""
     units: FloatArray = (np.asarray(vectors, dtype=np.float64) - _LOW) / (_HIGH - _LOW)
     return units
 
 
 def from_unit(units: npt.ArrayLike) -> FloatArray:
-    """Scale (..., 16) values in [0, 1] to gait vectors; undoes `to_unit`.
+    """Scale values (..., 16) from [0, 1] to the bounds of the 16 gait parameters.
 
     Raises:
       BadValueError: a value is not in [0, 1].
@@ -160,7 +161,7 @@ def from_unit(units: npt.ArrayLike) -> FloatArray:
 
 
 def _checked(parameter: Parameter, value: float) -> float:
-    """Convert a value to a float; refuse it if it is not a number within bounds."""
+    """Convert a parameter's value to a float; refuse it unless it is within bounds."""
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     if not (is_number and parameter.low <= value <= parameter.high):
         raise BadValueError(

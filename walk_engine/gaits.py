@@ -1,4 +1,4 @@
-"""Gaits that have a name: walk2014, and start, from which searches begin."""
+"""Built-in gaits: "walk2014", and the slower "start", from which searches begin."""
 
 from groundwalk.errors import UnknownNameError
 from walk_engine.gait import PARAMETERS, Gait
@@ -14,12 +14,12 @@ _GAITS = {
 
 
 def names() -> tuple[str, ...]:
-    """Names of all gaits that `get` returns."""
+    """Names of the built-in gaits."""
     return tuple(_GAITS)
 
 
 def get(name: str) -> Gait:
-    """Look up a gait by its name.
+    """Look up a built-in gait by its name.
 
     Raises:
       UnknownNameError: no gait has this name.

@@ -20,10 +20,12 @@ from groundwalk.arrays import FloatArray
 from robots.leg_geometry import LegGeometry
 
 MIRROR = (1.0, -1.0, 1.0, 1.0, 1.0, -1.0)
-"""Factors that turn the angles of a left leg into those of its mirror image."""
+"""Factors that turn a left leg's angles (yaw, roll, pitch, knee, ankle pitch and roll)
+into those of the right leg in the mirrored pose."""
 
 _MARGIN_M = 1e-6
-"""Distance [m] that targets keep from the reach of a straight or a folded leg."""
+"""Distance [m] of targets from the ends of a leg's reach, straight and folded, at which
+the inverse kinematics are singular."""
 
 _Vector = tuple[FloatArray, FloatArray, FloatArray]
 
@@ -31,16 +33,16 @@ _Vector = tuple[FloatArray, FloatArray, FloatArray]
 def inverse(
     leg: LegGeometry, yaw_rad: FloatArray, ankle_m: FloatArray, tilt_rad: FloatArray
 ) -> FloatArray:
-    """Joint angles that put the ankle at a point while the sole is level.
+    """Joint angles of a left leg with its ankle at a given point and a level sole.
 
     A target out of reach is moved towards or away from the hip until the leg reaches
     it; the result is always finite.
 
     Args:
       leg: lengths and axes of the left leg.
-      yaw_rad: (...) angle of the first hip joint [rad].
+      yaw_rad: (...) angle of the yaw joint [rad].
       ankle_m: (3, ...) target of the ankle in the torso's frame [m].
-      tilt_rad: (...) forward lean of the torso over the level sole [rad].
+      tilt_rad: (...) forward lean of the torso relative to the level sole [rad].
 
     Returns:
       (6, ...) yaw, roll, pitch, knee, ankle pitch and ankle roll [rad].
@@ -67,7 +69,13 @@ def inverse(
 def _yaw_undone(
     leg: LegGeometry, turn: tuple[FloatArray, FloatArray], vector: _Vector
 ) -> _Vector:
-    """Rotate a vector by the negative yaw (Rodrigues), given cosine and sine of it."""
+    """Rotate a vector about a leg's yaw axis by the negative yaw (Rodrigues).
+
+    Args:
+      leg: lengths and axes of the left leg.
+      turn: cosine and sine of the yaw angle.
+      vector: x, y and z.
+    """
     a, b, c = leg.yaw_axis
     x, y, z = vector
     cosine, sine = turn
@@ -82,7 +90,15 @@ def _yaw_undone(
 def _within_reach(
     leg: LegGeometry, target: _Vector
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Move a target to the nearest distance that the leg reaches; return both."""
+    """Move a target out of reach to the nearest distance from the hip within reach.
+
+    Args:
+      leg: lengths and axes of the left leg.
+      target: x, y and z of the ankle relative to the hip [m].
+
+    Returns:
+      x, y and z of the moved target, and its distance from the hip [m].
+    """
     x, y, z = target
     # A target at the hip has no direction: use a point just below instead.
     z = np.where(x * x + y * y + z * z < _MARGIN_M**2, -_MARGIN_M, z)

@@ -15,12 +15,12 @@ class Legs(ABC):
     """Turns positions of the feet into joint angles of a left and a right leg."""
 
     def __init__(self, leg: LegGeometry, signs: Sequence[FloatArray]) -> None:
-        """Prepare.
+        """Keep the geometry of the legs.
 
         Args:
           leg: the left leg, or the most similar leg whose axes meet.
-          signs: for each leg (2, 1), -1 if the ankle's pitch or roll joint turns the
-            other way, else 1.
+          signs: for each leg (2, 1) signs of ankle pitch and ankle roll: -1 if the
+            joint counts its angle the other way, else 1.
         """
         self._leg = leg
         self._signs = signs
@@ -32,10 +32,11 @@ class Legs(ABC):
         tilt_rad: FloatArray,
         ankle_rad: FloatArray,
     ) -> tuple[FloatArray, FloatArray]:
-        """Joint angles with which the soles are level, plus extra ankle angles.
+        """Joint angles of both legs with level soles, plus extra ankle angles.
 
         Args:
-          ankle_m: (3, 2, n) both ankles in the torso's frame [m], the right mirrored.
+          ankle_m: (3, 2, n) positions of the left and the right ankle in the torso's
+            frame [m], y of the right one with the other sign (mirrored).
           toe_out_rad: (2, n) outward turn of the toes by the hip yaw joints [rad].
           tilt_rad: (2, n) forward lean of the torso [rad].
           ankle_rad: (2, 2, n) angles added to pitch and roll of each ankle [rad],
@@ -54,11 +55,14 @@ class Legs(ABC):
     def _level(
         self, ankle_m: FloatArray, toe_out_rad: FloatArray, tilt_rad: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Joint angles of both legs with level soles; arguments as for `angles`."""
+        """Joint angles (6, n) [rad] of the left and of the right leg with level soles.
+
+        Arguments are those of `Legs.angles`.
+        """
 
 
 def legs_of(biped: Biped) -> Legs:
-    """The inverse kinematics of a robot, in closed form if its joint axes meet."""
+    """Make the inverse kinematics of both legs, in closed form if the axes meet."""
     if biped.chains is None:
         return MirroredLegs(biped.leg)
     return TwoChains(biped.leg, biped.chains)
@@ -68,7 +72,7 @@ class MirroredLegs(Legs):
     """Legs whose joint axes meet and that are mirror images of each other."""
 
     def __init__(self, leg: LegGeometry) -> None:
-        """Prepare for the left leg's lengths and axes."""
+        """Keep the lengths and axes of the left leg."""
         super().__init__(leg, [np.ones((2, 1))] * 2)
         # A positive turn about an axis that points down turns the toes inward.
         self._outward = np.copysign(1.0, leg.yaw_axis[2])
@@ -81,13 +85,13 @@ class MirroredLegs(Legs):
 
 
 class TwoChains(Legs):
-    """Legs of six joints each, whose axes need not meet; solved in steps."""
+    """Legs of six joints each, whose axes need not meet; solved by iteration."""
 
     def __init__(self, leg: LegGeometry, chains: tuple[LegChain, LegChain]) -> None:
-        """Prepare.
+        """Prepare the solver.
 
         Args:
-          leg: the most similar leg whose axes meet, to start the steps from.
+          leg: the most similar leg whose axes meet; its solution starts the steps.
           chains: the left and the right leg.
         """
         super().__init__(leg, [chain.signs[4:, None] for chain in chains])
@@ -109,8 +113,8 @@ def _foot_rotation(turn_rad: FloatArray, tilt_rad: FloatArray) -> FloatArray:
     """Rotations (2, n, 3, 3) from the frame of a level foot to the torso's.
 
     Args:
-      turn_rad: (2, n) turn of the foot to the left.
-      tilt_rad: (2, n) forward lean of the torso.
+      turn_rad: (2, n) turn of the foot to the left [rad].
+      tilt_rad: (2, n) forward lean of the torso [rad].
     """
     cos_t, sin_t = np.cos(turn_rad), np.sin(turn_rad)
     cos_p, sin_p = np.cos(tilt_rad), np.sin(tilt_rad)

@@ -10,12 +10,12 @@ from robots.leg_geometry import Biped
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """Bounds of joint commands; all arrays are (joints, 1).
+    """Bounds of joint commands; all arrays are (joints, 1) [rad].
 
     Attributes:
       low_rad: lower ends of the joints' ranges.
       high_rad: upper ends of the joints' ranges.
-      change_rad: largest change of a command within a tick.
+      change_rad: largest change of a command from one tick to the next.
     """
 
     low_rad: FloatArray
@@ -24,11 +24,11 @@ class Limits:
 
     @classmethod
     def of(cls, biped: Biped, tick_s: float, speed_fraction: float) -> "Limits":
-        """Compute the limits of a robot.
+        """Compute the limits of a robot's joint commands.
 
         Args:
           biped: the robot.
-          tick_s: duration of a tick [s].
+          tick_s: duration of a control tick [s].
           speed_fraction: share of the motors' no-load speed that commands may use.
         """
         low, high = biped.joint_range_rad.T[:, :, None].copy()

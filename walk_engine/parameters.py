@@ -1,8 +1,8 @@
-"""The table of the 16 parameters that make a gait: units, bounds, meaning, source.
+"""The table of the 16 parameters of a gait: units, bounds, meaning, source.
 
 "Walk2014" is the walk of B. Hengst, rUNSWift Walk2014, UNSW report 2014, and the
-generator in the team's 2014 code release; "rUNSWift 2022", "B-Human" and "HULKs" are
-later published walks of the same family. Every parameter acts in straight walking.
+gait generator in the team's 2014 code release; "rUNSWift 2022", "B-Human" and "HULKs"
+are later published walks derived from it. Each parameter affects straight walking.
 """
 
 from dataclasses import dataclass
@@ -117,6 +117,12 @@ PARAMETERS: tuple[Parameter, ...] = (
         source="none in Walk2014; 0.025 and 0.055 in HULKs",
     ),
 )
+"""The 16 parameters of a gait, in the order of the values in a gait's vector.
+
+Example:
+  >>> PARAMETERS[0].name
+  'step_period'
+"""
 
 NAMES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS)
-"""Names of the parameters, in the order of `PARAMETERS`."""
+"""Names of the 16 gait parameters, in the order of `PARAMETERS`."""

@@ -11,14 +11,14 @@ from walk_engine.step_plan import GaitColumns
 
 
 class Posture:
-    """Computes the joint angles of n robots of one kind."""
+    """Computes the joint angles of n equal robots from positions of their feet."""
 
     def __init__(self, biped: Biped, gait: GaitColumns, config: EngineConfig) -> None:
-        """Prepare.
+        """Prepare the inverse kinematics and the pose of joints that do not walk.
 
         Args:
           biped: the robots' legs and joints.
-          gait: values of the n robots by gait parameter.
+          gait: values (n,) of each gait parameter, by its name.
           config: the engine's constants.
         """
         leg = biped.leg
@@ -36,15 +36,15 @@ class Posture:
     def targets(
         self, feet: Feet, down: FloatArray, ankle_rad: FloatArray
     ) -> FloatArray:
-        """Joint targets (joints, n) [rad], not yet limited.
+        """Joint targets (joints, n) [rad], before the limits of range and speed.
 
         Joints that belong to neither a leg nor a shoulder stay at 0, or at the angle of
         their range that is nearest to 0.
 
         Args:
           feet: target positions of the feet.
-          down: (n,) depth of the crouch, see `crouched`. The torso's lean and the
-            offset of the hip are proportional to it.
+          down: (n,) depth of the crouch, 0 standing upright, 1 at the walking height.
+            The torso's lean and the offset of the hip are proportional to it.
           ankle_rad: (2, 2, n) angles added to pitch and roll of each ankle [rad].
         """
         biped = self._biped
@@ -84,9 +84,9 @@ class Posture:
 
 
 def _pair(values: FloatArray) -> FloatArray:
-    """Repeat values (n,) for both feet, (2, n).
+    """Repeat values (n,) for both feet as an array (2, n).
 
-    They are copied, not broadcast: only on contiguous arrays do NumPy's sines give
-    every robot the same bits whatever the number of robots.
+    The values are copied, not broadcast: only for contiguous arrays do the bits of
+    NumPy's sines not depend on the number of robots.
     """
     return np.stack((values, values))

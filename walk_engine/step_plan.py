@@ -14,7 +14,7 @@ GaitColumns = dict[str, FloatArray]
 
 
 class Speeds(NamedTuple):
-    """Requested speeds of the robots, cut to the limits; all arrays are (n,)."""
+    """Requested speeds of n robots, clipped to the limits; all arrays are (n,)."""
 
     forward_m_s: FloatArray
     left_m_s: FloatArray
@@ -35,13 +35,13 @@ class StepPlan(NamedTuple):
     Distances and angles are those of a whole cycle of two steps, as in Walk2014.
 
     Attributes:
-      period_s: duration of the step.
-      lift_m: height of the swing foot at its apex.
-      forward_m: distance forward in a cycle.
-      left_m: distance to the left in a cycle.
-      turn_rad: change of the hip yaw joints in a cycle of two steps, left positive.
+      period_s: duration of the step [s].
+      lift_m: height of the swing foot at its apex [m].
+      forward_m: distance forward in a cycle [m].
+      left_m: distance to the left in a cycle [m].
+      turn_rad: change of the hip yaw joints in a cycle [rad], left positive.
       com_offset_m: distance of the hip ahead of the middle of the ankles at the end of
-        the step.
+        the step [m].
     """
 
     period_s: FloatArray
@@ -53,7 +53,7 @@ class StepPlan(NamedTuple):
 
 
 def within_limits(request: Velocity, gait: GaitColumns, config: EngineConfig) -> Speeds:
-    """Cut each requested speed of each robot to its limit."""
+    """Clip each requested speed of each robot to the gait's or the engine's limit."""
     fastest = gait["max_forward"]
     left, turn = np.zeros_like(fastest), np.zeros_like(fastest)
     left += np.clip(request.left_m_s, -config.max_left_m_s, config.max_left_m_s)
@@ -71,9 +71,9 @@ def plan_step(
     """Plan a step of each robot.
 
     The first step only rocks the robot: it lifts a foot, less high than a later step,
-    and covers no distance. Walk2014 multiplies turns by 1.43 to make up for slipping
-    feet. Without slip, a hip yaw joint turns the foot by the z component of its axis,
-    and each degree is used twice in a cycle.
+    and covers no distance. The turn of the hip yaw joints follows without slip: the
+    foot turns by the z component of the joint's axis, and each degree is used twice in
+    a cycle. (Walk2014 multiplies turns by 1.43 to make up for slipping feet.)
 
     Args:
       speeds: the robots' speeds within their limits.

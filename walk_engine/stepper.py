@@ -1,4 +1,4 @@
-"""The sequence of steps: what each robot is doing and where that puts its feet."""
+"""The sequence of steps: state of each robot from tick to tick, and its feet."""
 
 from typing import NamedTuple
 
@@ -38,11 +38,11 @@ from walk_engine.walk_state import (
 
 
 class Progress(NamedTuple):
-    """The progress of n robots within their steps.
+    """State and progress of n robots within their steps.
 
     Attributes:
       state: (n,) the robots' states, `WalkState`.
-      ticks: (n,) ticks since the step or the move began; 0 at rest.
+      ticks: (n,) ticks since the step, crouching or rising began; 0 at rest.
       left_swings: (n,) whether the left foot swings; at rest, whether it swings next.
       plan: the plan of the current step.
       origin: positions of the feet when the step began.
@@ -64,16 +64,16 @@ class Progress(NamedTuple):
 
 
 class Stepper:
-    """Advances n robots of one kind from tick to tick."""
+    """Advances the steps of n equal robots from tick to tick."""
 
     def __init__(
         self, biped: Biped, gait: GaitColumns, tick_s: float, config: EngineConfig
     ) -> None:
-        """Prepare.
+        """Keep gaits and constants.
 
         Args:
           biped: the robots' legs and joints.
-          gait: values of the n robots by gait parameter.
+          gait: values (n,) of each gait parameter, by its name.
           tick_s: duration of a tick [s].
           config: the engine's constants.
         """
@@ -87,7 +87,7 @@ class Stepper:
         self._still = Speeds(*np.zeros((3, len(self._leg_height_m))))
 
     def start(self, left_first: bool) -> Progress:
-        """The progress of robots that are ready to walk.
+        """Progress of robots in the state READY.
 
         Args:
           left_first: whether the left foot swings first.
@@ -108,13 +108,13 @@ class Stepper:
         """Advance all robots by one tick.
 
         Args:
-          before: the progress before.
-          request: the request to the robots.
+          before: the progress before the tick.
+          request: requested velocities.
           force_n: (8, n) readings of the force sensors [N].
 
         Returns:
           The new progress, the positions of the feet, and the depth (n,) of each
-          robot's crouch, see `crouched`.
+          robot's crouch: 0 standing upright, 1 at the walking height.
         """
         now = self._begin(before, request)
         time_s = now.ticks * self._tick_s
@@ -133,7 +133,7 @@ class Stepper:
         return self._end(now, time_s, feet, sensing), feet, down
 
     def _begin(self, before: Progress, request: Velocity) -> Progress:
-        """Read the request of robots that may begin a step, and plan the step."""
+        """Begin a tick: robots that start a step read the request and plan the step."""
         reads = before.ticks == 0
         speeds = within_limits(request, self._gait, self._config)
         stand = np.broadcast_to(request.stand, reads.shape)
@@ -150,7 +150,14 @@ class Stepper:
     def _end(
         self, now: Progress, time_s: FloatArray, feet: Feet, sensing: Sensing
     ) -> Progress:
-        """Change support foot and state of robots whose step or move is over."""
+        """End a tick: update robots whose step, crouching or rising is over.
+
+        Args:
+          now: the progress in this tick.
+          time_s: (n,) time since the step, crouching or rising began [s].
+          feet: positions of the feet.
+          sensing: the state of the force sensing after this tick.
+        """
         config, period_s = self._config, now.plan.period_s
         changes = step_is_over(
             time_s,
@@ -175,5 +182,5 @@ class Stepper:
         )
 
     def _plan(self, speeds: Speeds, starting: BoolArray) -> StepPlan:
-        """Plan a step of each robot, see `plan_step`."""
+        """Plan a step of each robot; `starting` (n,) marks a robot's first step."""
         return plan_step(speeds, starting, self._gait, self._leg, self._config)

@@ -1,7 +1,7 @@
-"""Detects by the force sensors when the weight has moved to the other foot.
+"""Detects with the foot force sensors when the weight has moved to the other foot.
 
 A step of Walk2014 does not end at a fixed time but when the centre of pressure crosses
-the robot's middle. That is how the walk adapts to pushes and to uneven ground.
+the robot's middle. In this way the walk adapts to pushes and to uneven ground.
 """
 
 from typing import NamedTuple
@@ -13,10 +13,11 @@ from robots.leg_geometry import Biped
 from walk_engine.engine_config import EngineConfig
 
 _UNLOADED = 1e-6
-"""Sum of the scaled readings of all sensors below which no foot carries weight."""
+"""Sum of the readings of all force sensors, each as a share of its largest reading,
+below which no foot carries weight; it only has to exceed rounding errors."""
 
 _LEFT, _RIGHT = (0, 1, 2, 3), (5, 4, 7, 6)
-"""Sensors of the left foot, and those of the right one that mirror them."""
+"""Indices of the left foot's force sensors, and of their mirror images on the right."""
 
 
 class Sensing(NamedTuple):
@@ -32,22 +33,22 @@ class Sensing(NamedTuple):
 
 
 def nothing_sensed(robots: int, config: EngineConfig) -> Sensing:
-    """The state before the first reading, for a number of robots."""
+    """State of the force sensing before the first reading, for a number of robots."""
     return Sensing(np.full((8, robots), config.sensor_start_n), np.zeros(robots))
 
 
 def sense(
     before: Sensing, force_n: FloatArray, lateral_m: FloatArray, config: EngineConfig
 ) -> Sensing:
-    """Update the state with one reading of the force sensors.
+    """Update the state of the force sensing with one reading of the sensors.
 
-    While no foot carries weight the last side is kept. (Walk2014 assumes the middle
+    While no foot carries weight, the last side is kept. (Walk2014 assumes the middle
     then, and misses a crossing in such a tick.)
 
     Args:
-      before: the state before.
+      before: the state before this reading.
       force_n: (8, n) readings of the sensors [N].
-      lateral_m: (8,) positions of the sensors, see `sensor_lateral_m`.
+      lateral_m: (8,) positions of the sensors [m], left of the torso's middle.
       config: the engine's constants.
     """
     largest_n = np.clip(force_n, before.largest_n, config.sensor_full_n)
@@ -57,7 +58,7 @@ def sense(
 
 
 def crossed(before: Sensing, now: Sensing) -> BoolArray:
-    """(n,) whether the weight changed its side between two states."""
+    """(n,) whether the weight moved to the robot's other side between two states."""
     return before.side * now.side < 0
 
 
@@ -70,13 +71,13 @@ def step_is_over(
 ) -> BoolArray:
     """(n,) whether the step is over, so that the support foot changes.
 
-    It is over when the weight changes its side, but not before a share of the period,
-    and at the latest after several periods.
+    A step is over when the weight moves to the robot's other side, but not before
+    `min_phase` periods, and at the latest after `config.timeout_periods` periods.
 
     Args:
       time_s: (n,) time since the step began [s].
       period_s: (n,) planned duration of the step [s].
-      has_crossed: (n,) whether the weight has changed its side in this tick.
+      has_crossed: (n,) whether the weight has moved to the other side in this tick.
       min_phase: (n,) earliest end, as a share of the period.
       config: the engine's constants.
     """
@@ -97,7 +98,7 @@ def next_swing(now: Sensing, left_swings: BoolArray) -> BoolArray:
 
 
 def sensor_lateral_m(biped: Biped) -> FloatArray:
-    """(8,) lateral positions of the force sensors [m], left of the torso's middle.
+    """(8,) lateral positions of the force sensors [m], positive left of the middle.
 
     The feet are assumed to be straight below the hips.
     """
@@ -107,10 +108,14 @@ def sensor_lateral_m(biped: Biped) -> FloatArray:
 
 
 def _lateral_cop_m(pressure: FloatArray, lateral_m: FloatArray) -> FloatArray:
-    """Lateral centre of pressure (n,) [m]; 0 without load.
+    """Lateral centre of pressure (n,) [m], positive to the left; 0 without load.
 
     The sensors are added one by one, each with its mirror image, so that neither the
     number of robots nor mirroring changes a bit of the result.
+
+    Args:
+      pressure: (8, n) readings of the sensors as shares of their largest readings.
+      lateral_m: (8,) positions of the sensors [m], left of the torso's middle.
     """
     moment = total = np.zeros(pressure.shape[1])
     for left, right in zip(_LEFT, _RIGHT, strict=True):

@@ -14,14 +14,14 @@ Times = float | FloatArray
 
 
 def linear_step(time_s: Times, period_s: Times) -> FloatArray:
-    """Rise from 0 to 1 over the period at constant speed."""
+    """Profile that rises from 0 to 1 over the period at constant speed."""
     return np.clip(np.divide(time_s, period_s), 0.0, 1.0)
 
 
 def parabolic_step(
     time_s: Times, period_s: Times, dead_fraction: Times = 0.0
 ) -> FloatArray:
-    """Rise from 0 to 1 with constant acceleration, then constant deceleration.
+    """Profile from 0 to 1 with constant acceleration, then constant deceleration.
 
     Args:
       time_s: time since the step began [s].
@@ -35,10 +35,10 @@ def parabolic_step(
 
 
 def parabolic_return(phase: FloatArray) -> FloatArray:
-    """Rise from 0 at phase 0 to 1 at phase 0.5, and back to 0 at phase 1.
+    """Profile that rises from 0 at phase 0 to 1 at 0.5, and falls to 0 at phase 1.
 
-    The profile consists of parabolas: the accelerations in the four quarters are 16,
-    -16, -16 and 16 per unit of phase squared.
+    It consists of parabolas: its second derivatives by phase in the four quarters are
+    16, -16, -16 and 16.
     """
     to_end = 0.5 - np.abs(np.clip(phase, 0.0, 1.0) - 0.5)
     to_apex = 0.5 - to_end

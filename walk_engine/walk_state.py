@@ -3,9 +3,9 @@
     STANDING -> CROUCHING -> READY -> STARTING -> WALKING -> STOPPING -> READY
                              READY -> RISING -> STANDING
 
-STANDING and READY last until a request ends them, CROUCHING and RISING a fixed time,
-STARTING and STOPPING one step, WALKING any number of steps. Requests are read at rest
-and in the first tick of a step or a move.
+STANDING (upright) and READY (crouched) last until a request ends them, CROUCHING and
+RISING a fixed time, STARTING and STOPPING one step, WALKING any number of steps.
+Requests are read at rest and in the first tick of a step, crouching or rising.
 """
 
 from enum import IntEnum
@@ -20,6 +20,9 @@ StateArray = npt.NDArray[np.int8]
 
 class WalkState(IntEnum):
     """The state of a walking robot; arrays of states hold these numbers.
+
+    STANDING is upright and READY crouched, both at rest; CROUCHING and RISING lead from
+    one to the other; STARTING and STOPPING are the first and the last step.
 
     Example:
       >>> WalkState(4).name
@@ -37,7 +40,7 @@ class WalkState(IntEnum):
 
 _S = WalkState
 
-# Rows: the states in their order. Columns: asked to halt, to walk, to stand upright.
+# New state by old state (rows, in order) and by request: halt, walk, stand upright.
 _ON_REQUEST: StateArray = np.array(
     [
         (_S.CROUCHING, _S.CROUCHING, _S.STANDING),
@@ -69,16 +72,16 @@ def is_stepping(state: StateArray) -> BoolArray:
 
 
 def on_request(state: StateArray, walk: BoolArray, stand: BoolArray) -> StateArray:
-    """States (n,) after a request.
+    """States (n,) of the robots after they have read a request.
 
     Args:
-      state: (n,) the states before.
-      walk: (n,) whether a robot is asked to move.
-      stand: (n,) whether a robot is asked to stand upright, which comes first.
+      state: (n,) the states before the request.
+      walk: (n,) whether a robot is asked to walk.
+      stand: (n,) whether a robot is asked to stand upright; it overrides `walk`.
     """
     return _ON_REQUEST[state, np.where(stand, 2, walk)]
 
 
 def when_over(state: StateArray) -> StateArray:
-    """States (n,) after the end of a step or a move."""
+    """States (n,) that follow when a step, crouching or rising is over."""
     return _WHEN_OVER[state]
