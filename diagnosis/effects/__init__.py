@@ -1,8 +1,8 @@
 """Effects: kinds of physics that a sim may lack. `library` lists those built in.
 
-An effect's class states all that others ask of it, so that a new effect is one file
-here, one line in `library`, and its twin in `worlds.hidden.effects`. Effects of your
-own need neither: see `also_known`.
+An effect's class holds all that a diagnosis needs to know of it. A new built-in effect
+is one file here, one line in `library`, and a second implementation for test worlds in
+`worlds.hidden.effects`. An effect of your own only needs `also_known`.
 """
 
 from diagnosis.effects.bases import (

@@ -1,4 +1,4 @@
-"""Base classes of effects that share a kind of place."""
+"""Base classes of effects at joints, servos and bodies."""
 
 from abc import abstractmethod
 from collections.abc import Sequence
@@ -26,30 +26,30 @@ class JointEffect(Effect):
     place_kind: ClassVar[PlaceKind] = "joint"
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """All joints of the plant."""
+        """Names of all joints of the robot model."""
         return plant.joints
 
 
 class ServoEffect(JointEffect):
-    """An effect that may be at joints that a servo holds with some stiffness.
+    """An effect that may be at joints whose servo has a stiffness above 0.
 
     Example:
       See docs/python.md, "An effect of your own".
     """
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Joints whose servo has a stiffness above 0, in any of the traces."""
+        """Names of joints whose servo has a stiffness above 0 in any recording."""
         servos = [trace.servo for trace in traces] or [plant.servo]
         return joints_where(plant, [servo.kp_nm_rad > 0 for servo in servos])
 
 
 class JointNumber(JointEffect):
-    """An effect whose one value changes one number of a joint.
+    """An effect with one parameter, which changes one quantity of a joint.
 
     Attributes:
-      array: the number: an array of `Joints`, or a field of MuJoCo's model with a value
-        for each degree of freedom, such as "dof_damping".
-      combined: how the value is combined with the number that is there.
+      array: name of the quantity: an attribute of `Joints`, or a field of `MjModel`
+        with a value for each degree of freedom, such as "dof_damping".
+      combined: function of the quantity and the parameter that gives the new quantity.
     """
 
     array: ClassVar[str]
@@ -58,7 +58,7 @@ class JointNumber(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Combine the effect's value with what is there."""
+        """Change the joint's quantity in one variant by the effect's value."""
         if self.array in vars(variants.joints):
             numbers = vars(variants.joints)[self.array]
             at = row, variants.column(place)
@@ -68,13 +68,13 @@ class JointNumber(JointEffect):
 
 
 class ServoNumber(JointNumber, ServoEffect):
-    """A `JointNumber` of joints that a servo holds with some stiffness."""
+    """A `JointNumber` for joints whose servo has a stiffness above 0."""
 
 
 class TorqueEffect(JointEffect):
-    """A torque at a joint, computed at every step by the effect itself.
+    """A torque at a joint by a law of your own, which `torque_nm` states.
 
-    The way to physics that neither MuJoCo nor the replay knows: `torque_nm` is the law.
+    Replays call it at every step. Use it for physics that MuJoCo does not have.
 
     Example:
       See docs/python.md, "An effect of your own".
@@ -85,7 +85,7 @@ class TorqueEffect(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Note the values; those of several effects at one joint are added.
+        """Store the values for one variant; those of several effects are added.
 
         A law that is not linear in its values has to override this.
         """
@@ -100,19 +100,19 @@ class TorqueEffect(JointEffect):
         velocity_rad_s: FloatArray,
         time_s: FloatArray,
     ) -> FloatArray:
-        """Torques (rows, j) [N m] at all joints of all simulations for one step.
+        """Torques (rows, j) [N m] at the j joints of all simulations for one step.
 
         Args:
-          values: (rows, j, p) the effect's values; all 0 where it is absent, where the
-            torque must be 0.
-          position_rad: (rows, j) as the step begins.
-          velocity_rad_s: (rows, j) as the step begins.
-          time_s: (rows, 1) time of the recording.
+          values: (rows, j, p) the effect's p parameters. Where all are 0, there is no
+            effect, and the torque must be 0.
+          position_rad: (rows, j) joint angles as the step begins.
+          velocity_rad_s: (rows, j) joint speeds as the step begins.
+          time_s: (rows, 1) time in the recording.
         """
 
 
 class BodyEffect(Effect):
-    """An effect that may be at any body that has mass, a name, and moves.
+    """An effect that may be at any body that has a name and mass, and can move.
 
     Example:
       See docs/python.md, "An effect of your own".
@@ -121,11 +121,11 @@ class BodyEffect(Effect):
     place_kind: ClassVar[PlaceKind] = "body"
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Names of the bodies; a body without a name cannot be a place."""
+        """Names of the bodies that have mass and can move."""
         return tuple(name for name in plant.bodies if name)
 
 
 def joints_where(plant: "Plant", masks: Sequence[BoolArray]) -> tuple[str, ...]:
-    """Names of the joints for which any of some masks (j,) is true."""
+    """Names of the joints for which at least one of the masks (j,) is true."""
     found = np.flatnonzero(np.any(masks, axis=0))
     return tuple(plant.joints[column] for column in found)

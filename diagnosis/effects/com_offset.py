@@ -1,4 +1,4 @@
-"""An effect: a body's centre of mass is not where the model has it."""
+"""The effect com offset: a body's centre of mass is not where the model has it."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from diagnosis.traces.trace import Trace
 
 _ABOUT_ITS_CENTRE = 1
-"""MuJoCo's `body_simple` of a simple body that turns; 2 is one that only slides."""
+"""MuJoCo's `body_simple` for a simple body that can rotate; 2 is for one that only
+slides."""
 
 
 class ComOffset(BodyEffect):
@@ -23,7 +24,7 @@ class ComOffset(BodyEffect):
 
     Source: first moments among the inertial parameters, Atkeson, An and Hollerbach
     1986, "Estimation of inertial parameters of manipulator loads and links". In MuJoCo
-    `body_ipos`; constants that follow from it are `mj_setConst`'s.
+    `body_ipos`.
     """
 
     name = "com_offset"
@@ -39,11 +40,11 @@ class ComOffset(BodyEffect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Bodies that MuJoCo's compiler has not made simple.
+        """Names of bodies, except those that MuJoCo's compiler has made simple.
 
-        A simple body turns about its centre of mass, so that MuJoCo's mass matrix has
-        no entries for the coupling that an offset causes. `simple="false"` in the
-        model lifts this.
+        A simple body rotates about its centre of mass, so MuJoCo's mass matrix has no
+        entries for the coupling that an offset causes. `simple="false"` in the model
+        avoids this.
         """
         places = super().places(plant, traces)
         simple = [
@@ -56,11 +57,11 @@ class ComOffset(BodyEffect):
         )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The offset along each axis of the body's frame."""
+        """The offset [m] along each axis of the body's frame."""
         return tuple(Parameter(axis, "m", -0.1, 0.1, 0.0, 0.01) for axis in "xyz")
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the offset to the body's own."""
+        """Shift a body's centre of mass in one variant of the model."""
         variants.field("body_ipos")[row, variants.body(place)] += values

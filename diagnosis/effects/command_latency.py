@@ -1,4 +1,4 @@
-"""An effect: commands take effect late."""
+"""The effect command latency: commands take effect late."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -36,7 +36,7 @@ class CommandLatency(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The commands of all joints, if a trace has commands of any kind."""
+        """("commands",) if a recording has position or torque commands, else ()."""
         has_commands = any(
             trace.command_rad is not None or trace.command_torque_nm is not None
             for trace in traces
@@ -44,20 +44,20 @@ class CommandLatency(Effect):
         return ("commands",) if has_commands else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The delay: usually 2 to 60 ms; 0.5 s were seen on a slow bus."""
+        """The delay [s]: usually 2 to 60 ms; 0.5 s has been seen on a slow bus."""
         return (Parameter("delay", "s", 0.0, 0.6, 0.0, 0.015),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the delay to the one that is there."""
+        """Add the delay to that of all commands in one variant of the model."""
         variants.signals.command_delay_s[row] += values[0]
 
     def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
-        """Late encoders if the base is fixed: positions cannot distinguish the two."""
+        """Late encoders if the base is fixed: joint positions then look the same."""
         late = PlacedEffect("sensor_delay", "encoders")
         return (late,) if plant.base == "fixed" else ()
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The torque by which the servo's stiffness is ahead, for each second."""
+        """(rows,) servo torque lost per second of delay: kp times command rate."""
         return motion.kp_nm_rad * motion.command_rate_rad_s

@@ -1,4 +1,4 @@
-"""An effect: soles or ground are soft."""
+"""The effect contact compliance: soles or ground are soft."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -17,37 +17,40 @@ if TYPE_CHECKING:
     from diagnosis.traces.trace import Trace
 
 DAMPING_RATIO = 0.1
-"""Damping as a share of critical damping, for the whole robot on one foot."""
+"""Damping of soft contact as a share of critical damping of the robot on one foot."""
 
 _ADDED_MASS = 0.25
-"""Mass that the soft contact seems to have, as a share of the foot's effective mass."""
+"""Apparent mass of MuJoCo's soft contact as a share of the foot's effective mass, small
+so that the contact acts like a spring and damper without mass."""
 
 _IMPEDANCE_RATIO = 100.0
-"""Tangential over normal impedance, so that a sticking foot hardly creeps."""
+"""MuJoCo's `impratio`, tangential over normal impedance of contacts: large, so that a
+sticking foot hardly creeps."""
 
 _WEIGHT_OVER_GROUND = 1e9
-"""Weight of the foot's solver parameters against those of the ground."""
+"""MuJoCo's `solmix` of a soft foot: so large that the foot's solver parameters count in
+a contact instead of the ground's."""
 
 
 class ContactCompliance(Effect):
-    """Soft contact of a flat foot: normal force K r + B r' at depth r.
+    """Soft contact of a flat foot: normal force K r + B r' [N] at depth r [m].
 
     Source: Kelvin-Voigt contact as in Gilardi and Sharf 2002, "Literature survey of
     contact dynamics modelling", section 4. B is a tenth of critical damping.
 
     In MuJoCo (documentation, "Constraint model" and "Reference") a contact with solref
     (-k, -b) and constant impedance d solves a + b r' / d + k r / d + R f = 0, with
-    R = A (1 - d) / d and A the foot's inverse mass in the reference pose
-    (`body_invweight0`). At rest f = k r / (A (1 - d)): k is per effective mass, and
-    K [N/m] of a foot with n contact points takes k = K A (1 - d) / n, likewise b. What
-    differs from a spring is the mass n / R that the contact seems to have; d is
-    chosen so that it is a quarter of the foot's, 1 / A.
+    acceleration a, force f, R = A (1 - d) / d, and A the foot's inverse mass in the
+    reference pose (`body_invweight0`). At rest f = k r / (A (1 - d)). So a foot with n
+    contact points gets stiffness K by k = K A (1 - d) / n, and likewise B. Unlike a
+    spring the contact has an apparent mass n / R; d makes it a quarter of the foot's
+    effective mass 1 / A.
 
-    A sticking foot creeps at tangential force / B; an elliptic cone with its tangential
-    impedance raised a hundredfold slows that to a hundredth.
+    A sticking foot creeps at tangential force / B; an elliptic friction cone and
+    `impratio` 100 slow that to a hundredth.
 
-    K is that of the plant: where a row's masses differ, it changes with A. Of two geoms
-    the one with the higher priority decides; the feet's must not be the lower one.
+    Limits: if another effect changes masses, K changes with A. The feet's geoms must
+    not have a lower priority than the ground's, or MuJoCo ignores their softness.
     """
 
     name = "contact_compliance"
@@ -62,11 +65,11 @@ class ContactCompliance(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The feet, if they can touch a ground."""
+        """("feet",) if the model's feet can touch a ground, else ()."""
         return ("feet",) if has_ground_contact(plant) else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Stiffness K of one foot, on which the robot sinks in by 0.1 to 30 mm."""
+        """Stiffness K of one foot [N/m], on which the robot sinks by 0.1 to 30 mm."""
         weight = weight_n(plant)
         return (
             Parameter(
@@ -83,7 +86,7 @@ class ContactCompliance(Effect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Make all feet soft, in series with feet that an effect made soft before."""
+        """Make all feet of a variant soft, in series with any softness given before."""
         import mujoco
 
         stiffness = values[0]
@@ -97,7 +100,7 @@ class ContactCompliance(Effect):
 
 
 def _soften(variants: "Variants", row: int, foot: str, stiffness: float) -> None:
-    """Give one foot a stiffness [N/m], in series with one that it was given before."""
+    """Give one foot a stiffness [N/m], in series with any that it was given before."""
     plant = variants.plant
     geoms = foot_geoms(plant, foot)
     points = _contact_points(plant, geoms)
@@ -117,7 +120,7 @@ def _soften(variants: "Variants", row: int, foot: str, stiffness: float) -> None
 
 
 def _contact_points(plant: "Plant", geoms: IntArray) -> int:
-    """Number of contacts that MuJoCo 4.0 finds between flat geoms and a plane."""
+    """Number of contacts that MuJoCo 4.0 makes between geoms lying flat and a plane."""
     import mujoco
 
     kind = mujoco.mjtGeom

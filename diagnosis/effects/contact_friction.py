@@ -1,4 +1,4 @@
-"""An effect: friction between feet and ground differs from the model's."""
+"""The effect contact friction: feet on the ground have another friction coefficient."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -26,7 +26,7 @@ class ContactFriction(Effect):
 
     Source: Coulomb friction as in Stewart and Trinkle 1996, "An implicit time-stepping
     scheme for rigid body dynamics with inelastic collisions and Coulomb friction". In
-    MuJoCo `geom_friction`; explicit contact pairs have their own and are not changed.
+    MuJoCo `geom_friction`; friction of explicit contact pairs is not changed.
     """
 
     name = "contact_friction"
@@ -40,12 +40,12 @@ class ContactFriction(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The feet, if they can touch a ground and have friction on it."""
+        """("feet",) if the feet can touch a ground and have friction on it, else ()."""
         walks = has_ground_contact(plant) and sole_friction(plant) > 0
         return ("feet",) if walks else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The coefficient mu; two thirds of the plant's is tried first."""
+        """The coefficient mu; two thirds of the model's is tried first."""
         nominal = sole_friction(plant)
         high = max(2.0, 2 * nominal)
         return (
@@ -55,10 +55,10 @@ class ContactFriction(Effect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Scale the coefficients of feet and ground by the same factor.
+        """Scale the coefficients of feet and ground in one variant by the same factor.
 
-        MuJoCo uses the larger coefficient of two geoms, or that of the geom with
-        priority; either way the result is the plant's coefficient, scaled.
+        MuJoCo uses the larger coefficient of two geoms, or that of the geom with higher
+        priority; scaling both gives mu in either case.
         """
         plant = variants.plant
         geoms = np.concatenate([ground_geoms(plant), sole_geoms(plant)])

@@ -1,4 +1,4 @@
-"""An effect: water, air or a trailing cable slows a body down."""
+"""The effect drag: water, air or a trailing cable slows a body down."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Drag(BodyEffect):
-    """Force -c v at a body's centre of mass, v its velocity in the world.
+    """Force -c v at a body's centre of mass, with v the velocity of that point.
 
     Source: drag at low speed, linear as Stokes 1851 found for a sphere.
     """
@@ -31,27 +31,27 @@ class Drag(BodyEffect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Bodies that move, except those that can only slide along one line.
+        """Names of bodies that move, except those that only slide along one line.
 
-        There, drag is the same as viscous friction of the sliding joint.
+        Drag of those is the same as viscous friction of their sliding joint.
         """
         every = super().places(plant, traces)
         return tuple(name for name in every if not _slides(plant, name))
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The coefficient c; a typical drag is 10 % of the robot's weight at 1 m/s."""
+        """The coefficient c [N s/m], typically 10 % of the robot's weight at 1 m/s."""
         scale = weight_n(plant)
         return (Parameter("coefficient", "N s/m", 0.0, 2 * scale, 0.0, 0.1 * scale),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the coefficient to the one that is there."""
+        """Add the coefficient to a body's drag in one variant of the model."""
         variants.outside.drag_n_s_m[row, variants.body(place)] += values[0]
 
 
 def _slides(plant: "Plant", name: str) -> bool:
-    """Whether a body can only move along one line."""
+    """Whether a body can only slide along one line."""
     import mujoco
 
     model = plant.model

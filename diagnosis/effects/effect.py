@@ -27,85 +27,86 @@ if TYPE_CHECKING:
     from diagnosis.traces.usage import Usage
 
 STRETCHES = (0.4, 1.0, 2.5)
-"""Multiples of a guessed size that are tried before it is fitted."""
+"""Factors on a guessed size of an effect that are tried before the size is fitted."""
 
 LIMITS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
-"""Multiples of a guessed limit that are tried. A joint too weak for its load collapses,
-so the gradient at the guess is useless."""
+"""Factors on a guessed torque or speed limit that are tried before it is fitted. They
+are close, since gradients are useless where a joint too weak for its load collapses."""
 
 STIFFNESSES = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
-"""Multiples of a guessed stiffness that are tried: between two resonances the gradient
-points to neither."""
+"""Factors on a guessed stiffness that are tried before it is fitted: at a guess between
+two resonances the gradient points to neither."""
 
 LEAST_STRETCH = 1e-3
-"""Smallest divisor of a value whose neutral value is infinite."""
+"""Smallest factor by which a value is divided, where an infinite value stands for no
+effect; avoids division by zero."""
 
 
 class Effect(ABC):
     """One kind of physics that a sim may lack.
 
-    A subclass states name, kind of place, parameters, places, and how a variant of a
-    plant gets the effect. All else has a default. Effects of your own are objects of
-    such subclasses within `diagnosis.effects.also_known`.
+    A subclass states name, kind of place, parameters, places, and how a copy of a robot
+    model gets the effect. All else has a default. Use objects of subclasses of your own
+    within `diagnosis.effects.also_known`.
 
     Example:
       See docs/python.md, "An effect of your own".
     """
 
     name: ClassVar[str]
-    """Unique, lower case with underscores; what verdicts call it."""
+    """Name of the effect in verdicts: unique, lower case with underscores."""
 
     place_kind: ClassVar[PlaceKind]
-    """What it is attached to."""
+    """Kind of thing that the effect is attached to, such as "joint"."""
 
     native: ClassVar[bool]
-    """Whether MuJoCo has it, so that a corrected MJCF can hold it."""
+    """Whether MuJoCo can simulate the effect, so that an MJCF file can contain it."""
 
     words: ClassVar[EffectWords]
-    """Words for reports; made from the name and the docstring unless stated."""
+    """Words for reports; made from the effect's name and class docstring by default."""
 
     components: ClassVar[int] = 1
-    """How many of the first values are components of one vector. Each component is
-    tried alone, and what they do together is the sum."""
+    """Number of the effect's first values that are components of one vector. Each
+    component is tried alone; their effects add up."""
 
     timed: ClassVar[bool] = False
-    """Whether the last two values are start [s] and duration [s]. Such an effect is
+    """Whether the effect's last two values are start [s] and duration [s]. If so, it is
     tried at the times at which the recordings show a short error."""
 
     threshold: ClassVar[bool] = False
-    """Whether it acts only beyond its first value, as a limit or a stop does. Its size
-    cannot be extrapolated from a first try."""
+    """Whether the effect acts only beyond its first value, as a limit or a stop does.
+    If so, its size cannot be extrapolated from a first try."""
 
     stiff: ClassVar[bool] = False
-    """Whether it is a spring in the drive, which needs half the time step. Its first
-    value is the stiffness."""
+    """Whether the effect is a spring in the drive, whose stiffness is the first value.
+    If so, it is simulated at half the usual time step."""
 
     joint_by_joint: ClassVar[bool] = True
-    """Whether all joints may be tried in one replay, because the effect at one joint
-    hardly moves the others."""
+    """Whether one simulation may try the effect at all joints together, because at one
+    joint it hardly moves the others."""
 
     at_tips: ClassVar[bool] = False
-    """Whether it is tried first at the outermost bodies, where it shows most."""
+    """Whether the effect is first tried at outermost bodies, where it shows most."""
 
     on_every_servo: ClassVar[bool] = True
-    """Whether an incomplete robot model may lack it at all joints; False for faults of
-    single joints. Only counts where the place is a joint or its signals."""
+    """Whether a simple robot model may lack the effect at all joints; False for faults
+    of single joints. Only used where the place is a joint or its signals."""
 
     rarity_nats: ClassVar[float] = 0.0
-    """Prior: extra log-likelihood [nats] that a rare effect needs."""
+    """Prior: extra log-likelihood [nats] that a rare effect needs to be accepted."""
 
     main_parameters: ClassVar[tuple[str, ...]] = ()
-    """Names of the parameters that say how large the effect is; all where empty."""
+    """Names of the parameters that say how large the effect is; empty means all."""
 
     column_parameter: ClassVar[int] = 0
-    """Number of the parameter that `torque_column` is proportional to."""
+    """Index of the parameter whose value scales the torque of `torque_column`."""
 
     by_inverse_dynamics: ClassVar[bool] = False
-    """Whether the torque that it adds is that of a changed model or pose, found by
-    inverse dynamics instead of `torque_column`."""
+    """Whether sparse regression computes the effect's torque by inverse dynamics of a
+    changed model or pose, instead of by `torque_column`."""
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Make words for an effect that has a name and states no words."""
+        """Make `words` for a subclass that has a name and states no words."""
         super().__init_subclass__(**options)
         stated = vars(cls)
         if "name" in stated and "words" not in stated:
@@ -117,45 +118,45 @@ class Effect(ABC):
 
     @abstractmethod
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The effect's parameters, with bounds and sizes that suit the place."""
+        """The effect's parameters, with bounds and typical values for this place."""
 
     @abstractmethod
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Where the effect may be, given the robot and what was recorded."""
+        """Names of places where the robot may have the effect, given its recordings."""
 
     @abstractmethod
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Put the effect into one variant of the plant.
+        """Put the effect into one variant of the robot model.
 
-        Effects are applied one after another; each adds to what is there.
+        Several effects may be applied to one variant; each adds to those before.
 
         Args:
-          variants: of the plant, changed in place.
-          row: number of the variant.
+          variants: copies of the robot model, changed in place.
+          row: index of the variant to be changed.
           place: one of `places`.
-          values: (p,) of the parameters.
+          values: (p,) values of the parameters.
         """
 
     def apply_to_sim(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Put the effect into a corrected sim, whose ground is a terrain of its own.
+        """Put the effect into a sim world, whose ground is a heightfield of its own.
 
         Arguments are those of `apply`.
 
         Raises:
-          BadModelError: such a sim cannot have it.
+          BadModelError: a sim world cannot have this effect.
         """
         self.apply(variants, row, place, values)
 
     def obstacle(self, recorded: "Base", base: "Base") -> str:
-        """Why a robot cannot have what recordings showed; "" if it can.
+        """Why a sim cannot have the effect found in recordings; "" if it can.
 
         Args:
-          recorded: base of the robot in the recordings.
-          base: base of the robot that gets the effect.
+          recorded: base of the robot in the recordings, "fixed" or "floating".
+          base: base of the robot in the sim that is to get the effect.
         """
         return ""
 
@@ -166,13 +167,13 @@ class Effect(ABC):
         usage: "Usage",
         intervals: Sequence[Interval],
     ) -> list[Values]:
-        """Values to begin with; one set will do where an effect is nearly linear.
+        """Values to try first; one set is enough where the effect is nearly linear.
 
         Args:
-          plant: nominal.
+          plant: the nominal robot model.
           place: one of `places`.
-          usage: how the recordings use each joint.
-          intervals: times at which something may have acted for a while.
+          usage: range and speed of each joint in the recordings.
+          intervals: times at which the recordings show a short error.
         """
         typical = tuple(p.typical for p in self.parameters(plant, place))
         if self.components == 1 and not self.timed:
@@ -189,11 +190,11 @@ class Effect(ABC):
     def sizes_to_scan(
         self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
     ) -> list[PlacedEffect]:
-        """The effect in several sizes around a guess, of which the best is fitted.
+        """The effect in several sizes around a guess; the fit starts from the best.
 
         Args:
-          plant: nominal.
-          placed: the guess.
+          plant: the nominal robot model.
+          placed: the effect with guessed values.
           traces: recordings that the fit uses.
         """
         if not (self.threshold or self.stiff):
@@ -205,10 +206,10 @@ class Effect(ABC):
     def stretched(
         self, plant: "Plant", placed: PlacedEffect, factor: float
     ) -> PlacedEffect:
-        """The effect `factor` times as large, within its bounds.
+        """The effect `factor` times as large, within its parameters' bounds.
 
-        The first value changes, or the components of a vector. An effect with a
-        threshold stays as it is.
+        Only the first value is scaled, or all components of a vector. An effect with a
+        threshold is returned unchanged.
         """
         if self.threshold:
             return placed
@@ -226,19 +227,19 @@ class Effect(ABC):
         return tuple(one.neutral for one in self.parameters(plant, placed.place))
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """Starts of a fit, if a simpler effect at the same place was found to help.
+        """This effect with start values taken from a simpler effect at the same place.
 
-        An effect that contains a simpler one returns itself with values that continue
-        the simpler one's; a fit that begins elsewhere may never get there.
+        `other` is an effect found to help. If this effect contains it, a fit from its
+        values may succeed where fits from other values fail; if not, () is returned.
         """
         return ()
 
     def simpler(self, placed: PlacedEffect) -> PlacedEffect:
-        """The simpler effect that this one contains, or the effect itself."""
+        """The simpler effect that `placed` contains, or else `placed` itself."""
         return placed
 
     def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
-        """Effects that no recording of this robot can distinguish from this one."""
+        """Effects that recordings of this robot cannot distinguish from this one."""
         return ()
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
@@ -256,28 +257,28 @@ class Effect(ABC):
         return When()
 
     def torque_column(self, motion: JointMotion) -> FloatArray | None:
-        """(rows,) torque [N m] that the effect adds at a joint, for a parameter of 1.
+        """(rows,) joint torque [N m] of the effect for a parameter value of 1.
 
-        Only for effects that are linear, or nearly so, in the parameter of number
-        `column_parameter`; None for all others. Sparse regression uses it.
+        Sparse regression uses it. The parameter is that with index `column_parameter`;
+        None for effects that are not even nearly linear in it.
         """
         return None
 
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """Name, value and standard error for the size of a `torque_column`.
+        """Effect name, parameter value and standard error from a regression result.
 
         Args:
-          size: by which the column was multiplied.
-          error: standard error of the size.
-          damping_nm_s_rad: damping of the servo and back-EMF at the joint.
+          size: coefficient that regression found for `torque_column`.
+          error: standard error of the coefficient.
+          damping_nm_s_rad: damping of the servo plus back-EMF at the joint.
         """
         return self.name, size, error
 
 
 def one_by_one(values: Values) -> list[Values]:
-    """Vectors with one of some components each, the others being zero."""
+    """For each of the values, a vector in which the other values are zero."""
     return [
         tuple(value if i == axis else 0.0 for i, value in enumerate(values))
         for axis in range(len(values))

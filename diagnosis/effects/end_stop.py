@@ -1,4 +1,4 @@
-"""An effect: a hard stop inside a joint's nominal range."""
+"""The effect end stop: a hard stop inside a joint's nominal range."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -23,17 +23,18 @@ if TYPE_CHECKING:
     from diagnosis.traces.usage import Usage
 
 _FAR_RAD = 1e6
-"""Range of a joint that has none."""
+"""Bound of the angle of a joint without a range: so large that it acts as no bound."""
 
 _STIFF = (0.005, 1.0)
-"""MuJoCo's `solref` of the stop: time constant [s] and damping ratio."""
+"""MuJoCo's `solref` of the stop, time constant [s] and damping ratio: hard, without
+bouncing."""
 
 
 class EndStop(JointEffect):
     """A hard stop: joint angle q <= angle (side +1) or q >= angle (side -1).
 
-    The stop pushes the joint back, critically damped, with a time constant of 5 ms;
-    MuJoCo raises it to two steps where these are longer.
+    The stop pushes the joint back, critically damped, with a time constant of 5 ms, or
+    of two physics steps if that is longer, as MuJoCo demands.
 
     Source: complementarity between distance and force, Brogliato 2016, "Nonsmooth
     mechanics". In MuJoCo `jnt_range`.
@@ -51,7 +52,7 @@ class EndStop(JointEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Angle of the stop and its side, of which only the sign counts."""
+        """Angle of the stop [rad], and side, whose sign says which way it blocks."""
         low, high = range_rad(plant, place)
         is_limited = plant.model.jnt_limited[plant.model.joint(place).id]
         neutral = high if is_limited else np.inf
@@ -64,7 +65,7 @@ class EndStop(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Narrow the joint's range; a stop outside the range changes nothing."""
+        """Narrow a joint's range in one variant; stops outside it change nothing."""
         angle, side = (float(value) for value in values)
         joint = variants.plant.model.joint(place).id
         limited, ranges = variants.field("jnt_limited"), variants.field("jnt_range")
@@ -95,11 +96,11 @@ class EndStop(JointEffect):
     def sizes_to_scan(
         self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
     ) -> list[PlacedEffect]:
-        """The guess alone: a multiple of an angle is no larger or smaller stop."""
+        """Only the guess: scaling a stop's angle does not scale the effect."""
         return [placed]
 
     def neutral_values(self, plant: "Plant", placed: PlacedEffect) -> Values:
-        """The end of the range on the stop's side."""
+        """Angle at the end of the joint's range on the stop's side, and the side +1."""
         angle, side = self.parameters(plant, placed.place)
         if placed.values and placed.values[1] < 0:
             return angle.low, side.neutral

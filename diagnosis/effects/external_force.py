@@ -1,4 +1,4 @@
-"""An effect: a body is pushed from outside for some time."""
+"""The effect external force: a body is pushed from outside for some time."""
 
 from typing import TYPE_CHECKING
 
@@ -13,16 +13,17 @@ if TYPE_CHECKING:
     from diagnosis.plant.plant import Plant
 
 _EARLIEST_S, _LONGEST_S = -2.0, 600.0
-"""Earliest start in the recording's time, and longest duration. A push may have begun
-before the recording."""
+"""Bounds of a push: earliest start, in the recording's time, and longest duration. A
+push may have begun before the recording."""
 
 
 class ExternalForce(BodyEffect):
     """A constant force (x, y, z) at a body's centre of mass for some time.
 
-    Its joint torques are J^T f, J the Jacobian of the centre of mass (Haddadin, De
-    Luca and Albu-Schaffer 2017, "Robot collisions: a survey on detection, isolation,
-    and identification"). World frame; `start` is in the trace's time.
+    The force is in the world frame; `start` is in the recording's time. Its joint
+    torques are J^T f, J the Jacobian of the centre of mass (Haddadin, De Luca and
+    Albu-Schaffer 2017, "Robot collisions: a survey on detection, isolation, and
+    identification").
     """
 
     name = "external_force"
@@ -39,7 +40,7 @@ class ExternalForce(BodyEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Force, up to the robot's weight along each axis, start and duration."""
+        """Force x, y, z [N], each up to the robot's weight; start and duration [s]."""
         weight = weight_n(plant)
         force = (Parameter(a, "N", -weight, weight, 0.0, 0.05 * weight) for a in "xyz")
         return (
@@ -51,7 +52,7 @@ class ExternalForce(BodyEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add a push; forces of pushes that overlap are added."""
+        """Add the push to one variant of the model; overlapping forces add up."""
         x, y, z, start_s, duration_s = (float(value) for value in values)
         if duration_s > 0 and any((x, y, z)):
             push = Push(place, (x, y, z), start_s, duration_s)

@@ -1,4 +1,4 @@
-"""Finds the geoms of the ground in a robot model, and those of feet that touch it."""
+"""Finds the geoms of ground and soles in a robot model, and their friction."""
 
 from typing import TYPE_CHECKING
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def ground_geoms(plant: "Plant") -> IntArray:
-    """(k,) numbers of the geoms on the world body that can collide."""
+    """(k,) MuJoCo ids of the geoms on the world body that can collide: the ground."""
     model = plant.model
     can_touch = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
     return np.flatnonzero((model.geom_bodyid == 0) & can_touch)
 
 
 def foot_geoms(plant: "Plant", foot: str) -> IntArray:
-    """(k,) numbers of a foot's geoms that can collide with the ground."""
+    """(k,) MuJoCo ids of a foot's geoms that can collide with the ground."""
     model = plant.model
     of_foot: IntArray = np.flatnonzero(model.geom_bodyid == model.body(foot).id)
     ground = ground_geoms(plant)
@@ -31,7 +31,7 @@ def foot_geoms(plant: "Plant", foot: str) -> IntArray:
 
 
 def sole_geoms(plant: "Plant") -> IntArray:
-    """(k,) numbers of the geoms of all feet that can collide with the ground."""
+    """(k,) MuJoCo ids of the geoms of all feet that can collide with the ground."""
     none = np.zeros(0, np.intp)
     return np.concatenate([none, *(foot_geoms(plant, foot) for foot in plant.feet)])
 

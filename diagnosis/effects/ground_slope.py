@@ -17,15 +17,14 @@ if TYPE_CHECKING:
 
 
 class GroundSlope(Effect):
-    """The ground, or a fixed base, is turned by R = R_y(pitch) R_x(roll).
+    """The ground, or a fixed base, is rotated by R = R_y(pitch) R_x(roll).
 
-    A positive pitch lets the ground fall towards +x, a positive roll lets it rise
-    towards +y. For a floating base the ground's geoms turn about the world's origin.
-    A fixed base stays where it is and gravity turns: R^T g, as the base sees it.
+    With positive pitch the ground falls towards +x, with positive roll it rises towards
+    +y. For a floating base the ground's geoms rotate about the world's origin. For a
+    fixed base gravity g rotates instead: it becomes R^T g in the base's frame.
 
     Source: elementary rotations, Craig 2005, "Introduction to robotics", chapter 2. In
-    MuJoCo `geom_quat` and `geom_pos`, or `opt.gravity`; constants that follow from
-    them are `mj_setConst`'s.
+    MuJoCo `geom_quat` and `geom_pos`, or `opt.gravity`.
     """
 
     name = "ground_slope"
@@ -41,12 +40,12 @@ class GroundSlope(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The world, if the base is fixed or there is a ground."""
+        """("world",) if the base is fixed or the model has a ground, else ()."""
         has_any = plant.base == "fixed" or len(ground_geoms(plant)) > 0
         return ("world",) if has_any else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Pitch and roll."""
+        """The parameters pitch and roll [rad] of the tilt."""
         return tuple(
             Parameter(name, "rad", -0.3, 0.3, 0.0, 0.03) for name in ("pitch", "roll")
         )
@@ -54,7 +53,7 @@ class GroundSlope(Effect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Turn the ground, or gravity if the base is fixed."""
+        """Rotate a variant's ground, or its gravity if the base is fixed."""
         if not np.any(values):
             return
         if variants.plant.base == "fixed":
@@ -69,12 +68,12 @@ class GroundSlope(Effect):
     def apply_to_sim(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Turn gravity instead of the ground, so that a terrain stays where it is."""
+        """Rotate gravity instead of the ground, so that heightfields stay in place."""
         gravity = variants.field("opt.gravity")
         gravity[row] = _turned(_inverse(_tilt(*values)), gravity[row])
 
     def obstacle(self, recorded: "Base", base: "Base") -> str:
-        """Why the tilt of a fixed base cannot be the slope that a robot walks on."""
+        """Why a floating base cannot have the tilt of a fixed one's mount, or ""."""
         if recorded != "fixed" or base != "floating":
             return ""
         return (
@@ -84,29 +83,29 @@ class GroundSlope(Effect):
 
 
 def _tilt(pitch_rad: float, roll_rad: float) -> FloatArray:
-    """Quaternion of R_y(pitch) R_x(roll)."""
+    """Quaternion (4,) w, x, y, z of the rotation R_y(pitch) R_x(roll)."""
     pitch = np.array([np.cos(pitch_rad / 2), 0, np.sin(pitch_rad / 2), 0])
     roll = np.array([np.cos(roll_rad / 2), np.sin(roll_rad / 2), 0, 0])
     return _product(pitch, roll)
 
 
 def _turned(turn: FloatArray, vector: FloatArray) -> FloatArray:
-    """The vector (3,) turned by a quaternion."""
+    """The vector (3,) rotated by a quaternion (4,)."""
     return _call("mju_rotVecQuat", 3, vector, turn)
 
 
 def _product(first: FloatArray, second: FloatArray) -> FloatArray:
-    """The product of two quaternions: the second turn, then the first."""
+    """Product of two quaternions (4,): the second rotation, followed by the first."""
     return _call("mju_mulQuat", 4, first, second)
 
 
 def _inverse(turn: FloatArray) -> FloatArray:
-    """The inverse of a quaternion."""
+    """Inverse of a unit quaternion (4,)."""
     return _call("mju_negQuat", 4, turn)
 
 
 def _call(function: str, size: int, *arguments: Any) -> FloatArray:
-    """Call one of MuJoCo's functions and return the array (size,) that it writes."""
+    """Call a function of MuJoCo by name; return the array (size,) that it writes."""
     import mujoco
 
     result = np.zeros(size)

@@ -1,4 +1,4 @@
-"""An effect: the gyroscope has a constant error."""
+"""The effect gyro bias: the gyroscope has a constant error."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class GyroBias(Effect):
-    """A constant error of the gyroscope: measured = true + bias, in its own frame.
+    """A constant error of the gyroscope: measured = true + bias, in the sensor frame.
 
     Source: the usual inertial sensor model without drift, for example Titterton and
     Weston 2004, "Strapdown inertial navigation technology".
@@ -31,16 +31,16 @@ class GyroBias(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The gyroscope, if a trace has one."""
+        """("gyroscope",) if a recording has gyroscope measurements, else ()."""
         has_one = any(trace.gyroscope_rad_s is not None for trace in traces)
         return ("gyroscope",) if has_one else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The bias of each axis of the sensor."""
+        """The bias [rad/s] of each axis of the sensor."""
         return tuple(Parameter(axis, "rad/s", -0.5, 0.5, 0.0, 0.02) for axis in "xyz")
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the bias to the one that is there."""
+        """Add the bias to that of the gyroscope in one variant of the model."""
         variants.signals.gyro_bias_rad_s[row] += values

@@ -1,4 +1,4 @@
-"""An effect: a spring between motor and link."""
+"""The effect joint elasticity: a spring between motor and link."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -41,10 +41,10 @@ class JointElasticity(JointEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Stiffness k and damping d.
+        """Stiffness k [N m/rad] and damping d [N m s/rad].
 
-        A typical spring winds up by 0.05 rad under a large torque of the joint, and has
-        3 % of critical damping; at the bounds it winds up by 1 rad and by 0.5 mrad.
+        A typical spring twists by 0.05 rad under a large torque for the joint, and has
+        3 % of critical damping; at the bounds it twists by 1 rad and by 0.5 mrad.
         """
         scale = torque_nm(plant, place)
         typical = scale / 0.05
@@ -59,10 +59,10 @@ class JointElasticity(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Put the spring in series with one that is there: compliances add.
+        """Put the spring in series with any other at the joint: compliances add.
 
-        Several k_i + d_i s in series are 1 / sum 1/(k_i + d_i s), whose part linear in
-        s is d = k^2 sum d_i / k_i^2.
+        With s the Laplace variable, springs k_i + d_i s in series give
+        1 / sum 1/(k_i + d_i s), to first order in s a damping d = k^2 sum d_i / k_i^2.
         """
         stiffness, damping = values
         if np.isinf(stiffness):

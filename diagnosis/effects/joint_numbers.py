@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from diagnosis.traces.usage import Usage
 
 PLAY_RAD = 0.005
-"""Servo error [rad] at which a gear's gap counts as crossed in `torque_column`."""
+"""Servo error [rad] at which `Backlash.torque_column` takes a gear's play as 76 %
+crossed. Small, since the sign of the error decides on which side the teeth touch."""
 
 
 class ViscousFriction(JointNumber):
@@ -43,25 +44,25 @@ class ViscousFriction(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The coefficient b; a typical one takes 10 % of the torque at brisk speed."""
+        """The coefficient b [N m s/rad]; typical: 10 % of full torque in brisk use."""
         scale = torque_nm(plant, place) / brisk_rad_s(plant, place)
         return (Parameter("coefficient", "N m s/rad", 0.0, scale, 0.0, 0.1 * scale),)
 
     def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
-        """Larger servo damping, if the motor has back-EMF: it is the same torque."""
+        """Larger servo damping, if the motor has back-EMF: the torque is the same."""
         if place not in plant.joints:
             return ()
         has_emf = plant.servo.back_emf_nm_s_rad[plant.joints.index(place)] > 0
         return (PlacedEffect("servo_damping", place),) if has_emf else ()
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The velocity: the torque of a coefficient of 1."""
+        """(rows,) joint velocity: the torque of a coefficient of 1 N m s/rad."""
         return motion.velocity_rad_s
 
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """A negative coefficient is a weaker servo damping."""
+        """Name, value, error; a negative coefficient becomes weaker servo damping."""
         if size >= 0 or damping_nm_s_rad <= 0:
             return self.name, size, error
         share = 1 / damping_nm_s_rad
@@ -87,12 +88,12 @@ class CoulombFriction(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The torque tau, up to half of the joint's torque range."""
+        """The torque tau [N m], at most half of a large torque for the joint."""
         scale = torque_nm(plant, place)
         return (Parameter("torque", "N m", 0.0, 0.5 * scale, 0.0, 0.05 * scale),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The smooth sign of the velocity: the torque of dry friction of 1 N m."""
+        """(rows,) smooth sign of the velocity: the torque of dry friction of 1 N m."""
         return motion.direction
 
 
@@ -114,11 +115,11 @@ class LoadFriction(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The share s; with a share above 1 no motor could turn its gear."""
+        """The share s, below 1: with a larger one no motor could turn its gear."""
         return (Parameter("share", "1", 0.0, 0.8, 0.0, 0.1),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The size of the nominal torque, in the direction of the velocity."""
+        """(rows,) size of the torque by the nominal model, with the velocity's sign."""
         return np.abs(motion.torque_nm) * motion.direction
 
 
@@ -139,22 +140,21 @@ class Armature(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The inertia J, in addition to what the plant has already."""
+        """The inertia J [kg m^2], in addition to that of the nominal model."""
         scale = inertia_kg_m2(plant, place)
         return (Parameter("inertia", "kg m^2", 0.0, 10 * scale, 0.0, 0.5 * scale),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The acceleration: the torque of an inertia of 1 kg m^2."""
+        """(rows,) joint acceleration: the torque of an inertia of 1 kg m^2."""
         return motion.acceleration_rad_s2
 
 
 class Backlash(ServoNumber):
     """A gap in the gear, within which no torque passes from motor to joint.
 
-    The servo closes its loop on the motor's side; the encoder that is recorded sits at
-    the joint. Within the gap the motor follows its command alone, braked by its
-    damping; at the gap's edges it pushes the joint. Gap is the total play. The motion
-    is that of `diagnosis.replay.gaps`.
+    The servo controls the motor's angle; the recorded encoder sits at the joint. Within
+    the gap, whose size is the total play, the motor moves freely, slowed only by its
+    damping; at the gap's edges it pushes the joint. See `diagnosis.replay.gaps`.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model.
@@ -171,7 +171,7 @@ class Backlash(ServoNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The gap: cheap gears have some hundredths of a radian."""
+        """The gap [rad]: cheap gears have some hundredths of a radian."""
         return (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
 
     def first_tries(
@@ -185,13 +185,13 @@ class Backlash(ServoNumber):
         return [(0.01,), (0.03,)]
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The torque that a gap of 1 rad takes away, in the direction of the error."""
+        """(rows,) servo torque lost for a gap of 1 rad: kp / 2 sign(command - q)."""
         error = motion.command_rad - motion.position_rad
         return np.asarray(motion.kp_nm_rad * np.tanh(error / PLAY_RAD) / 2)
 
 
 class EncoderOffset(JointNumber):
-    """An encoder with a wrong zero: measured = true + offset; the servo acts on it.
+    """An encoder with a wrong zero: the servo acts on measured = true + offset.
 
     Source: joint offset of kinematic calibration, Hollerbach, Khalil and Gautier
     2016, "Model identification", Springer Handbook of Robotics.
@@ -210,5 +210,5 @@ class EncoderOffset(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The offset of the measured angle."""
+        """The offset [rad] of the measured angle."""
         return (Parameter("offset", "rad", -0.3, 0.3, 0.0, 0.03),)

@@ -1,4 +1,4 @@
-"""An effect: a cable or spring pulls a joint towards some angle."""
+"""The effect joint spring: a cable or spring pulls a joint towards some angle."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -38,7 +38,7 @@ class JointSpring(JointEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Stiffness k and angle of rest, first that of the model's reference pose."""
+        """Stiffness k [N m/rad] and rest angle [rad], first the reference pose's."""
         scale = torque_nm(plant, place)
         low, high = range_rad(plant, place)
         reference = plant.model.qpos0[plant.qpos[plant.joints.index(place)]]
@@ -51,9 +51,9 @@ class JointSpring(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Merge the spring with one that is there: two springs act as one.
+        """Merge the spring with any other at the joint in one variant of the model.
 
-        Stiffnesses are added; the angle of rest is their mean, weighted by stiffness.
+        Stiffnesses are added; rest angles are averaged, weighted by stiffness.
         """
         stiffness, rest = values
         if stiffness == 0:
@@ -73,12 +73,12 @@ class JointSpring(JointEffect):
         usage: "Usage",
         intervals: Sequence[Interval],
     ) -> list[Values]:
-        """Springs at rest in the middle and at both ends of where the joint was."""
+        """Springs with rest angles in the middle and at both ends of the motion."""
         column = plant.joints.index(place)
         low, high = usage.low_rad[column], usage.high_rad[column]
         stiffness = self.parameters(plant, place)[0].typical
         return [(stiffness, rest) for rest in ((low + high) / 2, low, high)]
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The angle; a constant column beside it stands for the angle of rest."""
+        """(rows,) joint angle; the rest angle adds a constant torque of its own."""
         return motion.position_rad

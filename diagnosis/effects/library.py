@@ -72,14 +72,14 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
         )
     }
 )
-"""The effects of this project by name. Where two explain a recording equally well, the
-earlier one is named, so their order is part of every verdict."""
+"""The effects of this project by name. Their order matters: if two explain recordings
+equally well, a verdict names the earlier one."""
 
 _known: ContextVar[Mapping[str, Effect]] = ContextVar("effects", default=BUILT_IN)
 
 
 def all_effects() -> Mapping[str, Effect]:
-    """All effects by name that a diagnosis can name here: built in, or `also_known`.
+    """All effects by name that a diagnosis can find: built in or from `also_known`.
 
     Example:
       >>> all_effects()["backlash"].words.label
@@ -89,14 +89,14 @@ def all_effects() -> Mapping[str, Effect]:
 
 
 def effect(name: str) -> Effect:
-    """The effect of a name.
+    """The effect with this name.
 
     Example:
       >>> effect("backlash").native
       False
 
     Raises:
-      UnknownNameError: there is none.
+      UnknownNameError: there is no such effect.
     """
     known = _known.get()
     if name not in known:
@@ -105,7 +105,7 @@ def effect(name: str) -> Effect:
 
 
 def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects at the same place that contain this one, with values to begin with."""
+    """More general effects that contain this one, at its place, with start values."""
     return tuple(
         grown for one in all_effects().values() for grown in one.grown_from(placed)
     )
@@ -113,22 +113,22 @@ def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
 
 @contextlib.contextmanager
 def also_known(*effects: Effect) -> Iterator[None]:
-    """Let diagnoses within this block name effects of your own, as if built in.
+    """Let diagnoses in this `with` block find effects of your own, as if built in.
 
-    The block holds for the code that runs in it, including its reports: a verdict that
-    names such an effect needs it for its words. It does not hold in other threads and
-    processes that are running; a thread gets it by `contextvars.copy_context().run`, a
-    process by a block of its own.
+    Reports on such an effect must be written in the block, too, as they take words from
+    it. Other threads and processes do not see the effects: start a thread's function by
+    `contextvars.copy_context().run`, and open a block in the other process.
 
     Example:
       >>> with also_known(WaterDrag()):
       ...     found = diagnose(plant, traces, seed)
 
     Args:
-      *effects: objects of subclasses of `Effect`, or of a base in `diagnosis.effects`.
+      *effects: objects of your subclasses of `Effect` or of its base classes, such as
+        `JointEffect`.
 
     Raises:
-      BadValueError: a name is another effect's, or two of them have one name.
+      BadValueError: two effects, given or built in, have the same name.
     """
     known = dict(_known.get())
     for one in effects:

@@ -1,4 +1,4 @@
-"""Parts of an effect's description: parameters, places, words, a joint's motion."""
+"""Types that effects use: parameters, kinds of places, words, motion of a joint."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -11,35 +11,35 @@ from groundwalk.arrays import FloatArray
 PlaceKind = Literal[
     "joint", "body", "feet", "commands", "encoders", "gyroscope", "world"
 ]
-"""What an effect is attached to. All but joints and bodies exist once in a robot."""
+"""Kind of thing that an effect is attached to. A robot has several joints and bodies,
+but each of the other things once."""
 
 Values = tuple[float, ...]
 """An effect's values in SI units, in the order of its parameters."""
 
 Interval = tuple[float, float]
-"""Start [s] and duration [s] of something that acts for a while."""
+"""Start [s] and duration [s] of an effect or error that does not last."""
 
 SIGN_SPEED_RAD_S = 0.02
-"""Speed [rad/s] at which the smooth sign of a velocity reaches 76 %: faster than the
-noise of a differentiated encoder, slower than any motion that shows friction."""
+"""Speed [rad/s] at which the smooth sign tanh(v / speed) of a velocity v reaches 76 %:
+above the noise of a differentiated encoder, below any motion that shows friction."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of an effect.
+    """One parameter of an effect: its name, unit, bounds and usual value.
 
     Example:
       >>> Parameter("gap", "rad", low=0.0, high=0.15, neutral=0.0, typical=0.02)
 
     Attributes:
-      name: what the number is called, for example "gap".
-      unit: SI unit for a joint that turns; `Plant.unit` converts it for one that
-        slides.
+      name: for example "gap".
+      unit: SI unit for a hinge joint; `Plant.unit` converts it for a sliding joint.
       low: smallest possible value.
       high: largest possible value.
       neutral: value at which the effect is absent; may be infinite.
       typical: value to try first.
-      logarithmic: whether values are compared by their ratio.
+      logarithmic: whether values are compared by ratio instead of difference.
     """
 
     name: str
@@ -59,18 +59,18 @@ class EffectWords(NamedTuple):
     """
 
     label: str
-    """Noun, for example "play (backlash)"."""
+    """Noun for the effect, for example "play (backlash)"."""
     finding: str
-    """Clause about an effect that was found. In braces stand names of parameters, for
-    which their values are put in, and `{joint}` or `{body}` for the place. `{lacking}`
-    becomes "that the sim lacks" and `{usual}` "in the sim", or what replaces these
-    where recordings of the healthy robot are the reference."""
+    """Template of a clause about an effect that was found. Parameter names in braces
+    are replaced by values, `{joint}` or `{body}` by the place, `{lacking}` by "that the
+    sim lacks" and `{usual}` by "in the sim". The last two have other words where
+    recordings of the healthy robot are the reference instead of the sim."""
     meaning: str
-    """What the effect does, in one sentence."""
+    """Explanation of the effect for a reader of the report, in one sentence."""
 
     @property
     def place_kind(self) -> str:
-        """The placeholder for the place: "joint", "body", or "" if there is none."""
+        """Placeholder for the place in `finding`: "joint", "body", or "" if none."""
         kinds = ("joint", "body")
         return next((kind for kind in kinds if f"{{{kind}}}" in self.finding), "")
 
@@ -82,12 +82,12 @@ class JointMotion:
     Attributes:
       since_s: time since the start of the recording.
       position_rad: joint angle.
-      velocity_rad_s: its rate.
-      acceleration_rad_s2: rate of the velocity.
+      velocity_rad_s: first derivative of the angle.
+      acceleration_rad_s2: second derivative of the angle.
       command_rad: position target.
-      command_rate_rad_s: rate of the position target.
+      command_rate_rad_s: derivative of the position target.
       kp_nm_rad: stiffness of the servo.
-      torque_nm: torque that the nominal model needs for this motion.
+      torque_nm: torque for this motion by inverse dynamics of the nominal model.
     """
 
     since_s: FloatArray
@@ -101,10 +101,10 @@ class JointMotion:
 
     @property
     def direction(self) -> FloatArray:
-        """(rows,) smooth sign of the velocity, between -1 and 1."""
+        """(rows,) sign of the velocity, smoothed near 0, between -1 and 1."""
         return np.asarray(np.tanh(self.velocity_rad_s / SIGN_SPEED_RAD_S))
 
     @property
     def pull_nm(self) -> FloatArray:
-        """(rows,) torque of the servo's stiffness alone."""
+        """(rows,) torque [N m] of the servo's stiffness alone: kp (command - angle)."""
         return np.asarray(self.kp_nm_rad * (self.command_rad - self.position_rad))

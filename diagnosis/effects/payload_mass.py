@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class PayloadMass(BodyEffect):
     """A point mass m at a body's centre of mass.
 
-    The centre and the inertia about it stay as they are, since a point mass at distance
+    Centre of mass and inertia about it stay as they are, since a point mass at distance
     r adds m r^2 (Featherstone 2008, "Rigid body dynamics algorithms", section 2.13). In
-    MuJoCo `body_mass`; `mj_setConst` computes the constants that follow from it.
+    MuJoCo `body_mass`.
     """
 
     name = "payload_mass"
@@ -30,7 +30,7 @@ class PayloadMass(BodyEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The mass, at most the body's own or 30 % of the robot's if that is more."""
+        """The mass [kg], up to the body's own or 30 % of the robot's if larger."""
         own = float(plant.model.body(place).mass[0])
         high = max(own, 0.3 * mass_kg(plant))
         return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
@@ -38,5 +38,5 @@ class PayloadMass(BodyEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the mass to the body's."""
+        """Add the payload to a body's mass in one variant of the model."""
         variants.field("body_mass")[row, variants.body(place)] += values[0]

@@ -1,4 +1,4 @@
-"""Torques, speeds, inertias and masses of a robot, from which bounds are made."""
+"""Typical torques, speeds and masses of a robot, for bounds of effects' parameters."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -10,21 +10,22 @@ if TYPE_CHECKING:
     from diagnosis.plant.plant import Plant
 
 REFERENCE_SPEED_RAD_S, REFERENCE_SPEED_M_S = 5.0, 0.5
-"""Speed in brisk use, if the motor is not known: of a hinge, of a sliding joint."""
+"""Speed in brisk use of a hinge and of a sliding joint, assumed where the motor is not
+known."""
 
 _SERVO_ERROR_RAD = 0.1
-"""Servo error [rad] whose torque counts as large, if the servo has no limit."""
+"""Servo error [rad] whose torque counts as large, for a servo without torque limit."""
 
 _ACCELERATION_RAD_S2 = 5.0
-"""Acceleration [rad/s^2] whose torque counts as large, if there is no servo."""
+"""Acceleration [rad/s^2] whose torque counts as large, for a joint without servo."""
 
 
 def torque_nm(plant: "Plant", joint: str) -> float:
-    """A large torque [N m] for a joint; always above 0.
+    """A large torque [N m] for a joint, always above 0.
 
-    This is the servo's limit; without a limit its torque at an error of 0.1 rad;
-    without a servo the larger of the torque of gravity and the torque for an
-    acceleration of 5 rad/s^2.
+    With a servo it is the servo's limit, or without a limit the torque at an error of
+    0.1 rad. Without a servo it is the larger of gravity's torque and the torque for
+    5 rad/s^2.
     """
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
@@ -38,7 +39,10 @@ def torque_nm(plant: "Plant", joint: str) -> float:
 
 
 def inertia_kg_m2(plant: "Plant", joint: str) -> float:
-    """Inertia of a joint with its links in the reference pose: the diagonal of M."""
+    """Inertia at a joint with the links beyond it, in the reference pose.
+
+    It is the joint's entry in the diagonal of the mass matrix.
+    """
     import mujoco
 
     model, data = plant.model, _reference(plant)
@@ -49,7 +53,10 @@ def inertia_kg_m2(plant: "Plant", joint: str) -> float:
 
 
 def speed_rad_s(plant: "Plant", joint: str) -> float:
-    """No-load speed of a joint's motor [rad/s]; a brisk speed if it is not known."""
+    """No-load speed of a joint's motor [rad/s]; 5 rad/s if not known.
+
+    For sliding joints in m/s, and 0.5 m/s if not known.
+    """
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
     back_emf = float(plant.servo.back_emf_nm_s_rad[column])
@@ -59,7 +66,7 @@ def speed_rad_s(plant: "Plant", joint: str) -> float:
 
 
 def brisk_rad_s(plant: "Plant", joint: str) -> float:
-    """Speed of a joint in brisk use [rad/s]; of a sliding joint [m/s]."""
+    """Speed of a joint in brisk use: 5 rad/s for a hinge, 0.5 m/s for a slider."""
     import mujoco
 
     number = plant.model.joint(joint).id
@@ -68,7 +75,7 @@ def brisk_rad_s(plant: "Plant", joint: str) -> float:
 
 
 def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:
-    """Lower and upper end of a joint's range; -pi and pi if it has none."""
+    """Lowest and highest angle of a joint's range; -pi and pi if it has no range."""
     view = plant.model.joint(joint)
     if not plant.model.jnt_limited[view.id]:
         return -np.pi, np.pi
@@ -77,7 +84,7 @@ def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:
 
 
 def mass_kg(plant: "Plant") -> float:
-    """Mass of all bodies together."""
+    """Mass of the whole robot model."""
     return float(plant.model.body_mass.sum())
 
 
@@ -87,9 +94,9 @@ def weight_n(plant: "Plant") -> float:
 
 
 def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
-    """Largest torque [N m] about a hinge that gravity in any direction can cause.
+    """Largest torque [N m] about a hinge that gravity of any direction can cause.
 
-    Taken in the reference pose. For a sliding joint the weight [N] that it carries.
+    The robot is in its reference pose. For a sliding joint, the weight [N] it carries.
     """
     import mujoco
 
@@ -105,7 +112,7 @@ def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
 
 
 def _reference(plant: "Plant") -> Any:
-    """MuJoCo's data of the plant at rest in its reference pose."""
+    """`MjData` of the robot model at rest in its reference pose."""
     import mujoco
 
     data = mujoco.MjData(plant.model)

@@ -1,4 +1,4 @@
-"""An effect: encoders report past positions and velocities."""
+"""The effect sensor delay: encoders report past positions and velocities."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -31,20 +31,19 @@ class SensorDelay(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The encoders of all joints, if more than their positions is measured.
+        """("encoders",), or () if only joint positions are measured on a fixed base.
 
-        With a fixed base and only positions measured, late encoders cannot be
-        distinguished from late commands.
+        Late encoders then cannot be distinguished from late commands.
         """
         other = any(trace.torque_nm is not None for trace in traces)
         return ("encoders",) if plant.base == "floating" or other else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The delay: usually 2 to 40 ms."""
+        """The delay [s]: usually 2 to 40 ms."""
         return (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.01),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the delay to the one that is there."""
+        """Add the delay to that of all encoders in one variant of the model."""
         variants.signals.sensor_delay_s[row] += values[0]

@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from diagnosis.traces.usage import Usage
 
 WEAKER = (0.65, 0.8, 0.9, 0.96)
-"""Shares of a servo's own torque limit that are tried as well: a sudden change of the
-command may be all that reaches the limit."""
+"""Shares of a servo's nominal torque limit that are tried as its true limit: if only
+sudden changes of the command reach the limit, other first guesses are poor."""
 
 
 class ServoGain(ServoNumber):
-    """A factor on the servo's stiffness: torque = factor kp (command - q) - ...
+    """A factor on the servo's stiffness: torque = factor kp (command - q) - kd v.
 
     Source: proportional part of a position loop, Spong, Hutchinson and Vidyasagar
     2006, "Robot modeling and control", chapter 6. In MuJoCo `actuator_gainprm` and
@@ -49,22 +49,22 @@ class ServoGain(ServoNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The factor on the nominal value."""
+        """The factor on the nominal stiffness kp."""
         return (Parameter("factor", "1", 0.1, 5.0, 1.0, 0.8, logarithmic=True),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The torque of the nominal stiffness, of which 1 - factor is missing."""
+        """(rows,) torque of the nominal stiffness; the share 1 - factor is missing."""
         return motion.pull_nm
 
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """The factor: 1 less the share of the stiffness that is missing."""
+        """Name, factor and error, from the share of the stiffness that is missing."""
         return self.name, 1 - size, error
 
 
 class ServoDamping(JointNumber):
-    """A factor on servo damping and back-EMF: torque = ... - factor (kd + emf) v.
+    """A factor on servo damping and back-EMF at speed v: torque -factor (kd + emf) v.
 
     Source: derivative part of a position loop and the motor's induced voltage, Spong,
     Hutchinson and Vidyasagar 2006, "Robot modeling and control", chapter 6. In
@@ -83,22 +83,22 @@ class ServoDamping(JointNumber):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Joints whose servo has damping that a factor can change, in any trace."""
+        """Names of joints whose servo has damping or back-EMF in any recording."""
         servos = [trace.servo for trace in traces] or [plant.servo]
         damping = [one.kd_nm_s_rad + one.back_emf_nm_s_rad for one in servos]
         return joints_where(plant, [values > 0 for values in damping])
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The factor on the nominal value."""
+        """The factor on nominal damping and back-EMF."""
         return (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
 
 
 class ServoFade(ServoNumber):
-    """A servo that loses stiffness: kp (1 - rate t), t since the start of the trace.
+    """A servo that loses stiffness: kp (1 - rate t), t since the recording began.
 
-    Source: to first order what a falling supply voltage or a warming winding and
-    magnet do to a motor's constant, Hughes and Drury 2019, "Electric motors and
-    drives", chapter 3.
+    Source: falling supply voltage or warming of winding and magnet reduce a motor's
+    torque, here to first order; Hughes and Drury 2019, "Electric motors and drives",
+    chapter 3.
     """
 
     name = "servo_fade"
@@ -113,20 +113,20 @@ class ServoFade(ServoNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The rate: 3 to 30 % over a run of 10 to 60 s."""
+        """The rate [1/s]; typical is a loss of 3 to 30 % in 10 to 60 s."""
         return (Parameter("rate", "1/s", 0.0, 0.05, 0.0, 0.005),)
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
-        """During all recordings, as a drift: the effect grows."""
+        """As a drift in all recordings, since the effect grows with time."""
         return When("drift", first_s, last_s)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The torque of the nominal stiffness, times the time since the start."""
+        """(rows,) servo torque lost for a rate of 1/s: torque of nominal kp times t."""
         return motion.since_s * motion.pull_nm
 
 
 class TorqueLimit(JointNumber):
-    """A limit besides the servo's own: torque = clip(demand, -limit, limit).
+    """A torque limit below the nominal one: torque = clip(demand, -limit, limit).
 
     Source: actuator saturation, Spong, Hutchinson and Vidyasagar 2006, "Robot modeling
     and control", chapter 6. In MuJoCo `actuator_forcerange`.
@@ -144,7 +144,7 @@ class TorqueLimit(JointNumber):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The torque limit, at most the servo's own: a larger one has no effect."""
+        """The limit [N m], at most the nominal one: a larger one has no effect."""
         scale = torque_nm(plant, place)
         own = float(plant.servo.max_torque_nm[plant.joints.index(place)])
         high = scale if np.isfinite(own) else 5 * scale
@@ -159,14 +159,14 @@ class TorqueLimit(JointNumber):
         usage: "Usage",
         intervals: Sequence[Interval],
     ) -> list[Values]:
-        """Shares of the torque that the servo should have given."""
+        """Limits at 90, 70 and 45 % of the torque that the nominal servo would give."""
         torque = usage.torque_nm[plant.joints.index(place)]
         return [(share * torque,) for share in (0.9, 0.7, 0.45)]
 
     def sizes_to_scan(
         self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
     ) -> list[PlacedEffect]:
-        """Multiples of the guess, and shares of the servo's own limit."""
+        """Limits around the guess, and limits at some shares of the nominal limit."""
         column = plant.joints.index(placed.place)
         most = float(max(trace.servo.max_torque_nm[column] for trace in traces))
         limits = [k * placed.values[0] for k in LIMITS]
@@ -193,13 +193,13 @@ class SpeedLimit(ServoNumber):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Joints with a servo, if a trace has position commands."""
+        """Names of joints with a servo, if a recording has position commands."""
         if all(trace.command_rad is None for trace in traces):
             return ()
         return super().places(plant, traces)
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The speed limit, with bounds around the motor's no-load speed."""
+        """The limit [rad/s]: 1 % to 4 times the motor's no-load speed."""
         scale = speed_rad_s(plant, place)
         return (
             Parameter(
@@ -214,6 +214,6 @@ class SpeedLimit(ServoNumber):
         usage: "Usage",
         intervals: Sequence[Interval],
     ) -> list[Values]:
-        """Shares of the speed at which the commands moved."""
+        """Limits at 80, 50 and 25 % of the commands' speed in the recordings."""
         speed = usage.command_speed_rad_s[plant.joints.index(place)]
         return [(share * speed,) for share in (0.8, 0.5, 0.25)]

@@ -1,4 +1,4 @@
-"""An effect: dry friction that is larger near standstill."""
+"""The effect Stribeck friction: dry friction that is larger near standstill."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -23,10 +23,12 @@ if TYPE_CHECKING:
     from diagnosis.traces.usage import Usage
 
 GROWN_SPEEDS_RAD_S = (0.02, 0.07, 0.25)
-"""Speeds of the peak that are tried once dry friction was found to help."""
+"""Stribeck speeds v_s that are tried once plain dry friction was found to help: below
+v_s friction is larger."""
 
 COLUMN_SPEED_RAD_S = 0.1
-"""Speed of the peak in sparse regression, which cannot fit it."""
+"""Stribeck speed v_s assumed in sparse regression, where friction is not linear in v_s
+so that it cannot be fitted."""
 
 
 class StribeckFriction(JointEffect):
@@ -51,7 +53,7 @@ class StribeckFriction(JointEffect):
     )
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """Coulomb torque tau_c, extra torque tau_s and speed v_s."""
+        """Coulomb torque tau_c and extra torque tau_s [N m], and speed v_s [rad/s]."""
         scale = torque_nm(plant, place)
         return (
             Parameter("coulomb_torque", "N m", 0.0, 0.5 * scale, 0.0, 0.05 * scale),
@@ -62,7 +64,7 @@ class StribeckFriction(JointEffect):
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the torques; the speed becomes the mean, weighted by extra torque."""
+        """Add the torques to a variant's; speeds v_s are averaged by extra torque."""
         coulomb_nm, extra_nm, speed_rad_s = values
         joints, at = variants.joints, (row, variants.column(place))
         joints.coulomb_nm[at] += coulomb_nm
@@ -74,7 +76,7 @@ class StribeckFriction(JointEffect):
             joints.stribeck_nm[at] = total_nm
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """Dry friction with an extra half of its torque near standstill."""
+        """Start values from plain dry friction: half as much torque again at rest."""
         if other.name != "coulomb_friction":
             return ()
         (torque_nm,) = other.values
@@ -92,17 +94,17 @@ class StribeckFriction(JointEffect):
         usage: "Usage",
         intervals: Sequence[Interval],
     ) -> list[Values]:
-        """Two speeds [rad/s] of the peak: the effect is not linear in it."""
+        """Values with two different speeds v_s: the effect is not linear in v_s."""
         coulomb, extra, _ = (one.typical for one in self.parameters(plant, place))
         return [(coulomb, extra, speed) for speed in (0.03, 0.2)]
 
     def simpler(self, placed: PlacedEffect) -> PlacedEffect:
-        """Dry friction halfway between its value at speed and that at rest."""
+        """Plain dry friction, halfway between the torques at high speed and at rest."""
         coulomb_nm, extra_nm, _ = placed.values
         mean_nm = coulomb_nm + extra_nm / 2
         return PlacedEffect("coulomb_friction", placed.place, (mean_nm,))
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
-        """The peak near standstill, in the direction of the velocity."""
+        """(rows,) friction near standstill for tau_s = 1 N m, along the velocity."""
         slow = np.exp(-((motion.velocity_rad_s / COLUMN_SPEED_RAD_S) ** 2))
         return np.asarray(slow * motion.direction)

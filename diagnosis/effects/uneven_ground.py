@@ -1,4 +1,4 @@
-"""An effect: the ground has bumps where the model has a plane."""
+"""The effect uneven ground: bumps where the model has a plane."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class UnevenGround(Effect):
-    """Bumps: the ground's heights spread about the plane, 99 % within +-height.
+    """Bumps: heights of the ground spread about the plane, 99 % within +-height.
 
-    Where the bumps are cannot be known. A replay takes the ground to be where the
-    recorded soles stood as a window began, no farther from the plane than the height
-    (`diagnosis.replay.conforming_ground`). So the height found is about the largest
-    bump that was stepped on, bumps below 0.6 mm are not seen, and the ground is flat
-    where a foot steps later.
+    Where the bumps are cannot be known. A simulation that starts in the middle of a
+    recording takes the ground to be where the recorded soles stood at its start, within
+    +-height of the plane (`diagnosis.replay.conforming_ground`). So the height found is
+    about that of the largest bump stepped on, bumps below 0.6 mm are not seen, and the
+    ground is flat where a foot steps later.
 
     Source: ground profiles as random processes, ISO 8608:2016.
     """
@@ -31,7 +31,8 @@ class UnevenGround(Effect):
     place_kind: ClassVar[PlaceKind] = "world"
     native = False
     rarity_nats = 10.0
-    """Ground lies wherever a sole stood: as many hidden values as steps."""
+    """Extra log-likelihood [nats] that the effect needs to be accepted: it fits the
+    ground to every stand of a sole, which is like one more parameter for each."""
     words = EffectWords(
         "uneven ground",
         "the ground has bumps of {height} {lacking}",
@@ -39,23 +40,23 @@ class UnevenGround(Effect):
     )
 
     def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """The world, if the plant walks on it."""
+        """("world",) if the robot can walk on a ground, else ()."""
         return ("world",) if has_ground_contact(plant) else ()
 
     def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The height; 1 mm is tried first, less than most real bumps."""
+        """The height [m]; 1 mm is tried first, less than most real bumps."""
         return (Parameter("height", "m", 0.0, 0.03, 0.0, 0.001),)
 
     def apply(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Add the height to the one that is there."""
+        """Add the height to that of the bumps in one variant of the model."""
         variants.outside.bump_height_m[row] += values[0]
 
     def apply_to_sim(
         self, variants: "Variants", row: int, place: str, values: FloatArray
     ) -> None:
-        """Refuse: the places of the bumps are not known.
+        """Refuse the effect, because it is not known where the bumps are.
 
         Raises:
           BadModelError: always.

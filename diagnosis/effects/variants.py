@@ -1,4 +1,4 @@
-"""Variants of a plant: everything that effects can change, one row a variant."""
+"""Variants of a robot model: all that effects can change, with one row per variant."""
 
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
@@ -22,7 +22,7 @@ class Push:
     Attributes:
       body: name of the body.
       force_n: (x, y, z) in the world frame, at the body's centre of mass.
-      start_s: in the recording's time.
+      start_s: start in the recording's time.
       duration_s: how long the force acts.
     """
 
@@ -34,21 +34,21 @@ class Push:
 
 @dataclass(eq=False)
 class Joints:
-    """Numbers of servos and joints in n variants, arrays (n, j); neutral at first.
+    """What effects change at servos and joints of n model variants: arrays (n, j).
 
     Attributes:
       kp_factor: multiplies the servo's stiffness.
       damping_factor: multiplies the servo's damping and the motor's back-EMF.
       fade_1_s: share of the stiffness that is lost each second.
-      max_torque_nm: limit in addition to the servo's own.
-      setpoint_speed_rad_s: fastest speed of the servo's set-point.
-      gap_rad: play between servo and joint; no torque passes within it.
-      offset_rad: measured less true position; the servo acts on the measured one.
+      max_torque_nm: torque limit, where below the nominal servo's.
+      setpoint_speed_rad_s: highest speed of the servo's set-point.
+      gap_rad: total play between servo and joint; no torque passes within it.
+      offset_rad: measured minus true position; the servo acts on the measured one.
       coulomb_nm: dry friction.
       stribeck_nm: extra dry friction at standstill.
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
       load_share: dry friction as a share of the motor's torque, back-EMF included.
-      spring_nm_rad: stiffness between motor and joint; infinite where they are rigid.
+      spring_nm_rad: stiffness between motor and joint; infinite for a rigid gear.
       spring_damping_nm_s_rad: damping between motor and joint.
     """
 
@@ -68,7 +68,7 @@ class Joints:
 
     @classmethod
     def neutral(cls, n: int, j: int) -> "Joints":
-        """Numbers (n, j) that leave the plant as it is."""
+        """Arrays (n, j) with values that leave the robot model as it is."""
         values = {field.name: 0.0 for field in fields(cls)} | {
             "kp_factor": 1.0,
             "damping_factor": 1.0,
@@ -82,12 +82,12 @@ class Joints:
 
 @dataclass(eq=False)
 class Signals:
-    """Delays and errors of the signals between robot and computer, arrays (n, ...).
+    """Delays and errors of signals in n model variants, arrays (n, ...).
 
     Attributes:
       command_delay_s: (n,) time until a command takes effect.
       sensor_delay_s: (n,) age of measured positions and velocities.
-      gyro_bias_rad_s: (n, 3) added to the gyroscope.
+      gyro_bias_rad_s: (n, 3) constant error of the gyroscope, sensor frame.
     """
 
     command_delay_s: FloatArray
@@ -96,18 +96,18 @@ class Signals:
 
     @classmethod
     def neutral(cls, n: int) -> "Signals":
-        """Signals of n variants without delays and errors."""
+        """Signals of n model variants without delays and errors."""
         return cls(np.zeros(n), np.zeros(n), np.zeros((n, 3)))
 
 
 @dataclass(eq=False)
 class Outside:
-    """Forces and ground that act on n variants from outside.
+    """Forces and ground bumps that act on n model variants.
 
     Attributes:
-      pushes: lists of pushes, one for each variant.
-      drag_n_s_m: (n, bodies) force against a body's velocity [N s/m]; MuJoCo's order.
-      bump_height_m: (n,) amplitude of uneven ground.
+      pushes: for each variant a list of pushes.
+      drag_n_s_m: (n, bodies) drag coefficients [N s/m], bodies in MuJoCo's order.
+      bump_height_m: (n,) largest height of bumps above or below the plane.
     """
 
     pushes: list[list[Push]]
@@ -116,7 +116,7 @@ class Outside:
 
 
 class Variants:
-    """n copies of a plant, each changed in its own way.
+    """n copies of a robot model, each changed by effects in its own way.
 
     Example:
       >>> variants = Variants(plant, 2)
@@ -124,17 +124,17 @@ class Variants:
       >>> variants.field("dof_damping")[1, variants.dof("LKneePitch")] += 0.1
 
     Attributes:
-      plant: that is varied.
+      plant: the robot model that is varied.
       n: number of variants.
-      joints: numbers of servos and joints.
+      joints: changes at servos and joints.
       signals: delays and errors of signals.
-      outside: forces and ground.
-      fields: fields of MuJoCo's model that some variant changes, arrays (n, ...).
-      torques: values (n, j, p) of effects that compute a torque themselves.
+      outside: forces and ground bumps.
+      fields: fields of `MjModel` that some variant changes, by name, arrays (n, ...).
+      torques: for each `TorqueEffect` used, its p parameter values (n, j, p).
     """
 
     def __init__(self, plant: "Plant", n: int) -> None:
-        """Make n variants that are the plant itself."""
+        """Make n variants that are all equal to the robot model."""
         self.plant = plant
         self.n = n
         self.joints = Joints.neutral(n, len(plant.joints))
@@ -146,10 +146,10 @@ class Variants:
         self.torques: dict[TorqueEffect, FloatArray] = {}
 
     def field(self, name: str) -> FloatArray:
-        """(n, ...) values of a field of MuJoCo's model, to be changed in place.
+        """(n, ...) values of a field of `MjModel`, to be changed in place.
 
         Args:
-          name: as `mujoco.batch.MODEL_FIELDS` has it, for example "opt.gravity".
+          name: one of `mujoco.batch.MODEL_FIELDS`, for example "opt.gravity".
         """
         if name not in self.fields:
             value = self.plant.model
@@ -160,23 +160,23 @@ class Variants:
         return self.fields[name]
 
     def torque_values(self, effect: "TorqueEffect", parameters: int) -> FloatArray:
-        """(n, j, parameters) values of an effect's own torque, to be changed in place.
+        """(n, j, parameters) values of a `TorqueEffect`, to be changed in place.
 
         Args:
-          effect: that computes the torque.
-          parameters: number of its values.
+          effect: effect that computes its torque itself.
+          parameters: number of its parameters.
         """
         shape = self.n, len(self.plant.joints), parameters
         return self.torques.setdefault(effect, np.zeros(shape))
 
     def column(self, joint: str) -> int:
-        """Column of a joint in arrays (n, j)."""
+        """Index of a joint in arrays (n, j)."""
         return self.plant.joints.index(joint)
 
     def dof(self, joint: str) -> int:
-        """MuJoCo's number of a joint's degree of freedom."""
+        """MuJoCo's index of a joint's degree of freedom, as in `dof_damping`."""
         return self.plant.dofs[self.column(joint)]
 
     def body(self, name: str) -> int:
-        """MuJoCo's number of a body."""
+        """MuJoCo's id of a body."""
         return int(self.plant.model.body(name).id)
