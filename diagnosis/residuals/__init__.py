@@ -1,5 +1,5 @@
-"""Differences between replays of a robot model and its recordings, in units of noise.
+"""Residuals: differences of recordings and simulations, in units of sensor noise.
 
-`predictor.Predictor` replays models and returns residuals. The other modules say which
-channels are compared, what counts as noise, and where and when the error is large.
+`predictor.Predictor` simulates robot models on recordings and returns residuals. Other
+modules choose the channels to compare, learn the noise, and find when errors are large.
 """

@@ -15,48 +15,50 @@ from diagnosis.traces.trace import stretches
 from groundwalk.arrays import BoolArray, FloatArray
 
 BIN_S = 0.05
-"""Length of the bins [s] in which the energy of the error is summed."""
+"""Length of the bins [s] in which squared residuals are summed to find bursts."""
 
 STANDS_OUT = 8.0
-"""A burst has at least this multiple of the median energy of all bins."""
+"""A burst of error has at least this multiple of the median energy (sum of squared
+residuals) of all bins."""
 
 LEAST = 4.0
-"""A burst also has at least this multiple of the energy that noise alone leaves."""
+"""A burst of error has at least this multiple of the energy (sum of squared residuals)
+that noise alone leaves in a bin."""
 
 CHANCE = 1e-3
 """Probability that noise alone makes any bin of a recording look like a burst."""
 
 REACTION_S = 0.03
-"""Time [s] by which an error becomes visible after the push that causes it."""
+"""Time [s] from a push until the error that it causes becomes visible."""
 
 LEAD_S = 1.0
-"""A push that acts all the time begins this long before the recording and ends as long
-after it [s], so that a fit cannot improve by moving its begin or end."""
+"""A push that acts all the time begins this long [s] before the recording and ends this
+long after it, so that a fit cannot improve by moving its start or end."""
 
 MOST = 3
-"""Largest number of bursts that are returned."""
+"""Largest number of bursts of error that are looked for."""
 
 WINDOWS_S = (0.1, 0.25, 0.5)
-"""Durations of faint pushes that are tried [s]: a servo stays displaced while it is
-pushed."""
+"""Lengths [s] of the windows in which a mean error is looked for as the sign of a faint
+push: a servo stays displaced while it is pushed."""
 
 FAINT = 6.0
-"""Standard deviations by which the mean error of a window differs from zero where
-something pushed; noise does not reach this in any window."""
+"""Standard deviations by which a window's mean error must differ from zero to be the
+sign of a push; noise reaches this in no window."""
 
 MEDIAN_OF_NORMAL = 0.6744897501960817
 """Median of the absolute value of a standard normal variable."""
 
 
 def bursts(predictor: Predictor, residual: FloatArray) -> list[tuple[float, float]]:
-    """Start and end of the strongest bursts [s], in the time of the recordings.
+    """Start and end [s] of the strongest bursts of error, at most three.
 
-    The energy of the error is summed over all channels in bins of 50 ms. Neighbouring
-    bins with much more energy than the others form one burst. An error that is present
-    all the time, or at every motion, raises the median and is no burst.
+    Squared residuals of all channels are summed in bins of 50 ms. Neighbouring bins
+    with much more than the median form one burst. An error that is present all the
+    time, or at every motion, raises the median and is no burst.
 
     Args:
-      predictor: it computed the residual.
+      predictor: the predictor that computed `residual`.
       residual: (N,) in units of noise.
     """
     return _strongest(predictor, residual, np.ones(len(residual), bool))
@@ -65,10 +67,10 @@ def bursts(predictor: Predictor, residual: FloatArray) -> list[tuple[float, floa
 def bursts_of(
     predictor: Predictor, residual: FloatArray, channel: int
 ) -> tuple[tuple[float, float], ...]:
-    """Start and end of the strongest bursts of one channel [s], in order of time.
+    """Start and end [s] of one channel's strongest bursts of error, in order of time.
 
     Args:
-      predictor: it computed the residual.
+      predictor: the predictor that computed `residual`.
       residual: (N,) in units of noise.
       channel: index of the channel.
     """
@@ -78,7 +80,7 @@ def bursts_of(
 def _strongest(
     predictor: Predictor, residual: FloatArray, chosen: BoolArray
 ) -> list[tuple[float, float]]:
-    """Start and end of the strongest bursts [s] in the chosen entries of a residual."""
+    """Start and end [s] of the strongest bursts in chosen entries of a residual."""
     found: list[tuple[float, float, float]] = []
     for number, trace in enumerate(predictor.traces):
         rows = (predictor.trace == number) & chosen
@@ -100,10 +102,13 @@ def _strongest(
 def push_intervals(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Start and duration [s] of possible pushes: one that lasts, then short ones.
+    """Start and duration [s] of possible pushes on the robot.
+
+    The first one lasts for all of the recording; the others are the bursts of error or,
+    if there are none, times of small errors of one sign.
 
     Args:
-      predictor: it computed the residual.
+      predictor: the predictor that computed `residual`.
       residual: (N,) in units of noise.
     """
     last_s = max(trace.time_s[-1] for trace in predictor.traces)
@@ -121,13 +126,14 @@ def push_intervals(
 def faint_pushes(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Start and end [s] of the most one-sided window of each length, the surest first.
+    """Start and end [s] of windows in which a faint push may have acted, surest first.
 
-    A bias that is present in all windows, such as that of an unmodelled payload, is
-    ignored.
+    There is at most one window of each length (0.1, 0.25, 0.5 s): that with the most
+    significant mean error. A mean error that all windows have, such as that of an
+    unmodelled payload, is ignored.
 
     Args:
-      predictor: it computed the residual.
+      predictor: the predictor that computed `residual`.
       residual: (N,) in units of noise.
     """
     c = len(predictor.channels.names)
@@ -147,12 +153,15 @@ def faint_pushes(
 def _most_biased(
     time_s: FloatArray, residual: FloatArray, window_s: float
 ) -> tuple[float, float, float]:
-    """Significance [standard deviations], start and end [s] of the most biased window.
+    """Find the window of a recording whose mean error differs most from zero.
 
     Args:
-      time_s: (T,) of the rows.
-      residual: (T, c) in units of noise.
+      time_s: (T,) times of the rows.
+      residual: (T, c) residuals of c channels, in units of noise.
       window_s: length of the window.
+
+    Returns:
+      The difference in standard deviations, and the window's start and end [s].
     """
     rows = max(int(np.searchsorted(time_s, time_s[0] + window_s)), 1)
     if rows >= len(time_s):

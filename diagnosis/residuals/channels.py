@@ -1,4 +1,4 @@
-"""The measured quantities (channels) that predictions are compared with."""
+"""Channels: the measured quantities that simulations are compared with."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,26 +13,26 @@ from diagnosis.traces.windows import continuous
 from groundwalk.arrays import FloatArray
 
 LEAST_NOISE_RAD = 3e-4
-"""Noise floor for positions and angles [rad]: encoders and clocks are not better, and
-smaller differences are errors of the simulator."""
+"""Smallest noise [rad] assumed for measured positions and angles: encoders and clocks
+are not better, and smaller differences are errors of the simulator."""
 
 LEAST_RATE_RAD_S = 1e-3
-"""Noise floor for the gyroscope [rad/s]."""
+"""Smallest noise [rad/s] assumed for gyroscopes."""
 
 LEAST_NOISE_M = 2e-4
-"""Noise floor for the position of a floating base [m]."""
+"""Smallest noise [m] assumed for the measured position of a floating base."""
 
 LEAST_TORQUE = 0.02
-"""Noise floor for measured torques, as a share of their rms: the accuracy to which the
-constants of a motor are known."""
+"""Smallest noise assumed for measured torques, as a share of their rms: the accuracy to
+which the constants of a motor are known."""
 
 
 @dataclass(frozen=True, eq=False)
 class Channels:
-    """The measured quantities that predictions are compared with, c of them.
+    """The c measured quantities that simulations are compared with.
 
     Attributes:
-      names: for example "position.LKneePitch".
+      names: names of the channels, for example "position.LKneePitch".
       noise: (c,) standard deviation of the noise in each channel's unit.
     """
 
@@ -45,7 +45,7 @@ class Channels:
 
 
 def channel_unit(plant: Plant, name: str) -> str:
-    """The unit of a channel: "rad", "rad/s", "N m", or "m" and "N" where it slides."""
+    """The unit of a channel: "rad", "rad/s" or "N m"; "m" or "N" at sliding joints."""
     if name.startswith("base.position"):
         return "m"
     kind, _, joint = name.partition(".")
@@ -54,12 +54,12 @@ def channel_unit(plant: Plant, name: str) -> str:
 
 
 def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
-    """The channels that all recordings measured and replays can predict.
+    """The channels that all recordings measured and that can be simulated.
 
     Args:
       plant: nominal robot model.
-      traces: recordings, from which the noise is estimated; it has a floor for each
-        kind of sensor.
+      traces: recordings, from which the noise of each channel is estimated; there is a
+        least noise for each kind of sensor.
     """
     names = [f"position.{joint}" for joint in plant.joints]
     least = [LEAST_NOISE_RAD] * len(names)
@@ -92,7 +92,7 @@ def _noise(trace: Trace, channels: Channels) -> FloatArray:
 
 
 def measured_of(trace: Trace, channels: Channels) -> FloatArray:
-    """(T, c) the values of the channels that a recording measured."""
+    """(T, c) values of the c channels that a recording measured, in their units."""
     parts = [trace.position_rad]
     if any(name.startswith("torque.") for name in channels.names):
         assert trace.torque_nm is not None
@@ -108,7 +108,7 @@ def measured_of(trace: Trace, channels: Channels) -> FloatArray:
 
 
 def stacked(result: Replayed, channels: Channels) -> FloatArray:
-    """(n, rows, c) the values of the channels that a replay predicts."""
+    """(n, rows, c) values of the c channels in the replays of n models."""
     parts = [result.position_rad]
     if any(name.startswith("torque.") for name in channels.names):
         parts.append(result.servo_nm)

@@ -1,4 +1,4 @@
-"""The data of one diagnosis: fitting, selection and held-out data."""
+"""Divides recordings into data for fitting, for selection and for the final test."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -19,25 +19,28 @@ TOO_SHORT = (
 )
 
 FIT_S, SELECT_S, TEST_S = 40.0, 20.0, 40.0
-"""Most seconds of fitting, selection and held-out data: more would hardly improve the
-answer, but replays would take longer."""
+"""Most seconds of the data for fitting, for selection and for the final test: more
+would hardly improve the answer, but simulations would take longer."""
 
 FLOATING_S = 3.0, 3.0, 6.0
-"""The same limits [s] for a floating base, whose contacts take long to simulate."""
+"""Most seconds of the data for fitting, for selection and for the final test if the
+base floats: its contacts take long to simulate."""
 
 
 MOST_WRONG = 0.25
-"""Largest rms [noise] of the integration error that calibration leaves; a larger error
-would be mistaken for missing physics."""
+"""Largest rms, in units of noise, of the integration error that a simulation may have
+after correction; a larger error would be mistaken for missing physics."""
 
 
 @dataclass(frozen=True, eq=False)
 class DataSets:
-    """Predictors of the parts of recordings, calibrated at the nominal model.
+    """Predictors (simulations to compare with recordings) for each use of the data.
+
+    They are calibrated at the nominal model: they correct its integration error.
 
     Attributes:
-      parts: the parts of the recordings.
-      fit: predictor of the data that values are fitted to.
+      parts: the parts of the recordings by their use.
+      fit: predictor of the data that parameters are fitted to.
       select: predictor of the data that decide between models.
       learned: predictor of fitting and selection data together.
       test: predictor of the held-out data, which are used once, at the end.
@@ -66,9 +69,9 @@ class DataSets:
           plant: nominal robot model.
           traces: recordings of the robot.
           channels: the quantities to compare, with their noise.
-          noise: model errors known from reference recordings; none where None.
-          threads: processor threads of the replays.
-          on_replay: called after each batch; see `Predictor`.
+          noise: model errors that recordings of the healthy robot show, or None.
+          threads: number of threads that simulate.
+          on_replay: called after each batch with its number of simulations.
 
         Raises:
           BadRecordingError: the traces are too short.
@@ -94,19 +97,19 @@ class DataSets:
         return evidence
 
     def calibrated(self, model: Model) -> tuple[Predictor, Predictor]:
-        """Predictors of the learned and of the held-out data, calibrated at a model."""
+        """Predictors of `learned` and of `test` data, calibrated at another model."""
         whole = _exact(self._whole, model) if model else self._whole
         last = len(self.learned.traces)
         return whole.part(0, last), whole.part(last, len(whole.traces))
 
     def recordings(self) -> Recordings:
-        """Names of the recordings that were fitted, selected by and held out."""
+        """Names of the recordings, or of parts of them, by their use."""
         parts = self.parts
         return Recordings(_names(parts.fit), _names(parts.select), _names(parts.test))
 
 
 def _exact(whole: Predictor, model: Model = ()) -> Predictor:
-    """A predictor calibrated at a model, with the longest accurate time step."""
+    """The predictor, calibrated at a model, with the longest accurate time step."""
     for step_s in STEPS_S[whole.plant.base]:
         if step_s < whole.step_s:
             whole = whole.stepped(step_s)
@@ -116,11 +119,11 @@ def _exact(whole: Predictor, model: Model = ()) -> Predictor:
 
 
 def affordable(plant: Plant, parts: Split) -> Split:
-    """The parts of recordings, shortened so that a search can replay them often.
+    """The parts of recordings, shortened so that a search can simulate them often.
 
     Args:
       plant: nominal robot model; with a floating base the limits are lower.
-      parts: of any length.
+      parts: parts of any length.
     """
     floats = plant.base == "floating"
     longest_s = FLOATING_S if floats else (FIT_S, SELECT_S, TEST_S)
@@ -136,5 +139,5 @@ def affordable(plant: Plant, parts: Split) -> Split:
 
 
 def _names(traces: Sequence[Trace]) -> tuple[str, ...]:
-    """The names of recordings."""
+    """The names of some traces."""
     return tuple(trace.name for trace in traces)

@@ -1,8 +1,7 @@
 """Splits a robot model into limbs that move independently of each other.
 
-The arms and legs of a robot whose torso is held do not influence each other. An effect
-at an elbow then needs replays of that arm only, at a fraction of the time that the
-whole robot takes.
+The arms and legs of a robot whose torso is held do not influence each other. To judge
+missing physics at an elbow, only that arm needs to be simulated, which is faster.
 """
 
 from dataclasses import dataclass, replace
@@ -25,8 +24,8 @@ class Limb:
     Attributes:
       plant: the model with the joints of this limb only.
       columns: indices of these joints in the whole model.
-      first: whether this limb also predicts channels that belong to no limb, such as
-        the gyroscope.
+      first: whether the channels that belong to no joint, such as the gyroscope, are
+        taken from this limb's simulation.
       elsewhere: names of the joints and bodies of the other limbs.
     """
 
@@ -36,7 +35,7 @@ class Limb:
     elsewhere: frozenset[str]
 
     def felt(self, model: tuple[PlacedEffect, ...]) -> tuple[PlacedEffect, ...]:
-        """The effects of a model that change this limb: those at no other limb."""
+        """The effects of a model whose place is not at another limb."""
         return tuple(one for one in model if one.place not in self.elsewhere)
 
     def run(self, run: Run) -> Run:
@@ -87,14 +86,14 @@ def limbs_of(plant: Plant) -> tuple[Limb, ...]:
 
 
 class _Trees:
-    """MuJoCo's kinematic trees, grouped by the constraints that couple them."""
+    """MuJoCo's kinematic trees of a model, grouped by constraints that couple them."""
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         self._model = model
 
     @cached_property
     def parts(self) -> list[set[int]]:
-        """Sets of coupled trees; empty if any part may touch or pull any other."""
+        """Sets of coupled trees (indices); empty if contacts or tendons couple any."""
         import mujoco
 
         model = self._model
@@ -110,7 +109,7 @@ class _Trees:
         return sorted(parts, key=min)
 
     def _tied(self) -> list[set[int]]:
-        """Sets of trees that one equality constraint couples."""
+        """For each equality constraint, the indices of the trees that it couples."""
         import mujoco
 
         model, ties = self._model, []
@@ -125,7 +124,7 @@ class _Trees:
 
 
 def _with_trees(plant: Plant, kept: set[int]) -> Plant:
-    """The model with these trees only, without shapes and sensors."""
+    """The model with only the kinematic trees `kept`, without shapes and sensors."""
     model, spec = plant.model, plant.spec.copy()
     _without_shapes(spec, model)
     tree = model.body_treeid
@@ -149,7 +148,7 @@ def _with_trees(plant: Plant, kept: set[int]) -> Plant:
 
 
 def _without_shapes(spec: "mujoco.MjSpec", model: "mujoco.MjModel") -> None:
-    """Remove shapes and sensors but keep masses: nothing touches, so none is used."""
+    """Remove shapes and sensors, which a limb does not need, but keep all inertias."""
     import mujoco
 
     for body in spec.bodies[1:]:

@@ -12,24 +12,25 @@ from diagnosis.verdict.verdict import MismatchCell
 from groundwalk.arrays import BoolArray, FloatArray
 
 FAST, SLOW = 0.7, 0.2
-"""Shares of a joint's top speed above which motion is fast and below which it is slow;
-the top speed is the 95 % quantile."""
+"""Shares of a joint's top speed (its 95 % quantile) above which motion counts as fast
+and below which it counts as slow."""
 
 REVERSAL_S = 0.1
-"""Length [s] of the interval around a change of direction that counts as a reversal."""
+"""Length [s] of the interval around each change of direction whose rows count as
+"reversals" in the map of errors."""
 
 FEWEST = 20
-"""Fewest scored rows for which the error in a kind of motion is given."""
+"""Fewest rows from which the error in a kind of motion is computed."""
 
 
 def mismatch_map(
     predictor: Predictor, residual: FloatArray
 ) -> tuple[MismatchCell, ...]:
-    """One cell for each channel, the one with the largest error first.
+    """The nominal sim's error, one cell for each channel, the largest share first.
 
     Args:
-      predictor: it computed the residual.
-      residual: (N,) of the nominal sim, in units of noise.
+      predictor: the predictor that computed `residual`.
+      residual: (N,) residual of the nominal sim, in units of noise.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
@@ -45,7 +46,7 @@ def mismatch_map(
 def _cell(
     predictor: Predictor, residual: FloatArray, index: int, share: float
 ) -> MismatchCell:
-    """The cell of the channel with this index and this share of the squared error."""
+    """The error of the channel with this index; `share` is its share of all error."""
     channels = predictor.channels
     name, noise = channels.names[index], float(channels.noise[index])
     rows = predictor.channel == index
@@ -65,7 +66,17 @@ def _cell(
 def _regimes(
     predictor: Predictor, index: int, own: FloatArray, scored: BoolArray
 ) -> Mapping[str, float]:
-    """Rms error [noise] of a joint by kind of motion, such as "fast" or "reversals"."""
+    """Rms error of a joint's position by kind of motion, such as "fast".
+
+    Args:
+      predictor: the predictor that computed the residual.
+      index: index of the channel; others than joint positions have no kinds of motion.
+      own: (rows,) residual of this channel, in units of noise.
+      scored: (rows,) whether each row counts.
+
+    Returns:
+      Errors in units of noise.
+    """
     if index >= len(predictor.plant.joints):
         return {}
     flags: dict[str, list[BoolArray]] = {}

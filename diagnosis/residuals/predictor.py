@@ -1,4 +1,4 @@
-"""Replays models of a robot on recordings, and returns their residuals."""
+"""Simulates models of a robot on recordings (replays), and returns their residuals."""
 
 from collections.abc import Callable, Sequence
 
@@ -25,44 +25,46 @@ from diagnosis.traces.windows import is_left_over, runs_of, window_s
 from groundwalk.arrays import BoolArray, FloatArray
 
 Model = tuple[PlacedEffect, ...]
-"""The nominal robot model plus these effects; an empty tuple adds nothing."""
+"""A hypothesis: the nominal robot model plus these effects, or nothing for ()."""
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
-"""Time steps of replays [s] by the kind of base, from the longest to the shortest; a
-shorter one is used where the integration error of the longer one is too large."""
+"""Time steps of simulations [s] by the kind of base, tried in this order until the
+integration error is small enough."""
 
 WARM_UP_S = 0.4
-"""The first seconds of a recording that are not scored, because its start state is only
-known up to sensor noise."""
+"""Time [s] at the start of a recording in which errors do not count, because the start
+state of the simulation is only known up to sensor noise."""
 
 BLOCK_S = 0.5
-"""Length [s] of the time blocks between which errors count as independent; within a
-block they may be correlated."""
+"""Length [s] of the time blocks of which standard errors take account: errors in
+different blocks count as independent, those in one block may be correlated."""
 
 MOST_ROWS = 192
-"""Most simulations in one batch. More would need more memory and save no time."""
+"""Most simulations in one batch; more would need more memory and save no time."""
 
 WORST = 1e4
-"""Largest residual [noise]; a replay that diverges gets it in every row."""
+"""Residuals are clipped to this size [noise]; a simulation that diverges gets it in all
+rows after that."""
 
 
 class Predictor:
-    """Replays models on traces and corrects the integration error of the replays.
+    """Simulates models on recordings, and corrects the integration error.
 
     The integration error of a coarse time step is smooth and hardly depends on the
     model. `calibrate` measures it once with finer steps and Richardson extrapolation
     (first order: twice the finer result minus the coarser one); it is then added to
-    every replay.
+    every simulation.
 
     Attributes:
       plant: nominal robot model.
-      traces: the recordings that are replayed.
-      channels: the quantities that are compared, c of them, with their noise.
-      step_s: time step of the replays [s].
-      blocks: rows of all traces in blocks of 0.3 s, as reference noise uses them.
+      traces: the recordings.
+      channels: the c quantities that are compared, with their noise.
+      step_s: time step of the simulations [s].
+      blocks: rows of all traces in blocks of 0.3 s, in which model errors that the
+        healthy robot shows are correlated.
       channel: (N,) index of the channel of each entry of a residual.
       trace: (N,) index of the trace of each entry.
-      block: (N,) number of the time block of each entry, for standard errors.
+      block: (N,) number of the time block (0.5 s) of each entry, for standard errors.
       scored: (N,) whether the entry counts; others are always 0.
     """
 
@@ -76,18 +78,18 @@ class Predictor:
         noise: ReferenceNoise | None = None,
         on_replay: Callable[[int], None] | None = None,
     ) -> None:
-        """Estimate the states that the traces start from.
+        """Estimate the states from which the simulations of the traces start.
 
         Args:
           plant: nominal robot model.
-          traces: recordings to replay, all with the same channels.
-          channels: the quantities to compare with their noise; estimated from the
-            traces where None.
-          step_s: time step [s] of the replays; the longest of `STEPS_S` where None.
-          threads: processor threads of each batch.
-          noise: model errors known from reference recordings; none where None.
-          on_replay: called after each batch with the number of its replays, counted as
-            replays of all traces at the step `step_s`.
+          traces: recordings, all with the same channels.
+          channels: the quantities to compare, with their noise; None to estimate them
+            from the traces.
+          step_s: time step of the simulations; None for 4 ms (floating base: 2 ms).
+          threads: number of threads that simulate a batch.
+          noise: model errors that recordings of the healthy robot show, or None.
+          on_replay: called after each batch with its number of simulations, counted as
+            simulations of all traces at the step `step_s`.
         """
         self.plant, self.traces = plant, list(traces)
         self.step_s, self._threads = step_s or STEPS_S[plant.base][0], threads
@@ -137,14 +139,13 @@ class Predictor:
         return Predictor(self.plant, traces, *own)
 
     def calibrate(self, model: Model = ()) -> float:
-        """Measure the integration error and the influence of wrong start states.
+        """Measure the integration error of a model, and what wrong start states change.
 
-        Args:
-          model: the effects at which they are measured; a replay that diverges counts
-            with the largest error, `WORST`.
+        Both are then taken out of the residuals of all models.
 
         Returns:
-          Rms [noise] of the integration error that the correction leaves.
+          Rms [noise] of the integration error that remains after its correction; large
+          if the simulation of `model` diverges.
         """
         coarse, fine, finer = (
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
@@ -158,7 +159,7 @@ class Predictor:
         return float(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2)))
 
     def _start_doubt(self, model: Model) -> StartUncertainty | None:
-        """How wrong start states change the replays; None where noise includes it."""
+        """How wrong start states change simulations; None if noise includes that."""
         # with a floating base the reference noise contains the errors of wrong starts
         if self._noise is not None and self.plant.base == "floating":
             return None
@@ -182,11 +183,11 @@ class Predictor:
         return StartUncertainty(changes, ends.tolist())
 
     def _given(self, model: Model) -> Model:
-        """The model together with the effects that the reference shows."""
+        """The model, and the effects that recordings of the healthy robot show."""
         return (*self._noise.model, *model) if self._noise else model
 
     def _warming(self) -> BoolArray:
-        """(rows,) whether a row is not scored, as the first ones of a window."""
+        """(rows,) whether errors in a row do not count: at starts, in short windows."""
         flags = []
         for run in self._runs:
             since_s = run.trace.time_s - run.trace.time_s[0]
@@ -200,13 +201,11 @@ class Predictor:
         return measured_of(self.traces[index], self.channels)
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c) predicted values, the rows of all traces one after another.
+        """(n, rows, c) values of c channels as n models predict them.
 
-        Models with a spring between motor and link are replayed with half the time
-        step: their motor oscillates too fast for the full one.
-
-        Args:
-          models: n models.
+        The rows are those of all traces, one after another. A model with a spring
+        between motor and link is simulated with half the time step: its motor
+        oscillates too fast for the full one.
         """
         stiff = [any(effect(placed.name).stiff for placed in one) for one in models]
         predicted = np.empty((len(models), *self._correction.shape))
@@ -221,27 +220,26 @@ class Predictor:
         return predicted
 
     def exact(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c) predictions, each with the integration error of its own model.
+        """(n, rows, c) values of c channels as n models predict them, more exactly.
 
-        Takes six times as long as `predict`. It matters where models of the same
+        Each model's own integration error is corrected instead of a common one, which
+        takes six times as long as `predict`. It matters where models of the same
         physics are integrated differently, such as a damping that MuJoCo treats
         implicitly and an equal force that it treats explicitly.
-
-        Args:
-          models: n models.
         """
         fine, finer = (self._replayed(models, self.step_s / part) for part in (2, 4))
         return 2 * finer - fine
 
     def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
-        """(n, N) measured minus predicted values in units of noise; 0 where not scored.
+        """(n, N) measured less predicted values of n models, in units of noise.
 
-        Wrong start states and reference noise are taken out. A replay that diverges
-        gets the largest residual, `WORST`.
+        Entries that do not count are 0, those of a simulation that diverges `WORST`.
+        The influence of wrong start states, and model errors that recordings of the
+        healthy robot show, are taken out.
 
         Args:
           models: n models.
-          exactly: predict with `exact` instead of `predict`.
+          exactly: correct each model's own integration error; takes six times as long.
         """
         predicted = self.exact(models) if exactly else self.predict(models)
         wrong = (self._measured - predicted) / self.channels.noise
@@ -254,7 +252,7 @@ class Predictor:
         return wrong.reshape(len(models), -1)
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
-        """(n, rows, c) replays without corrections, each limb simulated by itself."""
+        """(n, rows, c) simulated values without corrections, limb by limb."""
         shape = len(models), len(self._measured), len(self.channels.names)
         predicted = np.empty(shape)
         for limb in self._limbs:
@@ -270,7 +268,7 @@ class Predictor:
     def _replayed_limb(
         self, limb: Limb, models: Sequence[Model], step_s: float, own: Channels
     ) -> FloatArray:
-        """(n, rows, channels of the limb) replays of one limb, in batches."""
+        """(n, rows, channels of the limb) simulated values of one limb, in batches."""
         runs = [limb.run(run) for run in self._runs]
         most = max(1, MOST_ROWS // len(runs))
         parts = []
@@ -283,19 +281,14 @@ class Predictor:
 
 
 def _block_numbers(traces: Sequence[Trace]) -> FloatArray:
-    """(rows,) numbers of the time blocks, different for each trace."""
+    """(rows,) numbers of the time blocks (0.5 s) of all traces; none occurs twice."""
     return np.concatenate(
         [(t.time_s - t.time_s[0]) // BLOCK_S + 1000 * i for i, t in enumerate(traces)]
     )
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
-    """Model fields, servos and forces for a batch, with one row for each model.
-
-    Args:
-      plant: nominal robot model.
-      models: the models of the rows.
-    """
+    """Model fields, servos and forces with which a batch simulates n models."""
     variants = Variants(plant, len(models))
     for row, model in enumerate(models):
         for placed in model:

@@ -1,11 +1,10 @@
-"""Model error that reference recordings show already, treated as noise.
+"""Reference noise: model error that recordings of the healthy robot show already.
 
 A model is never exact: engines differ in contacts, start states are known up to sensor
-noise, and real robots have friction that their model lacks. Reference recordings of the
-healthy robot show these errors before a search begins. Effects that explain a part of
-them become part of the nominal model. The remaining error counts as noise with its size
+noise, and real robots have friction that their model lacks. Effects that explain a part
+of this error become part of the nominal model. The rest counts as noise with its size
 and shape: residuals are whitened by its covariance (generalised least squares, Aitken
-1936). An error that was present before is then no evidence, however large, and a new
+1936). Then an error that was present before is no evidence, however large, and a new
 error is as much evidence as the sensors' noise allows.
 """
 
@@ -21,17 +20,17 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
 
 WAVES = 4
-"""Number of Legendre polynomials that describe the smooth part of a channel's error in
-a block; faster parts count as white noise."""
+"""Number of Legendre polynomials that describe the smooth part of a channel's model
+error in a block of 0.3 s; faster parts count as white noise."""
 
 FEWEST_ROWS = 2 * WAVES
-"""Fewest scored rows of a block for which a smooth part is described."""
+"""Fewest rows of a 0.3 s block in which the smooth part of an error is described."""
 
 TOO_SHORT = "the reference recordings are too short to learn the model error from"
 
 SHRINKAGES = (0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0)
-"""Shrinkages of the covariance towards its diagonal that are tried. Some shrinkage is
-needed because there are fewer blocks than rows of the covariance."""
+"""Shrinkages of an error covariance towards its diagonal that are tried. It is learned
+from fewer blocks of data than it has rows, hence it needs some shrinkage."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +38,9 @@ class Block:
     """Consecutive rows of a recording whose errors are correlated.
 
     Attributes:
-      rows: their place among all rows of a predictor.
-      waves: (rows, waves) polynomials, orthonormal over the scored rows, 0 elsewhere;
-        no columns if too few rows are scored.
+      rows: their indices among all rows of a predictor.
+      waves: (rows, waves) polynomials of time, orthonormal over the rows that count, 0
+        in the others; no columns if too few rows count.
     """
 
     rows: slice
@@ -49,11 +48,11 @@ class Block:
 
 
 def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
-    """Runs cut into blocks of 0.3 s.
+    """Windows of recordings, cut into blocks of 0.3 s.
 
     Args:
-      runs: whose rows follow one another.
-      scored: (rows,) whether any channel is.
+      runs: the windows, in the order of their rows.
+      scored: (rows of all windows,) whether errors in the row count in any channel.
     """
     blocks, first = [], 0
     for run in runs:
@@ -69,7 +68,12 @@ def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
 
 
 def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
-    """(rows, waves) polynomials of times in [0, 1), orthonormal over scored rows."""
+    """(rows, waves) Legendre polynomials in a block, orthonormal over scored rows.
+
+    Args:
+      within: (rows,) times in the block, from 0 to 1.
+      scored: (rows,) whether errors in the row count.
+    """
     if scored.sum() < FEWEST_ROWS:
         return np.zeros((len(within), 0))
     values = np.polynomial.legendre.legvander(2 * within - 1, WAVES - 1)
@@ -81,15 +85,18 @@ def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class ReferenceNoise:
-    """Errors that a model of c channels makes for the healthy robot.
+    """Errors in c channels that the robot model makes for the healthy robot.
+
+    Within a block of 0.3 s a smooth error is a sum of polynomials (waves); faster
+    errors are white noise.
 
     Attributes:
       model: effects that count as part of the nominal model.
       scale: (c,) rms of the fast errors in units of sensor noise; at least 1.
-      power: (k,) variances of the smooth errors along `axes`, in units of noise times
-        scale; at least 1.
-      axes: (waves c, k) orthonormal directions.
-      rows: typical number of rows of the blocks from which these were learned.
+      power: (k,) variances of the smooth errors along `axes`, in units of (sensor noise
+        times `scale`) squared; at least 1.
+      axes: (waves c, k) orthonormal directions, in coefficients of waves and channels.
+      rows: median number of rows of the blocks from which these were learned.
     """
 
     model: tuple[PlacedEffect, ...]
@@ -100,7 +107,7 @@ class ReferenceNoise:
 
     @classmethod
     def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":
-        """Known effects, without any further error.
+        """Effects that count as part of the nominal model, without further errors.
 
         Args:
           model: the effects.
@@ -117,16 +124,16 @@ class ReferenceNoise:
         scored: BoolArray,
         blocks: Sequence[Block],
     ) -> "ReferenceNoise":
-        """Learn the errors from residuals of reference recordings.
+        """Learn the errors from residuals of recordings of the healthy robot.
 
         Args:
           model: effects that count as part of the nominal model.
-          residual: (rows, c) that the model leaves, in units of noise.
+          residual: (rows, c) residual of this model, in units of noise.
           scored: (rows, c) whether an entry counts.
           blocks: the rows in blocks.
 
         Raises:
-          BadRecordingError: no block is long enough.
+          BadRecordingError: no block has enough rows that count.
         """
         long = [block for block in blocks if block.waves.shape[1]]
         if not long:
@@ -145,10 +152,10 @@ class ReferenceNoise:
         return cls(model, scale, *_covariance(smooth), rows)
 
     def without(self, residual: FloatArray, blocks: Sequence[Block]) -> FloatArray:
-        """(n, rows, c) whitened residuals.
+        """(n, rows, c) residuals, whitened by the covariance of the errors.
 
         Args:
-          residual: (n, rows, c) in units of sensor noise.
+          residual: (n, rows, c) residuals in units of sensor noise.
           blocks: the rows in blocks.
         """
         white = residual / self.scale
@@ -166,19 +173,19 @@ class ReferenceNoise:
         return np.asarray(white)
 
     def _less(self, rows: int) -> FloatArray:
-        """(waves c, waves c) I - C^(-1/2) for the covariance C in a block of rows.
+        """(waves c, waves c) I - C^(-1/2), with the covariance C of smooth errors.
 
-        The power of a smooth error grows with the number of rows.
+        C is that in a block of `rows` rows; the variances grow with that number.
         """
         power = 1 + (self.power - 1) * rows / self.rows
         return np.asarray((self.axes * (1 - 1 / np.sqrt(power))) @ self.axes.T)
 
 
 def _covariance(smooth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Variances and axes of (blocks, k) values, with a shrinkage chosen by the data.
+    """(k,) variances and (k, k) principal axes of (blocks, k) values.
 
-    The shrinkage is chosen by cross-validation: under the covariance learned from one
-    half of the blocks the other half is most likely.
+    Their covariance is shrunk towards its diagonal as cross-validation chooses: under
+    the covariance learned from one half of the blocks the other half is most likely.
     """
     half = len(smooth) // 2
     parts = [smooth[:half], smooth[half:]]
@@ -194,7 +201,10 @@ def _covariance(smooth: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArray]:
-    """Variances and axes of second moments; a constant error counts as variance."""
+    """(k,) variances and (k, k) principal axes of (blocks, k) values.
+
+    They are those of the shrunk second moments: a constant error counts as variance.
+    """
     moments = smooth.T @ smooth / len(smooth)
     diagonal = np.diag(np.maximum(np.diag(moments), 1.0))
     power, axes = np.linalg.eigh((1 - shrinkage) * moments + shrinkage * diagonal)
@@ -202,6 +212,9 @@ def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArra
 
 
 def _surprise(smooth: FloatArray, power: FloatArray, axes: FloatArray) -> float:
-    """Minus the log-likelihood of (blocks, k) values, without a constant."""
+    """Minus the log-likelihood [nats], up to a constant, of (blocks, k) values.
+
+    They are taken as Gaussian with variances `power` along `axes`.
+    """
     seen = smooth @ axes
     return float(0.5 * np.sum(seen**2 / power) + 0.5 * len(seen) * np.log(power).sum())

@@ -1,9 +1,9 @@
-"""Removes the influence of uncertain start states from residuals.
+"""Removes from residuals the influence of uncertain start states of the simulation.
 
-At the start of a window positions are known up to sensor noise, velocities less well.
-The influence of a wrong start fades within moments on well damped servos and lasts for
-seconds on others. Its shape (signature) is measured once, and the part of a residual
-that has this shape is removed.
+A simulation starts from measured positions, known up to sensor noise, and velocities,
+known less well. The error of a wrong start fades within moments on well damped servos
+and lasts for seconds on others. Its course (signature) is measured once, and the part
+of a residual that has this course is removed.
 """
 
 import itertools
@@ -17,17 +17,22 @@ from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
 
 POSITION_STEP_RAD, VELOCITY_STEP_RAD_S = 1e-3, 0.03
-"""Changes of the start state with which the signatures are measured."""
+"""Changes of the start positions [rad] and start velocities [rad/s] of simulations by
+which the influence of a wrong start is measured."""
 
 POSITION_SPREAD_RAD, VELOCITY_SPREAD_RAD_S = 2e-3, 0.3
-"""Standard deviations of the errors of a smoothed start state."""
+"""Standard deviations of the errors of positions [rad] and velocities [rad/s] from
+which simulations start."""
 
 
 def nudged(runs: Sequence[Run]) -> list[Run]:
-    """All windows unchanged, then with changed positions, then with changed velocities.
+    """The windows unchanged, with other start positions, and with other velocities.
 
-    All joints are changed at once: servos are stiff, so that each one hardly moves the
-    others.
+    All joints' starts are changed at once: servos are stiff, so that each joint hardly
+    moves the others.
+
+    Returns:
+      Three times as many windows as `runs`, in this order.
     """
     positions = [
         replace(run, position_rad=run.position_rad + POSITION_STEP_RAD) for run in runs
@@ -40,16 +45,16 @@ def nudged(runs: Sequence[Run]) -> list[Run]:
 
 
 class StartUncertainty:
-    """Signatures of wrong start positions and velocities in each window and channel."""
+    """Courses of the error (signatures) by wrong start states, window by window."""
 
     def __init__(self, changes: Sequence[FloatArray], ends: Sequence[int]) -> None:
         """Prepare the projection that removes the signatures.
 
         Args:
-          changes: two arrays (rows, c) in units of noise, 0 where not scored. They are
-            the change of the replays when positions, or velocities, start off by one
-            standard deviation.
-          ends: one past the last row of each window.
+          changes: changes (rows, c) of the simulated channels in units of noise, 0
+            where errors do not count: first if the start positions are wrong by one
+            standard deviation, then if the start velocities are.
+          ends: row after the last one of each window.
         """
         signatures = np.stack(changes)
         self._runs = [
@@ -64,7 +69,7 @@ class StartUncertainty:
         return some
 
     def without(self, residual: FloatArray) -> FloatArray:
-        """(n, rows, c) residuals minus the part that wrong starts explain."""
+        """(n, rows, c) residuals less the part that wrong start states explain."""
         ends = np.cumsum([run.own.shape[1] for run in self._runs])
         parts = np.split(residual, ends[:-1], axis=1)
         cleaned = [
@@ -75,7 +80,12 @@ class StartUncertainty:
 
 @dataclass(frozen=True, eq=False)
 class _RunUncertainty:
-    """One window: (2, rows, c) signatures, (c, 2, 2) inverse of their products."""
+    """Signatures of wrong start states in one window.
+
+    Attributes:
+      own: (2, rows, c) courses of the error, by position and by velocity.
+      inverse: (c, 2, 2) inverse of their scalar products plus 1 on the diagonal.
+    """
 
     own: FloatArray
     inverse: FloatArray

@@ -1,4 +1,4 @@
-"""The shape of an unexplained error over the quantity that it depends on most."""
+"""Shows an unexplained error as a curve over the quantity that it depends on most."""
 
 import numpy as np
 
@@ -9,10 +9,10 @@ from diagnosis.verdict.verdict import Unexplained
 from groundwalk.arrays import FloatArray
 
 BINS = 16
-"""Number of points of a curve."""
+"""Number of bins, and so of points, of a curve of mean errors."""
 
 FEWEST = 10
-"""Fewest rows of a point."""
+"""Fewest rows in a bin of the curve; bins with fewer are left out."""
 
 
 def unexplained(
@@ -20,16 +20,16 @@ def unexplained(
 ) -> Unexplained | None:
     """The mean error of the worst joint as a curve over one quantity.
 
-    Position, velocity, command and time are tried; the one over which the mean error
-    varies most significantly is chosen.
+    The quantity is the one of the joint's position, velocity and command and of time
+    over which the mean error is most significant.
 
     Args:
-      predictor: it computed the residual.
-      residual: (N,) of the best model, in units of noise.
+      predictor: the predictor that computed `residual`.
+      residual: (N,) residual of the best model, in units of noise.
       share: share of the squared error above the noise that the model leaves.
 
     Returns:
-      None if no row of the worst joint is scored.
+      The curve; None if no row of the worst joint counts.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
@@ -52,11 +52,11 @@ def unexplained(
 
 
 Curve = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
-"""Middles of the bins, mean errors, and standard errors of the means."""
+"""A curve of errors: mean quantity in each bin, mean error, standard error of it."""
 
 
 def _curve(values: FloatArray, wrong: FloatArray) -> Curve:
-    """The curve of errors over (rows,) values, in bins with equal numbers of rows."""
+    """The curve of (rows,) errors over (rows,) values, in bins of equally many rows."""
     edges = np.unique(np.quantile(values, np.linspace(0, 1, BINS + 1)))
     where = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
     at, mean, spread = [], [], []
@@ -76,7 +76,7 @@ def _explained(curve: tuple[str, str, *Curve]) -> float:
 
 
 def _orders(predictor: Predictor, joint: int) -> list[tuple[str, str, FloatArray]]:
-    """Name, unit and (rows,) values of quantities that an error may depend on."""
+    """Name, unit and (rows,) values of what a joint's error may depend on."""
     name = predictor.plant.joints[joint]
     position, velocity, time_s, command = [], [], [], []
     for trace in predictor.traces:

@@ -1,7 +1,8 @@
-"""The search for effects that explain the residuals.
+"""The search for missing physics (effects) that explains a sim's errors.
 
-`signatures` and `screening` guess, `candidates` proposes models, `fitting` fits them,
-`judging` decides which to believe, `search` grows them, `accept` tests the result, and
-`all_joints` searches for effects that all joints lack. `reference` learns from
-recordings of the healthy robot; `hooks` report progress and store results.
+`signatures` and `screening` estimate what effects would explain, `candidates` proposes
+models, `fitting` fits them, `judging` decides which to believe, `search` adds effects,
+`accept` tests the result, and `all_joints` adds an effect at all joints at once.
+`reference` learns from recordings of the healthy robot; `hooks` report progress and
+store results.
 """

@@ -1,8 +1,8 @@
-"""The acceptance tests after a search: which of its effects are reported.
+"""The tests after a search that decide which of its effects are reported.
 
 `accepted` applies three tests in this order. The best models are compared again, each
-with its own integration error. Values and effects that the winner does not need are
-removed. With reference recordings of a floating base, effects that would have improved
+with its own integration error. Values and effects that the best one does not need are
+removed. With recordings of the healthy robot on a floating base, effects that improve
 the fit there as much are removed, too: they are not new.
 """
 
@@ -20,24 +20,24 @@ from diagnosis.search.result import Judged, SearchResult, keys_of
 from groundwalk.arrays import FloatArray
 
 CLOSE_NATS = 100.0
-"""Models within this distance of the best one [nats] lend it their effects: each may
-contain a part of the truth. Generous, since trying a few more models is cheap."""
+"""Effects of models that are less plausible than the best one by at most this [nats]
+are tried in it. The number is large since trying a few more models is cheap."""
 
 REPLAYS_EACH = 30
-"""Rough number of replays in all acceptance tests for each model compared. An exact
-replay counts as six."""
+"""Rough number of simulations of the recordings in the tests after a search, for each
+model compared; only for the progress display."""
 
 SURE = 3.0
-"""Standard errors by which the gain of an effect on the new recordings must exceed its
-gain on the reference recordings."""
+"""Standard errors by which the gain of an effect on the diagnosed recordings must
+exceed its gain on recordings of the healthy robot."""
 
 
 def accepted(judge: Judge, result: SearchResult) -> SearchResult:
-    """The result of a search after all three acceptance tests.
+    """The result of a search without effects and values that fail a closer test.
 
     Args:
-      judge: of the search that has run.
-      result: what its `run` returned.
+      judge: the judge of the search that has run.
+      result: the result of the search.
     """
     judge.hooks.stage("comparison", REPLAYS_EACH * judge.rules.compared)
     result = compared_exactly(judge, result)
@@ -54,8 +54,8 @@ def compared_exactly(judge: Judge, result: SearchResult) -> SearchResult:
     of those of the best model.
 
     Args:
-      judge: of the search that has run.
-      result: what its `run` returned.
+      judge: the judge of the search that has run.
+      result: the result of the search.
     """
     if result.winner is None:
         return result
@@ -77,12 +77,12 @@ def fitted_exactly(
     models: Sequence[Model],
     jacobians: Sequence[FloatArray | None] | None = None,
 ) -> list[Judged]:
-    """Fit and judge models with the integration error of each one taken out exactly.
+    """Fit and judge models, each corrected by its own integration error.
 
     Args:
-      judge: of the search that has run.
-      models: their values are already close to the best ones.
-      jacobians: (N, p) of each model at these values; None where it is not known.
+      judge: the judge of the search that has run.
+      models: models with values that are already close to the best ones.
+      jacobians: (N, p) Jacobian of each model at these values; None if unknown.
     """
     if not models:
         return []
@@ -102,7 +102,7 @@ def fitted_exactly(
 
 
 def recombined(result: SearchResult) -> list[Model]:
-    """Variants of the best model with one effect replaced by one of a close model."""
+    """Variants of the best model: one effect replaced by one of another good model."""
     winner, every = result.winner, result.best[result.chosen]
     assert winner is not None
     others: dict[str, PlacedEffect] = {
@@ -123,15 +123,15 @@ def recombined(result: SearchResult) -> list[Model]:
 
 
 def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
-    """Replace an effect by a simpler form where its extra values improve too little.
+    """Replace effects by simpler forms where their extra values improve too little.
 
-    Dry friction with a Stribeck peak fits slightly better than dry friction alone
-    whatever the truth, because the peak can take any shape. The peak is kept only if it
-    improves the fit as much as one more effect must.
+    Dry friction with a Stribeck peak, for example, always fits a little better than dry
+    friction alone, since the peak can take any shape. It is kept only if it improves
+    the fit as much as one more effect must.
 
     Args:
-      judge: of the search that has run.
-      result: its result.
+      judge: the judge of the search that has run.
+      result: the result of the search.
     """
     winner = result.winner
     if winner is None:
@@ -151,11 +151,11 @@ def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
     """Remove effects without which the remaining ones fit as well.
 
     While models grow, an effect may compensate for an error in another one. It becomes
-    superfluous once that one has its right place and size.
+    superfluous once the other one has its right place and size.
 
     Args:
-      judge: of the search that has run.
-      result: its result.
+      judge: the judge of the search that has run.
+      result: the result of the search.
     """
     while result.winner is not None and result.chosen > 1:
         winner = result.winner
@@ -175,17 +175,17 @@ def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
 
 
 def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
-    """Remove effects that may already have been present in the reference recordings.
+    """Remove effects that recordings of the healthy robot may already show.
 
     The model of a walking robot is wrong in a different way at each step. An effect
     that fits some of these errors by chance gains much at some moments, loses at
-    others, and would have gained on the reference recordings, too. A true change gains
-    at most moments, and much more than it would have gained before.
+    others, and gains on recordings of the healthy robot, too. A true change gains at
+    most moments, and much more than it gains there.
 
     Args:
-      judge: of the search that has run. If it has no reference predictors, nothing is
-        removed.
-      result: its result.
+      judge: the judge of the search that has run. If it has no predictors of recordings
+        of the healthy robot, nothing is removed.
+      result: the result of the search.
     """
     chosen = result.chosen
     while judge.healthy and chosen:
@@ -197,7 +197,7 @@ def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
 
 
 def _is_new(judge: Judge, less: Model, more: Model) -> bool:
-    """Whether a model improves on a smaller one more than it would have before."""
+    """Whether `more` gains more over `less` than it does on the healthy robot."""
     # fitting and selection data together: a few seconds each are too few blocks
     now = np.concatenate(
         [_gains(part, less, more) for part in (judge.fit, judge.select)]
@@ -209,7 +209,7 @@ def _is_new(judge: Judge, less: Model, more: Model) -> bool:
 
 
 def _gains(predictor: Predictor, less: Model, more: Model) -> FloatArray:
-    """(blocks,) signed square roots of the log-likelihood gained in each time block.
+    """(blocks,) gains of `more` over `less` in each time block, as signed square roots.
 
     The root reduces the weight of single moments, such as a squat, at which an effect
     shows far more than at others.

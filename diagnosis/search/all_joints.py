@@ -1,8 +1,9 @@
-"""Search for physics that all joints lack, as in the first model of a real robot.
+"""Searches for physics that all joints of a model lack.
 
 The search for one, two or three effects suits a robot whose model was right once. The
 first model of a real robot lacks the same physics at every joint, in different amounts.
-Here whole kinds of effects are added, each at all joints where it improves the fit.
+Here kinds of effects are added one by one, each at all joints where it improves the
+fit.
 """
 
 from collections.abc import Sequence
@@ -22,34 +23,39 @@ from diagnosis.traces.usage import Usage
 from groundwalk.arrays import BoolArray
 
 MOST_KINDS = 6
-"""Most kinds of effects in a model."""
+"""Largest number of kinds of effects, each at many joints, in a model."""
 
 TRIED = 4
-"""Kinds tried in each round because they gain most in total."""
+"""Number of kinds of effects that are fitted in each round since they are estimated to
+gain most, over all joints together."""
 
 LEAN = 3
-"""Further kinds tried in each round because they gain most for each value."""
+"""Number of further kinds of effects that are fitted in each round since they are
+estimated to gain most for each fitted value."""
 
 REPLAYS = 200
-"""Rough number of replays in a round, for the progress display."""
+"""Rough number of simulations of the recordings in a round; only for the progress
+display."""
 
 LEAST_SHARE = 0.1
-"""Share of the remaining energy above the noise that a kind must remove."""
+"""Share of the remaining energy (half the sum of squared residuals) above the noise
+that a kind of effect at all joints must remove."""
 
 PATIENCE = 2
-"""Rounds in a row without enough gain after which no more kinds are added."""
+"""Number of successive rounds without enough gain that end the search for kinds of
+effects at all joints."""
 
 MUCH_BETTER = 0.25
-"""Share of the energy left by the best small model that the many effects of a model of
-whole kinds must remove to be preferred to it."""
+"""Share of the energy above the noise left by the best model of up to three effects
+that a model with effects at all joints must remove to be preferred."""
 
 
 def all_joints(judge: Judge, result: SearchResult) -> SearchResult:
-    """A model of whole kinds of effects if it fits much better, else the given result.
+    """The model with effects at all joints if it fits much better, else `result`.
 
     Args:
-      judge: of the search that has run.
-      result: its result.
+      judge: the judge of the search that has run.
+      result: the result of that search, with up to three effects.
     """
     best = _grown(judge, result)
     if best is not None:
@@ -70,7 +76,7 @@ def all_joints(judge: Judge, result: SearchResult) -> SearchResult:
 
 
 def _grown(judge: Judge, result: SearchResult) -> Judged | None:
-    """Add the best kind of effect, round by round, while that removes enough error."""
+    """Add kinds of effects at all joints, the best first, while they remove enough."""
     best: Judged | None = None
     model: Model = ()
     residual, energy = judge.fit.residuals([()])[0], result.nothing_fit + result.nothing
@@ -108,9 +114,9 @@ def servo_effects() -> tuple[str, ...]:
 def _best(judge: Judge, starts: Sequence[Model]) -> Judged | None:
     """The best of some models; only that one is fitted to the end.
 
-    Fitting and selection data are judged together. These models have few values for so
-    much data, so that chance hardly improves their fit, and what a joint shows in one
-    motion may be missing in all others.
+    Fitting and selection data are judged together. Chance hardly improves the fit of
+    these models, which have few values for much data, and some physics of a joint may
+    show in one motion only.
     """
     if not starts:
         return None
@@ -126,7 +132,7 @@ def _best(judge: Judge, starts: Sequence[Model]) -> Judged | None:
 
 
 def _without_idle(judge: Judge, best: Judged) -> Judged:
-    """Drop placements that do not improve the fit; a kind need not be everywhere."""
+    """Remove effects from the joints where they do not improve the fit."""
     energies = judge.energies(_each_left_out(best.model))
     needed = tuple(
         placed
@@ -146,14 +152,14 @@ def _each_left_out(model: Model) -> list[Model]:
 
 
 def kinds_to_add(guesses: Sequence[Guess], least: float, model: Model) -> list[Model]:
-    """Kinds of effects worth a fit, each with its guesses at all joints.
+    """Kinds of effects worth a fit, each with the guessed effects at all joints.
 
-    First the kinds that gain most in total, then those that gain most for each value: a
-    single delay may explain all fast motions, although friction at all joints gains
-    more in the slow ones.
+    First come the kinds that gain most in total, then those that gain most for each
+    value: a single delay may explain all fast motions, although friction at all joints
+    gains more in the slow ones.
 
     Args:
-      guesses: of single effects.
+      guesses: single effects with estimated gains.
       least: gain [nats] below which a guess is ignored.
       model: effects that are present already and not added again.
     """
@@ -178,7 +184,7 @@ def _values(model: Model) -> int:
 
 
 def joint_wise(predictor: Predictor, model: Model) -> Nudges:
-    """Nudges for `fit_all` that change a parameter at all joints in one replay.
+    """Finite differences for `fit_all` that change a parameter at all joints at once.
 
     Servos are stiff, so that a change at one joint hardly moves the others: each
     joint's own channels are taken as its column of the Jacobian (columns without a
@@ -186,14 +192,14 @@ def joint_wise(predictor: Predictor, model: Model) -> Nudges:
     coupling between joints only slows convergence; the result is unaffected.
 
     Args:
-      predictor: of the data to fit.
+      predictor: predictor of the data to fit.
       model: the same effects at many joints.
     """
     return Nudges(_groups(model), _rows(predictor, model))
 
 
 def _groups(model: Model) -> list[list[int]]:
-    """Numbers of the values that are nudged together: one parameter of one effect."""
+    """Indices of values, grouped by effect and parameter, whatever their joint is."""
     groups: dict[tuple[str, int], list[int]] = {}
     number = 0
     for placed in model:
@@ -204,7 +210,7 @@ def _groups(model: Model) -> list[list[int]]:
 
 
 def _rows(predictor: Predictor, model: Model) -> list[BoolArray]:
-    """For each value (N,) flags of the rows of the residual that it changes."""
+    """For each value (N,) flags of the entries of the residual that it changes."""
     rows = []
     for placed in model:
         own = predictor.channels.of_joint(placed.place)

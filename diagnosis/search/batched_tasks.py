@@ -1,4 +1,4 @@
-"""Runs several optimisers side by side and answers their questions in batches.
+"""Runs several optimisers side by side and computes their residuals in batches.
 
 SciPy's optimisers ask for one residual after another. Each runs in a thread that waits
 for its answer, so that the residuals of all of them can be computed in one batch.
@@ -15,7 +15,7 @@ Result = TypeVar("Result")
 
 
 class _Desk(Generic[Question, Answer]):
-    """Exchanges questions and answers between the tasks' threads and the caller."""
+    """Passes questions from tasks in threads to the caller, and answers back."""
 
     def __init__(self, tasks: int) -> None:
         self._condition = threading.Condition()
@@ -42,7 +42,7 @@ class _Desk(Generic[Question, Answer]):
             self._condition.notify_all()
 
     def questions(self) -> dict[int, Question]:
-        """The questions of all tasks, once each of them waits or has ended."""
+        """Questions by task number, once each task waits for an answer or has ended."""
         with self._condition:
             self._condition.wait_for(lambda: self._busy == 0)
             asked, self._asked = self._asked, {}
@@ -67,14 +67,14 @@ def lockstep(
     with a function to ask with. Whenever all tasks wait, `answer` is called once.
 
     Args:
-      tasks: the functions.
-      answer: answers a list of questions, in their order.
+      tasks: functions of one argument, the function to ask with.
+      answer: returns the answers to a list of questions, in their order.
 
     Returns:
       The results of the tasks, in their order.
 
     Raises:
-      Exception: whatever the first failing task or `answer` has raised.
+      Exception: the exception of the first failing task, or that of `answer`.
     """
     desk: _Desk[Question, Answer] = _Desk(len(tasks))
     results: dict[int, Result] = {}

@@ -1,4 +1,4 @@
-"""Proposes the models that are worth a fit, each with values to start from."""
+"""Proposes the models (sets of effects) to fit, each with values to start from."""
 
 from collections.abc import Sequence
 
@@ -19,7 +19,11 @@ place."""
 
 
 class Candidates:
-    """Proposes models to fit, by first-order guesses and by similarity of effects."""
+    """Proposes models to fit, by linear estimates and by similarity of effects.
+
+    A guess is a model whose values and gain follow from signatures, the changes of the
+    residual by each effect at each place, by linear least squares.
+    """
 
     def __init__(
         self, fit: Predictor, found: Sequence[Signature], rules: Rules
@@ -45,10 +49,10 @@ class Candidates:
     def larger(
         self, best: Sequence[Judged], near: bool, residual: FloatArray | None
     ) -> list[Model]:
-        """Models with one more effect; a structure may occur twice with other values.
+        """Models with one more effect; the same effects may occur with other values.
 
         Args:
-          best: models of one size, the best first.
+          best: models with equally many effects, the best first.
           near: whether to combine the best one with all effects at the same place.
           residual: (N,) residual of the nominal sim, if pairs are to be guessed; else
             None.
@@ -65,14 +69,14 @@ class Candidates:
         return self._scanned(self._swaps(judged))
 
     def promised(self, judged: Judged) -> float:
-        """First-order guess of the largest gain [nats] of another effect."""
+        """Linear estimate of the most [nats] that one more effect would gain."""
         guesses = self._screen.singles(judged.fit.residual, judged.fit.jacobian)
         return max((guess.gain for guess in guesses), default=0.0)
 
     def _scanned(self, starts: Sequence[Model]) -> list[Model]:
-        """Models with the best of several sizes of their last effect.
+        """Models with the best of several simulated sizes of their last effect.
 
-        First-order guesses are far off for some effects, such as backlash or delays.
+        Linear estimates are far off for some effects, such as backlash or delays.
         """
         options = [
             (*start[:-1], other) for start in starts for other in self._sizes(start[-1])
@@ -88,12 +92,12 @@ class Candidates:
         ]
 
     def _sizes(self, placed: PlacedEffect) -> list[PlacedEffect]:
-        """An effect in several sizes around a guess."""
+        """An effect in several sizes around a guessed one."""
         kind = effect(placed.name)
         return kind.sizes_to_scan(self._fit.plant, placed, self._fit.traces)
 
     def _short(self, ranked: Sequence[Guess]) -> list[Model]:
-        """The best guesses, and the best guess of each other kind of effect."""
+        """The best guesses, and the best guess of some other kinds of effect."""
         few = len(self._fit.plant.joints) <= FEW_JOINTS
         most = len(all_effects()) if few else self._rules.single_effects
         short = [
@@ -124,7 +128,7 @@ class Candidates:
         return list({one.keys: one for one in leading}.values())
 
     def _growths(self, best: Sequence[Judged]) -> list[Model]:
-        """Models with one more effect, of different structures."""
+        """Models with one more effect, no two with the same effects and places."""
         seen: set[frozenset[str]] = set()
         grown: list[Model] = []
         for judged in self._leading(best):
@@ -141,10 +145,10 @@ class Candidates:
         return grown
 
     def _partners(self, judged: Judged) -> list[Model]:
-        """A model of one effect, combined with all others at the same joint or body.
+        """A model of one effect, combined with each other effect at its joint or body.
 
-        Example: a stiffer servo plus a payload. Each alone fits worse, so neither is
-        found by following the gradient of the other.
+        Effects at one place may need each other, such as a stiffer servo and a payload:
+        the residual that one leaves need not point to the other.
         """
         near = self._near(judged.model[0].place)
         first = {
@@ -159,7 +163,7 @@ class Candidates:
         ]
 
     def _near(self, place: str) -> set[str]:
-        """A joint and the body that it moves, whichever of them is given."""
+        """A joint and the body that it moves, if `place` is one of the two."""
         model = self._fit.plant.model
         bodies = {
             joint: model.body(int(model.joint(joint).bodyid[0])).name
@@ -170,7 +174,7 @@ class Candidates:
         }
 
     def _pairs(self, residual: FloatArray, known: Sequence[Model]) -> list[Model]:
-        """Pairs whose guessed joint gain is largest, without those known already."""
+        """Pairs of effects with the largest guessed gain, without those in `known`."""
         seen = {keys_of(model) for model in known}
         pairs = self._screen.pairs(residual, self._rules.pairs)
         return [guess.model for guess in pairs if keys_of(guess.model) not in seen]
@@ -195,7 +199,7 @@ class Candidates:
         return list(swaps.values())
 
     def _moved(self, judged: Judged) -> list[Model]:
-        """Variants of a model with an effect moved to a neighbouring body."""
+        """Variants of a model with an effect moved along the chain of bodies."""
         plant, traces = self._fit.plant, self._fit.traces
         return [
             tuple(

@@ -1,4 +1,4 @@
-"""Estimates how long a diagnosis will take, from one small batch of replays."""
+"""Estimates how long a diagnosis will take, from one small batch of simulations."""
 
 import time
 from collections.abc import Sequence
@@ -13,9 +13,9 @@ from diagnosis.traces.split import split
 from diagnosis.traces.trace import Trace
 
 REPLAYS = {"fixed": 600, "floating": 1500}
-"""Typical number of replays of the fitting data in one diagnosis, by the robot's base.
-Six concealed cases with a fixed base needed 160 to 920 replays, more for more effects.
-The number for floating bases, where more effects are tried, is a guess."""
+"""Typical number of simulations of the fitting data in one diagnosis, by the robot's
+base. Six test cases with a fixed base needed 160 to 920, more for more effects. The
+number for floating bases, where more effects are tried, is a guess."""
 
 
 def expected_seconds(
@@ -27,7 +27,7 @@ def expected_seconds(
 ) -> float:
     """Estimated duration of a diagnosis [s], right within a factor of two or three.
 
-    One batch is replayed and timed: every kind of effect once, at its first place.
+    One batch is simulated and timed: every kind of effect once, at its first place.
 
     Args:
       plant: nominal robot model.
@@ -35,7 +35,7 @@ def expected_seconds(
       reference: recordings of the healthy robot. On a fixed base a search in them
         precedes that in `traces` and takes as long.
       channels: the channels that the recordings measured.
-      threads: threads of the replays.
+      threads: number of threads that simulate.
     """
     fit = affordable(plant, split(traces)).fit
     predictor = Predictor(plant, fit, channels, threads=threads)

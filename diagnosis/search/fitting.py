@@ -1,4 +1,4 @@
-"""Fits the values of models by nonlinear least squares, several models at a time."""
+"""Fits the parameters of models by nonlinear least squares, several at a time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,20 +14,20 @@ from diagnosis.search.batched_tasks import lockstep
 from groundwalk.arrays import BoolArray, FloatArray
 
 STEP = 0.02
-"""Step of finite differences in scaled coordinates, which are of order one."""
+"""Step of finite differences, in coordinates that are scaled to be of order one."""
 
 HOLD = 1e-3
-"""Weak pull to the start value, so that values which the data do not determine neither
-drift nor shorten the steps."""
+"""Weight of a penalty on the distance from the start values, so that values that the
+data do not determine neither drift nor shorten the steps."""
 
 MOST_STEPS = 8
 """Most steps of a fit; most fits converge in fewer."""
 
 TOLERANCE = 1e-4
-"""Relative change of the energy, and of the coordinates, at which a fit ends."""
+"""Relative change of the sum of squared residuals at which a fit ends."""
 
 Ask = Callable[[list[Model]], FloatArray]
-"""Computes the (n, N) residuals of n models."""
+"""A function that computes the (n, N) residuals of n models."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,15 +62,10 @@ class FittedModel:
 
 
 class Coordinates:
-    """Converts the values of a model to a vector of numbers of order one, and back."""
+    """Converts a model's values to scaled coordinates of order one, and back."""
 
     def __init__(self, plant: Plant, model: Model) -> None:
-        """Take the structure and the scales from a model.
-
-        Args:
-          plant: nominal robot model.
-          model: effects with any values.
-        """
+        """Take effects, places and scales from a model, whatever its values are."""
         self.model = model
         self.parameters: list[Parameter] = [
             parameter
@@ -79,7 +74,7 @@ class Coordinates:
         ]
 
     def of(self, model: Model) -> FloatArray:
-        """(p,) scaled coordinates of a model's values, clipped to their bounds."""
+        """(p,) scaled coordinates of a model's p values, clipped to their bounds."""
         values = [value for placed in model for value in placed.values]
         return np.array(
             [
@@ -89,7 +84,7 @@ class Coordinates:
         )
 
     def model_at(self, x: FloatArray) -> Model:
-        """The model with the values of (p,) scaled coordinates."""
+        """The model whose values have the (p,) scaled coordinates `x`."""
         values = [
             self._value(parameter, coordinate)
             for parameter, coordinate in zip(self.parameters, x, strict=True)
@@ -102,7 +97,7 @@ class Coordinates:
         return tuple(placed)
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(p,) smallest and (p,) largest allowed coordinates."""
+        """(p,) smallest and (p,) largest allowed scaled coordinates."""
         low = [self.scaled(i, p.low) for i, p in enumerate(self.parameters)]
         high = [self.scaled(i, p.high) for i, p in enumerate(self.parameters)]
         return np.array(low), np.array(high)
@@ -125,7 +120,7 @@ class Coordinates:
 
 
 def _scale(parameter: Parameter) -> float:
-    """The size of a parameter, which becomes one in scaled coordinates."""
+    """The size of a parameter that is 1 in scaled coordinates: its typical one."""
     size = abs(parameter.typical - parameter.neutral)
     if not np.isfinite(size) or size == 0:
         size = abs(parameter.typical) or parameter.high - parameter.low
@@ -134,13 +129,13 @@ def _scale(parameter: Parameter) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Nudges:
-    """Which values are changed together to find a Jacobian by finite differences.
+    """Which values of a model are changed together in finite differences (nudged).
 
     Attributes:
       groups: indices of the values that are changed together; each group takes one
-        replay.
-      rows: for each value (N,) flags of the rows of the residual that it changes; all
-        rows where None.
+        simulation.
+      rows: for each value (N,) flags of the entries of the residual that it changes;
+        None if each value changes all entries.
     """
 
     groups: Sequence[Sequence[int]]
@@ -151,36 +146,26 @@ class Nudges:
         """Nudges that change each value of a model by itself.
 
         Args:
-          predictor: not used; other kinds of nudges need it.
+          predictor: not used; `fit_all` passes it to any function of this kind.
           model: the effects whose values are changed.
         """
         count = sum(len(placed.values) for placed in model)
         return cls([[i] for i in range(count)])
 
     def steps(self, x: FloatArray, high: FloatArray) -> FloatArray:
-        """(p,) changes of the coordinates that keep them within their bounds.
-
-        Args:
-          x: (p,) scaled coordinates.
-          high: (p,) their upper bounds.
-        """
+        """(p,) steps of scaled coordinates, negative near their upper bounds `high`."""
         return np.where(x + STEP <= high, STEP, -STEP)
 
     def nudged(self, x: FloatArray, steps: FloatArray) -> list[FloatArray]:
-        """The points (p,) at which differences are taken, one for each group.
-
-        Args:
-          x: (p,) scaled coordinates.
-          steps: (p,) their changes.
-        """
+        """For each group the (p,) coordinates `x` with the group's `steps` added."""
         return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
 
     def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
         """(N, p) Jacobian by finite differences.
 
         Args:
-          seen: (1 + groups, N) residuals at a point and at its nudges.
-          steps: (p,) changes of the coordinates.
+          seen: (1 + groups, N) residuals at a point, and with each group changed.
+          steps: (p,) changes of the scaled coordinates.
         """
         found = np.zeros((seen.shape[1], len(steps)))
         for own, other in zip(self.groups, seen[1:], strict=True):
@@ -203,17 +188,17 @@ def fit_all(
     """Fit the values of several models, each from its own start.
 
     Args:
-      predictor: of the data to fit.
+      predictor: predictor of the data to fit.
       starts: models with values to start from.
       steps: most steps of each fit.
       nudges_of: says which values of a model are changed together in differences.
-      followed: take differences at the start only and update the Jacobian from the
-        residuals of each step (Broyden), which needs no replays. Good enough to compare
-        models, but not for intervals.
-      jacobians: (N, p) Jacobians at the starts from an earlier fit, None where unknown;
+      followed: take differences at the start only, and update the Jacobian from the
+        residuals of each step (Broyden), which needs no simulations. Good enough to
+        compare models, but not for intervals.
+      jacobians: (N, p) Jacobians at the starts from an earlier fit, None if unknown;
         only used with `followed`.
-      exactly: take out the integration error of each model, which takes six times as
-        long; see `Predictor.exact`.
+      exactly: correct each model's own integration error, which takes six times as
+        long as a common correction.
 
     Returns:
       The fitted models, in the order of their starts.
@@ -276,7 +261,7 @@ class _Course:
         return self._jacobians[x.tobytes()]
 
     def _differences(self, x: FloatArray) -> None:
-        """Compute residual and Jacobian at a point by finite differences."""
+        """Compute residual and Jacobian at a point (p,) by finite differences."""
         far = self._nudges.steps(x, self._high)
         points = (x, *self._nudges.nudged(x, far))
         seen = self._ask([self._coordinates.model_at(point) for point in points])
@@ -284,8 +269,9 @@ class _Course:
         self._jacobians[x.tobytes()] = self._nudges.jacobian(seen, far)
 
     def _updated(self, x: FloatArray) -> FloatArray:
-        """The latest Jacobian with the smallest change that fits the step to a point.
+        """(N, p) Jacobian at a point, updated from the latest one without simulation.
 
+        It is the nearest matrix that maps the step to the change of the residual:
         Broyden 1965, A class of methods for solving nonlinear simultaneous equations.
         """
         assert self._last is not None
@@ -303,7 +289,7 @@ def _fit(
     jacobian: FloatArray | None,
     ask: Ask,
 ) -> FittedModel:
-    """Fit one model with SciPy's trust-region least squares; see `fit_all`."""
+    """Fit one model with SciPy's trust-region least squares; arguments of `fit_all`."""
     from scipy.optimize import least_squares
 
     low, high = coordinates.bounds()

@@ -1,4 +1,4 @@
-"""How a long diagnosis reports its progress and stores results for a later resume.
+"""Interfaces by which a long diagnosis reports its progress and stores its results.
 
 Both are optional: a `Progress` receives reports while a diagnosis runs, a `Checkpoint`
 lets it go on after an interruption.
@@ -32,18 +32,18 @@ class Progress(Protocol):
         """
 
     def stage(self, name: str, steps: int) -> None:
-        """Called when a stage begins.
+        """Called when a stage of the diagnosis begins.
 
         Args:
-          name: for example "search round 2".
-          steps: rough number of replays in this stage.
+          name: name of the stage, for example "search round 2".
+          steps: rough number of simulations of the recordings in this stage.
         """
 
     def advance(self, steps: int) -> None:
-        """Called after each batch of replays.
+        """Called after each batch of simulations.
 
         Args:
-          steps: number of replays in the batch.
+          steps: number of simulations of the recordings in the batch.
         """
 
 
@@ -88,7 +88,8 @@ class Hooks:
         Args:
           progress: receives reports; None for no reports.
           checkpoint: stores results; None to store nothing.
-          part: name of a part of the diagnosis, which precedes its stages and keys.
+          part: name of a part of the diagnosis, put before the names of its stages and
+            the keys of its results.
         """
         self.progress, self._checkpoint, self._part = progress, checkpoint, part
         self._saved = 0
@@ -98,12 +99,12 @@ class Hooks:
         return Hooks(self.progress, self._checkpoint, part)
 
     def stage(self, name: str, steps: int) -> None:
-        """Report that a stage begins; see `Progress.stage`."""
+        """Report that a stage with about `steps` simulations of the data begins."""
         if self.progress is not None:
             self.progress.stage(f"{self._part} {name}".strip(), steps)
 
     def advance(self, steps: int) -> None:
-        """Report that replays are done."""
+        """Report that `steps` more simulations of the recordings are done."""
         if self.progress is not None:
             self.progress.advance(steps)
 
@@ -121,7 +122,7 @@ class Hooks:
         Args:
           work: computes the result.
           pack: makes a result storable.
-          unpack: is the inverse of `pack`.
+          unpack: restores a result that `pack` made storable.
         """
         if self._checkpoint is None:
             return work()

@@ -16,17 +16,19 @@ from groundwalk.arrays import FloatArray
 class Judge:
     """Fits models on the fitting data and judges them on the selection data.
 
+    An energy is half the sum of squared residuals in units of noise [nats].
+
     Attributes:
-      fit: predictor of the fitting data.
+      fit: predictor (simulation with residuals) of the fitting data.
       select: predictor of the selection data.
       rules: settings of the search.
-      healthy: predictors of reference recordings; empty if there are none.
+      healthy: predictors of recordings of the healthy robot; empty without such.
       hooks: progress display and checkpoint.
       residual: (N,) residual of the nominal sim on the fitting data [noise].
-      nothing: energy of the nominal sim on the selection data [nats].
-      nothing_fit: energy of the nominal sim on the fitting data [nats].
-      floor: energy that noise alone leaves on the selection data [nats].
-      floor_fit: energy that noise alone leaves on the fitting data [nats].
+      nothing: energy of the nominal sim on the selection data.
+      nothing_fit: energy of the nominal sim on the fitting data.
+      floor: energy that noise alone leaves on the selection data.
+      floor_fit: energy that noise alone leaves on the fitting data.
     """
 
     def __init__(
@@ -37,15 +39,15 @@ class Judge:
         healthy: Sequence[Predictor] = (),
         hooks: Hooks | None = None,
     ) -> None:
-        """Judge the nominal sim first, which all models are compared with.
+        """Judge the nominal sim, with which all models are compared.
 
         Args:
           fit: predictor of the fitting data, calibrated.
           select: predictor of the selection data, calibrated, with the same channels.
-          rules: settings of the search; the default ones where None.
-          healthy: calibrated predictors of reference recordings. A gain that a model
-            would have there, too, is no evidence of a change.
-          hooks: progress display and checkpoint; none where None.
+          rules: settings of the search; None for the default ones.
+          healthy: calibrated predictors of recordings of the healthy robot. A gain that
+            a model has there, too, is no evidence of a change.
+          hooks: progress display and checkpoint; None for neither.
         """
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.healthy, self.hooks = healthy, hooks or Hooks()
@@ -72,10 +74,11 @@ class Judge:
 
     @property
     def least_fitted(self) -> float:
-        """Log-likelihood [nats] that an effect must gain on the fitting data.
+        """Log-likelihood [nats] an effect must gain on the fitting data to be reported.
 
-        It applies to effects that show evenly in the fitting and the selection data. On
-        a fixed base both together must show enough, on a floating base each of them.
+        The effect is taken to show in the fitting data as much as in the selection
+        data. With a fixed base the sum of both gains must be large enough, with a
+        floating base each of them.
         """
         share = float(self.fit.scored.sum() / self.select.scored.sum())
         if self.fit.plant.base == "fixed":
@@ -83,7 +86,7 @@ class Judge:
         return max(1.0, share) * self.least_gain
 
     def worth(self, before: float, after: float, nothing: float) -> bool:
-        """Whether a step to a larger model improves the fit enough to be believed.
+        """Whether adding an effect to a model improves the fit enough to be believed.
 
         Args:
           before: energy of the smaller model on the selection data [nats].
@@ -93,10 +96,9 @@ class Judge:
         return before - after > self.least_gain and self.matters(before, after, nothing)
 
     def matters(self, before: float, after: float, nothing: float) -> bool:
-        """Whether a step removes enough of the energy that is left to explain.
+        """Whether a larger model removes enough of the energy that is left to explain.
 
-        The noise level itself is uncertain, so close to the noise floor no minimum
-        share is required.
+        The noise level itself is uncertain; close to it no minimum share is required.
 
         Args:
           before: energy of the smaller model on the selection data [nats].
@@ -125,7 +127,7 @@ class Judge:
         return len(best.model) == 1 and self.hints(*gains)
 
     def shows(self, fitted: float, selected: float) -> bool:
-        """Whether the gains on both kinds of data are large enough, each by itself.
+        """Whether an effect gains enough on each of the two kinds of data.
 
         A model that gains on the selection data by chance gains little on the fitting
         data.
@@ -137,11 +139,11 @@ class Judge:
         return min(fitted, selected) > self.least_gain
 
     def hints(self, fitted: float, selected: float) -> bool:
-        """Whether the gains are large enough together, for one effect on a fixed base.
+        """Whether a single effect gains enough on both kinds of data together.
 
-        A joint may move less in the selection data than in the fitting data, and a stop
-        or a push may not occur there at all. On a floating base two recordings differ
-        by chance, so that a gain in one and a loss in the other mean nothing.
+        A joint may move less in the selection data than in the fitting data, and an end
+        stop or a push may not occur there at all. With a floating base the answer is
+        no: recordings differ by chance, so that gains in only one of them mean nothing.
 
         Args:
           fitted: gain on the fitting data [nats].
@@ -165,17 +167,17 @@ class Judge:
     ) -> list[Judged]:
         """Fit models and judge them, the most plausible first.
 
-        Most starts lead nowhere: only those that are among the best after a few steps
-        are fitted to the end. Of several fits of one structure the best is kept.
+        Only those that are among the best after a few steps are fitted to the end. Of
+        several fits of the same effects at the same places the best is kept.
 
         Args:
           starts: models with values to begin with.
-          jacobians: (N, p) of each model at these values; None where it is not known.
+          jacobians: (N, p) Jacobian of each model at these values; None if unknown.
         """
         return self.saved(lambda: self._judged(starts, jacobians))
 
     def saved(self, work: Callable[[], list[Judged]]) -> list[Judged]:
-        """Judged models from the checkpoint, or computed and stored there."""
+        """Judged models from the checkpoint, or computed by `work` and stored there."""
         plant = self.fit.plant
         return self.hooks.saved(work, pack, lambda stored: unpack(stored, plant))
 
@@ -207,7 +209,7 @@ class Judge:
 
         Args:
           fits: models fitted to the fitting data.
-          exactly: take out the integration error of each model instead of a common one.
+          exactly: correct each model's own integration error instead of a common one.
         """
         energies = self.energies([fit.model for fit in fits], exactly)
         return [
@@ -216,10 +218,10 @@ class Judge:
         ]
 
     def _worthy(self, energies: Sequence[float]) -> int:
-        """How many of the best models deserve more steps: those not far behind.
+        """Number of the best models that are not far behind the very best.
 
         Args:
-          energies: of the models on the fitting data [nats], rising.
+          energies: energies of the models on the fitting data [nats], increasing.
         """
         if not energies:
             return 0
@@ -229,11 +231,14 @@ class Judge:
         return min(near, self.rules.finished)
 
     def energies(self, models: Sequence[Model], exactly: bool = False) -> list[float]:
-        """Energies of models on the selection data plus their gains on the reference.
+        """Energies [nats] of models on the selection data, with a penalty.
+
+        The penalty is the model's gain on recordings of the healthy robot, if there are
+        any: what was there before is no change.
 
         Args:
           models: the effects with values.
-          exactly: take out the integration error of each model instead of a common one.
+          exactly: correct each model's own integration error instead of a common one.
         """
         if not models:
             return []
@@ -243,10 +248,9 @@ class Judge:
         return [e + gain for e, gain in zip(energies, before, strict=True)]
 
     def _gains_before(self, models: Sequence[Model]) -> list[float]:
-        """Gain of each model on the reference, scaled to the length of selection data.
+        """Gain of each model [nats, at least 0] on recordings of the healthy robot.
 
-        Returns:
-          Gains [nats], at least 0; all 0 without a reference.
+        Gains are scaled to the length of the selection data; 0 without such recordings.
         """
         if not self.healthy:
             return [0.0] * len(models)
@@ -260,6 +264,6 @@ class Judge:
 
 
 def distinct(judged: Sequence[Judged]) -> list[Judged]:
-    """The first model of each structure: several starts may lead to the same one."""
+    """The first of all models that have the same effects at the same places."""
     first = {one.keys: one for one in reversed(judged)}
     return [one for one in judged if first[one.keys] is one]

@@ -1,4 +1,4 @@
-"""Learns from reference recordings what the model gets wrong for the healthy robot."""
+"""Learns the errors of a robot model from recordings of the healthy robot."""
 
 from collections.abc import Sequence
 
@@ -20,17 +20,19 @@ from diagnosis.traces.windows import FLOATING_WINDOW_S
 from groundwalk.errors import BadRecordingError
 
 MOST_S = 40.0
-"""Most seconds of reference recordings that are used."""
+"""Most seconds that are used of the recordings of the healthy robot."""
 
 CHECK_S = 6.0
-"""Seconds of reference data on which effects are checked: was it there before?"""
+"""Seconds of recordings of the healthy robot on which effects are checked: one that
+gains there, too, is no change."""
 
 SHIFTS = 3
-"""Windows of a floating base are cut at this many different offsets, since there are
-few of them."""
+"""Number of time offsets at which recordings on a floating base are cut into windows,
+to get more windows from which to learn noise."""
 
 REPLAYS = 40
-"""Rough number of replays for learning from a reference without a search."""
+"""Rough number of simulations for learning noise from recordings of the healthy robot;
+only for the progress display."""
 
 
 def learn_reference(
@@ -50,13 +52,13 @@ def learn_reference(
     Args:
       plant: nominal robot model.
       traces: recordings of the healthy robot, at least one.
-      channels: with their noise, as in the recordings to be diagnosed.
-      rules: settings of the search; the default ones where None.
-      threads: threads of the replays.
-      hooks: progress display and checkpoint; none where None.
+      channels: channels and their noise in the recordings to be diagnosed.
+      rules: settings of the search; None for the default ones.
+      threads: number of threads that simulate.
+      hooks: progress display and checkpoint; None for neither.
 
     Raises:
-      BadRecordingError: nothing can be learned from these recordings.
+      BadRecordingError: the recordings are unusable or too short to learn from.
     """
     refused = audit(traces, plant).refused
     if refused:
@@ -78,7 +80,7 @@ def _learned(
     threads: int,
     hooks: Hooks,
 ) -> ReferenceNoise:
-    """The noise that a model leaves in some recordings."""
+    """The errors that a model leaves in recordings, as noise."""
 
     def work() -> ReferenceNoise:
         count = len(channels.names)
@@ -112,19 +114,19 @@ def reference_checks(
     threads: int = 1,
     hooks: Hooks | None = None,
 ) -> list[Predictor]:
-    """Predictors on reference data, used to reject effects that are not new.
+    """Predictors of recordings of the healthy robot, to reject effects seen there, too.
 
-    An effect that would have explained as much of the reference recordings is no
-    change. Each half of the reference is judged with the noise learned from the other
-    half: with its own noise nothing would be left to explain. With a fixed base such
-    effects are part of the nominal model already, and there are no checks.
+    An effect that explains as much of these recordings is no change. Each half of them
+    is judged with the noise learned from the other half: with its own noise nothing
+    would be left to explain. With a fixed base the list is empty: effects of the
+    healthy robot are part of the nominal model there.
 
     Args:
       plant: nominal robot model.
-      traces: the reference recordings.
-      channels: with their noise.
-      threads: threads of the replays.
-      hooks: progress display and checkpoint; none where None.
+      traces: recordings of the healthy robot.
+      channels: the quantities to compare, with their noise.
+      threads: number of threads that simulate.
+      hooks: progress display and checkpoint; None for neither.
     """
     if plant.base == "fixed":
         return []
@@ -151,7 +153,7 @@ def _halves(traces: Sequence[Trace]) -> tuple[list[Trace], list[Trace]]:
 
 
 def reference_limit(noise: ReferenceNoise) -> tuple[str, ...]:
-    """The sentence for a verdict's limits about differences that are taken as given."""
+    """A sentence for the report: what the healthy robot shows is not searched for."""
     known = ", ".join(f"{one.name} at {one.place}" for one in noise.model)
     given = f" ({known})" if known else ""
     return (
@@ -168,7 +170,7 @@ def _explained(
     threads: int,
     hooks: Hooks,
 ) -> tuple[PlacedEffect, ...]:
-    """The effects that a search finds in reference recordings."""
+    """The effects, with values, that a search finds in recordings."""
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select
     whole = Predictor(
@@ -182,7 +184,7 @@ def _explained(
 
 
 def _shifted(trace: Trace) -> list[Trace]:
-    """A recording, and the same without its first rows, for `SHIFTS` offsets."""
+    """A recording, and the same without its first 0.1 s and its first 0.2 s."""
     rows = FLOATING_WINDOW_S / SHIFTS / trace.tick_s
     firsts = [round(k * rows) for k in range(SHIFTS)]
     return [trace.part(k, trace.ticks) for k in firsts if trace.ticks > 2 * k]

@@ -14,9 +14,9 @@ class Judged:
 
     Attributes:
       fit: the model, fitted to the fitting data.
-      selected: energy on the selection data [nats]: minus the log-likelihood.
-      weight: 1 where the fitting data count in comparisons with other models, 0 where
-        gains there may be chance.
+      selected: energy (minus the log-likelihood) on the selection data [nats].
+      weight: 1 if the fitting data count in comparisons with other models, 0 if gains
+        there may be chance.
     """
 
     fit: FittedModel
@@ -25,28 +25,30 @@ class Judged:
 
     @property
     def model(self) -> Model:
-        """The effects with their values."""
+        """The model's effects with their values."""
         return self.fit.model
 
     @property
     def energy(self) -> float:
-        """Energy on the fitting and the selection data together [nats]."""
+        """Minus the log-likelihood of fitting and selection data together [nats]."""
         return self.fit.energy + self.selected
 
     @property
     def evidence(self) -> float:
-        """Energy on the data that count in comparisons with other models [nats]."""
+        """Minus the log-likelihood of the data that count in comparisons [nats]."""
         return self.energy if self.weight else self.selected
 
     @property
     def keys(self) -> frozenset[str]:
-        """Effects and places of the model, without values."""
+        """The model's effects and places as "effect@place", without values."""
         return keys_of(self.model)
 
 
 @dataclass(frozen=True, eq=False)
 class SearchResult:
     """The best models that a search has found, and how many effects it believes.
+
+    An energy is half the sum of squared residuals in units of noise.
 
     Attributes:
       nothing: energy of the nominal sim on the selection data [nats].
@@ -70,7 +72,7 @@ class SearchResult:
         return self.best[self.chosen][0] if self.chosen else None
 
     def worse(self, judged: Judged) -> float:
-        """How much less plausible than the winner a model of its size is [nats]."""
+        """How much less plausible than the winner an equally large model is [nats]."""
         assert self.winner is not None
         floor = self.floor + self.winner.weight * self.floor_fit
         scale = scale_of(self.best[self.chosen], floor)
@@ -79,9 +81,9 @@ class SearchResult:
     def closed(self, judged: Judged) -> float:
         """Share of the nominal sim's energy above the noise that a model removes.
 
-        The larger of two shares, that of the selection data and that of all data: an
-        effect such as an end stop may show in the fitting data only, and a robot that
-        falls may fall in many ways there.
+        The share is computed on the selection data, and on fitting and selection data;
+        the larger one is returned. An effect such as an end stop may show in the
+        fitting data only, and a robot may fall in many ways there.
         """
         excess, gained = self.nothing - self.floor, self.nothing - judged.selected
         more = self.nothing_fit - self.floor_fit, self.nothing_fit - judged.fit.energy
@@ -90,23 +92,23 @@ class SearchResult:
 
 
 def keys_of(model: Model) -> frozenset[str]:
-    """The set of effects and places of a model, without values."""
+    """The effects and places of a model as "effect@place", without values."""
     return frozenset(placed.key for placed in model)
 
 
 VALUE_NATS = 2.0
-"""Penalty for each value of a model [nats]."""
+"""Penalty [nats] for each value (fitted number) of a model when models are compared."""
 
 
 def plausibility(judged: Judged, scale: float) -> float:
-    """How implausible a model is [nats]: its energy plus penalties.
+    """The implausibility of a model [nats]: lower is more plausible.
 
-    Rare effects and additional values are penalised.
+    It is minus the log-likelihood, plus penalties for rare effects and for each value.
 
     Args:
       judged: the model.
-      scale: energy of the best model divided by that of the noise, at least 1. Where no
-        model is exact, residuals exceed the noise and differences count less.
+      scale: divisor of the log-likelihood: energy of the best model over that of the
+        noise, at least 1. If no model is exact, differences count less.
     """
     return judged.evidence / scale + sum(
         effect(placed.name).rarity_nats + VALUE_NATS * len(placed.values)
@@ -118,8 +120,8 @@ def scale_of(judged: Sequence[Judged], floor: float) -> float:
     """Energy of the best model divided by that of the noise, at least 1.
 
     Args:
-      judged: models.
-      floor: energy that noise alone leaves on the data of their evidence [nats].
+      judged: the models.
+      floor: energy [nats] that noise alone leaves in the data that count.
     """
     least = min((one.evidence for one in judged), default=floor)
     return max(least / floor, 1.0) if floor > 0 else 1.0
@@ -129,8 +131,8 @@ def ranked(judged: Sequence[Judged], floor: float) -> list[Judged]:
     """Models in the order of their plausibility, the most plausible first.
 
     Args:
-      judged: models.
-      floor: energy that noise alone leaves on the data of their evidence [nats].
+      judged: the models.
+      floor: energy [nats] that noise alone leaves in the data that count.
     """
     scale = scale_of(judged, floor)
     return sorted(judged, key=lambda one: plausibility(one, scale))

@@ -7,26 +7,27 @@ from dataclasses import dataclass
 class Rules:
     """How many models a search tries, and when it believes an effect.
 
-    The defaults were set on concealed cases of known truth. Energies are half the sums
-    of squared residuals in units of noise; a gain is a reduction of energy [nats].
+    The defaults were set on recordings with hidden effects of known truth. An energy is
+    half the sum of squared residuals in units of noise [nats]; a gain is a reduction of
+    energy; a guess is a model whose gain is estimated linearly, without simulation.
 
     Attributes:
-      single_effects: how many single effects are fitted at the start.
-      further_effects: how many of them are reserved for kinds of effects that are not
-        among the best guesses.
-      beam: how many of the best models are extended in each round.
-      growths_each: in how many ways each of them is extended.
-      pairs: how many pairs of effects are fitted because of their guessed joint gain.
+      single_effects: number of single effects that are fitted at the start.
+      further_effects: number of these that is reserved for kinds of effects that are
+        not among the best guesses.
+      beam: number of the best models that are extended in each round.
+      growths_each: number of ways in which each of them is extended.
+      pairs: number of pairs of effects that are fitted because of their guessed gain.
       first_steps: steps of a fit after which most models are given up.
-      finished: how many models at most are fitted to the end.
+      finished: largest number of models that are fitted to the end.
       drop_behind: give a model up after the first steps if it explains less than the
-        best one by more than this share of what the best one explains.
-      refinements: how often at most the best models are fitted again after the
-        integration error has been measured at the best one.
-      compared: how many of the best models are compared with exact integration errors.
-      swaps: how many replacements are tried for each effect of the best model.
-      largest: most effects in a model.
-      suspicious: while the error exceeds this multiple of the noise energy, pairs are
+        best one by more than this share of the energy that the best one explains.
+      refinements: largest number of times that the best models are fitted again, with
+        the integration error measured at the best one.
+      compared: number of the best models that are compared with exact integration.
+      swaps: number of replacements that are tried for each effect of the best model.
+      largest: largest number of effects in a model.
+      suspicious: while the energy exceeds this multiple of the noise energy, pairs are
         tried even if no single effect helps; below it a search may end.
       promising: below that level a search ends if no guess gains this share of
         `least_gain`.

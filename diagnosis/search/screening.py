@@ -1,8 +1,9 @@
-"""First-order guesses of the effects that could explain a residual.
+"""Guesses, by linear estimates, which effects could explain a residual.
 
-A signature is proportional to the size of its effect. The size that explains most of a
-residual is therefore a projection, and the sizes of two effects together follow from
-linear least squares: thousands of guesses need no further replay.
+The change of the residual by an effect, its signature, is taken as proportional to the
+effect's size. The size that explains most of a residual is then a projection, and the
+sizes of two effects together follow from linear least squares: thousands of guesses
+need no further simulation.
 """
 
 from collections.abc import Sequence
@@ -17,24 +18,24 @@ from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray, IntArray
 
 SHORT, VECTORS_PAIRED = 200, 20
-"""Number of pairs of effects with a single component that are examined, and number of
-vector effects that are combined with all others."""
+"""Numbers of the most promising candidates for pairs: of pairs of scalar effects, and
+of vector effects (such as forces), each of which is paired with all other effects."""
 
 LARGEST_STRETCH = 4.0
-"""Largest factor by which the size of a tried effect is extrapolated."""
+"""Largest factor between the estimated size of an effect and the size simulated."""
 
 TINY, SAME = 1e-9, 1e-5
-"""Relative tolerances: for rounding, and for signatures that lie in the span of the
-model's own Jacobian."""
+"""Relative tolerances: one against rounding errors, one for signatures that are linear
+combinations of others or of the model's Jacobian."""
 
 
 @dataclass(frozen=True)
 class Guess:
-    """Effects that explain a part of a residual, at first order.
+    """Effects that explain a part of a residual, by a linear estimate.
 
     Attributes:
       model: the effects with the values that explain most.
-      gain: reduction of half the squared residual [nats].
+      gain: reduction of half the sum of squared residuals [nats].
     """
 
     model: Model
@@ -43,14 +44,14 @@ class Guess:
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """Scalar products of K signatures with one residual and with each other.
+    """Scalar products of K signatures (changes by effects) with one residual.
 
     Attributes:
       wanted: (K,) products of the signatures with the negative residual.
       products: (K, K) products of the signatures with each other.
-      ridge: share of each signature's power that is added to the diagonal, so that the
+      ridge: share of each signature's square that is added to the diagonal, so that the
         equations can always be solved.
-      bounded: whether effects with only one possible sign keep it.
+      bounded: whether the sizes of effects with only one possible sign must keep it.
     """
 
     wanted: FloatArray
@@ -63,10 +64,10 @@ class Screen:
     """Finds the effects, and the pairs of effects, that explain most of a residual."""
 
     def __init__(self, predictor: Predictor, found: Sequence[Signature]) -> None:
-        """Compute the products of all signatures once.
+        """Compute the scalar products of all signatures once.
 
         Args:
-          predictor: it computed the signatures.
+          predictor: the predictor that computed the signatures.
           found: at least one signature. Components of a vector effect are combined;
             other signatures of one effect and place are alternatives.
         """
@@ -84,9 +85,9 @@ class Screen:
 
         Args:
           residual: (N,) residual to explain [noise].
-          jacobian: (N, p) Jacobian of the model that leaves the residual. The model's
-            values may then change together with the added effect, without which two
-            effects that nearly cancel each other are not found. None keeps them fixed.
+          jacobian: (N, p) Jacobian of the model that leaves the residual. With it the
+            model's values may change when an effect is added, so that two effects that
+            nearly cancel each other are found. None keeps these values fixed.
         """
         view = self._view(residual, jacobian)
         best: dict[str, Guess] = {}
@@ -100,7 +101,7 @@ class Screen:
     def pairs(self, residual: FloatArray, count: int) -> list[Guess]:
         """The pairs of effects that explain most together, largest gain first.
 
-        Each effect of a pair may explain nothing alone, if both nearly cancel.
+        Each of two effects that nearly cancel may explain nothing alone.
 
         Args:
           residual: (N,) residual to explain [noise].
@@ -116,7 +117,7 @@ class Screen:
         return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
 
     def _promising(self, view: "_View") -> list[tuple[list[int], list[int]]]:
-        """Pairs of groups of signatures whose joint gain is worth computing."""
+        """Pairs of effects, as groups of signature indices, whose gain to compute."""
         alone = [group for group in self._groups if len(group) == 1]
         rows = np.array([row for group in alone for row in group], int)
         gain = self._gains_together(view, rows)
@@ -142,10 +143,10 @@ class Screen:
         return pairs
 
     def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
-        """(K, K) joint gains of two signatures by least squares, above the diagonal.
+        """(K, K) gains of pairs of K signatures by least squares, above the diagonal.
 
-        A gain is 0 where an effect would need an impossible sign, and where both
-        signatures are the same.
+        The gain is 0 if an effect would need an impossible sign, and if both signatures
+        are the same up to a factor.
         """
         products, wanted = view.products[np.ix_(rows, rows)], view.wanted[rows]
         power = np.diag(products)
@@ -160,7 +161,7 @@ class Screen:
         return np.where(possible, gain, 0.0)
 
     def _grouped(self) -> list[list[int]]:
-        """Indices of signatures, those of one vector effect's components together."""
+        """Indices of signatures, grouped such that vector effects are complete."""
         vectors: dict[tuple[str, tuple[float, ...]], list[int]] = {}
         alone = []
         for row, signature in enumerate(self._found):
@@ -176,7 +177,7 @@ class Screen:
     def _view(
         self, residual: FloatArray, jacobian: FloatArray | None = None
     ) -> "_View":
-        """Products of signatures with a residual, without the span of a Jacobian."""
+        """Scalar products with a residual, less the part in the span of a Jacobian."""
         wanted = -(self._columns @ residual.astype(np.float32)).astype(float)
         if jacobian is None or not jacobian.any():
             return _View(wanted, self._products, TINY)
@@ -187,7 +188,10 @@ class Screen:
         return _View(wanted, self._products - done @ done.T, SAME)
 
     def _guess(self, view: "_View", groups: Sequence[list[int]]) -> Guess | None:
-        """The best allowed sizes of some effects; None if they explain nothing."""
+        """The best allowed sizes of some effects (groups of signature indices).
+
+        None if they explain nothing.
+        """
         rows = [row for group in groups for row in group]
         products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]
         ridge = np.diag(view.ridge * np.diag(self._products)[rows] + 1e-12)
@@ -206,7 +210,7 @@ class Screen:
         return Guess(tuple(model), gain)
 
     def _placed(self, group: list[int], stretch: FloatArray) -> PlacedEffect:
-        """The effect of a group, with the tried sizes multiplied by `stretch`."""
+        """The effect of a group of signatures, with tried sizes times `stretch`."""
         first = self._found[group[0]].placed
         kind = effect(first.name)
         parts = kind.components

@@ -1,9 +1,9 @@
-"""The search for missing effects: it grows models and selects among them.
+"""The search for missing effects: it extends models and selects among them.
 
 Models grow by one effect at a time, several of them side by side, because the best
-single effect need not belong to the best pair. First-order guesses decide which models
-are fitted, fits use the fitting data only, and the selection data decide whether an
-effect is believed. `accept.py` tests the result further.
+single effect need not belong to the best pair. Linear estimates decide which models are
+fitted, fits use the fitting data only, and the selection data decide whether an effect
+is believed. `accept.py` tests the result further.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ class Search:
 
     Attributes:
       judge: fits and judges the models.
-      signatures: of all effects at all places; filled by `run`.
+      signatures: changes of the residual by each effect at each place; filled by `run`.
     """
 
     def __init__(self, judge: Judge) -> None:
@@ -39,7 +39,7 @@ class Search:
         self._usage = Usage.of(judge.fit.plant, judge.fit.traces)
 
     def run(self) -> SearchResult:
-        """Grow models until another effect does not improve them enough."""
+        """Add effects to models until another one does not improve them enough."""
         judge, residual = self.judge, self.judge.residual
         intervals = push_intervals(self._fit, residual)
         self.signatures = signatures(self._fit, (), self._usage, intervals)
@@ -71,14 +71,14 @@ class Search:
     def _round(
         self, size: int, starts: Sequence[Model], kind: str = ""
     ) -> list[Judged]:
-        """Fit and judge the models of one round, and report the round as a stage."""
+        """Fit and judge the models of one search round, and report its progress."""
         if starts:
             name = f"{kind}search round {size}"
             self.judge.hooks.stage(name, self.judge.replays_of(starts))
         return self.judge.judged(starts)
 
     def _starts_from(self, leader: Judged) -> Candidates:
-        """Candidates that include pushes which show only beside the leading model."""
+        """Candidates that include pushes visible in the leading model's residual."""
         left = leader.fit.residual
         _, *bursts = push_intervals(self._fit, left)
         pushes: list[Signature] = []
@@ -88,7 +88,7 @@ class Search:
         return Candidates(self._fit, [*self.signatures, *pushes], self._rules)
 
     def _larger(self, starts: Candidates, best: Sequence[Judged]) -> list[Model]:
-        """Models for the next round; none if little error is left and none promises."""
+        """Models with one more effect; none if too little can be gained by them."""
         judge, leader = self.judge, best[0]
         alone = len(leader.model) == 1
         residual = judge.residual if alone else None
@@ -105,8 +105,8 @@ class Search:
     def _refined(self, best: list[Judged]) -> list[Judged]:
         """Fit the best models again with the integration error of the best one.
 
-        Dry friction and end stops change the integration error. Effects that contain
-        one of the best model's effects are fitted as well.
+        Dry friction and end stops change the integration error. More general forms of
+        the best model's effects are fitted as well.
         """
         judge = self.judge
         for _ in range(self._rules.refinements):

@@ -1,8 +1,8 @@
-"""Signatures: the first-order change of the predictions by each effect at each place.
+"""Signatures: the changes of a simulation that each effect at each place causes.
 
 Servos are stiff, so that a change at one joint hardly moves the others. An effect is
-therefore tried at all joints in one replay, and the change in each joint's own channels
-is its signature there.
+therefore tried at all joints in one simulation, and the change in each joint's own
+channels is its signature there.
 """
 
 from collections.abc import Sequence
@@ -21,11 +21,11 @@ from groundwalk.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """The first-order change of the residual by an effect at a place.
+    """The change of the residual that an effect of a tried size causes at a place.
 
     Attributes:
       placed: the effect with the values that were tried.
-      change: (rows,) change of the residual [noise].
+      change: (rows,) change of the residual, in units of noise.
       rows: (rows,) indices into the residual: all, or those of the joint's channels.
       two_sided: whether the effect may also have the opposite sign.
     """
@@ -43,14 +43,14 @@ def signatures(
     intervals: Sequence[Interval] = (),
     names: Sequence[str] = (),
 ) -> list[Signature]:
-    """Signatures of all effects at all their places when added to a model.
+    """Simulate effects at all their places, to see how each changes the residual.
 
     Args:
-      predictor: of the recordings.
-      base: the model that the effects are added to.
-      usage: how the joints were used in the recordings, which sets the sizes tried.
+      predictor: simulates the recordings.
+      base: the model to which the effects are added, one or one kind at a time.
+      usage: range, speed and torque of the joints, which set the sizes that are tried.
       intervals: start and duration [s] of possible pushes.
-      names: effects to try; all where empty.
+      names: names of the effects to try; all if empty.
     """
     trials = _trials(predictor, usage, intervals, names or tuple(all_effects()))
     models = [base, *(base + added for added, _ in trials)]
@@ -75,7 +75,7 @@ def _trials(
     intervals: Sequence[Interval],
     names: Sequence[str],
 ) -> list[tuple[Model, bool]]:
-    """Models to replay, and whether each has its effect at all joints at once."""
+    """Effects to simulate together, and whether these are one kind at all joints."""
     trials: list[tuple[Model, bool]] = []
     for name in names:
         kind = effect(name)
@@ -105,7 +105,7 @@ def _trials(
 
 
 def tips(plant: Plant) -> frozenset[str]:
-    """Names of the outermost bodies, those that carry no other."""
+    """Names of the bodies that carry no other body, such as hands and feet."""
     model = plant.model
     carrying = {int(parent) for parent in model.body_parentid[1:]}
     every = range(1, model.nbody)
@@ -113,6 +113,6 @@ def tips(plant: Plant) -> frozenset[str]:
 
 
 def _two_sided(predictor: Predictor, placed: PlacedEffect) -> bool:
-    """Whether the effect's first value may lie on both sides of its neutral one."""
+    """Whether the effect's first value may be below and above the neutral one."""
     first = Coordinates(predictor.plant, (placed,)).parameters[0]
     return first.low < first.neutral < first.high

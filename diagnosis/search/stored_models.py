@@ -1,4 +1,4 @@
-"""Fitted models and reference noise in the form that a checkpoint stores."""
+"""Converts fitted models and learned noise to a form that a checkpoint can store."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,7 +13,7 @@ from diagnosis.search.result import Judged
 
 
 def pack(judged: Sequence[Judged]) -> Saved:
-    """Judged models in the form that a checkpoint stores."""
+    """Convert judged models to the form that a checkpoint stores."""
     models = [
         {"model": _plain(each.model), "selected": each.selected, "weight": each.weight}
         for each in judged
@@ -27,7 +27,7 @@ def pack(judged: Sequence[Judged]) -> Saved:
 
 
 def unpack(saved: Saved, plant: Plant) -> list[Judged]:
-    """Judged models as `pack` stored them, to the last digit."""
+    """Restore judged models that `pack` has converted, exact to the last digit."""
     judged = []
     for i, one in enumerate(saved.plain):
         model = _model(one["model"])
@@ -38,24 +38,24 @@ def unpack(saved: Saved, plant: Plant) -> list[Judged]:
 
 
 def pack_noise(noise: ReferenceNoise) -> Saved:
-    """Reference noise in the form that a checkpoint stores."""
+    """Convert model errors of the healthy robot to the form a checkpoint stores."""
     names = ("scale", "power", "axes")
     arrays = {name: getattr(noise, name) for name in names}
     return Saved({"model": _plain(noise.model), "rows": noise.rows}, arrays)
 
 
 def unpack_noise(saved: Saved) -> ReferenceNoise:
-    """Reference noise as `pack_noise` stored it, to the last digit."""
+    """Restore noise that `pack_noise` has converted, exact to the last digit."""
     return ReferenceNoise(
         _model(saved.plain["model"]), rows=saved.plain["rows"], **saved.arrays
     )
 
 
 def _plain(model: Model) -> list[list[Any]]:
-    """A model as lists of effect, place and values."""
+    """A model as lists [effect, place, values], one for each effect."""
     return [[one.name, one.place, list(one.values)] for one in model]
 
 
 def _model(plain: list[list[Any]]) -> Model:
-    """A model from the lists that `_plain` makes."""
+    """A model from lists [effect, place, values]."""
     return tuple(PlacedEffect(effect, place, tuple(v)) for effect, place, v in plain)
