@@ -14,7 +14,7 @@ from worlds.world import End
 FALL_TILT_RAD = math.radians(60)
 """A robot has fallen when its torso's up axis is more than 60 degrees from vertical."""
 FALL_HEIGHT_RATIO = 0.5
-"""A robot has fallen when its torso is below this share of its start height."""
+"""A robot has fallen when its torso is lower than this share of its start height."""
 DIVERGED_SPEED_M_S = 50.0
 """Torso speed along one axis [m/s] from which the physics counts as diverged. Walks
 stay below 1 m/s and falls below 5 m/s."""
@@ -75,9 +75,9 @@ class EndRule:
         }
 
     def _above_ground(self, truth: Truth) -> tuple[FloatArray, BoolArray]:
-        """(n,) height of each torso over its ground [m], and whether it is above any.
+        """(n,) height of each torso over its ground [m]; (n,) False beyond its edge.
 
-        Beyond the ground, the height of the nearest point of its edge counts.
+        Beyond the edge, the height of its nearest point counts.
         """
         x, y, z = truth.base_position_m.T
         height_m, on_ground = z.copy(), np.ones(len(z), bool)

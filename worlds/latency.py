@@ -21,11 +21,7 @@ class DelayLine:
         self._commands: deque[FloatArray] = deque(maxlen=self._ticks + 2)
 
     def reset(self, command: FloatArray) -> None:
-        """Start as if the same command had been given at all earlier ticks.
-
-        Args:
-          command: joint position targets [rad], (n, joints).
-        """
+        """Start as if `command` (n, joints) [rad] had been given at all past ticks."""
         self._commands.extend([command] * (self._ticks + 2))
 
     def tick(self, command: FloatArray) -> Iterator[tuple[FloatArray, int]]:

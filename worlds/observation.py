@@ -13,12 +13,7 @@ class _PerRobot:
     """Base of dataclasses whose fields are arrays with one row for each robot."""
 
     def where(self, mask: BoolArray, other: Self) -> Self:
-        """Merge by robot: rows of this object where the mask is True, else of `other`.
-
-        Args:
-          mask: (n,), one value for each robot.
-          other: an object of the same class and array shapes.
-        """
+        """Rows of this object where `mask` (n,) is True, rows of `other` elsewhere."""
         if mask.all():
             return self
         merged = {}

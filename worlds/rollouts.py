@@ -117,7 +117,7 @@ class RolloutWorld(ABC):
 
     @abstractmethod
     def _start(self, pose_rad: FloatArray) -> None:
-        """Put every robot on its ground, upright, at rest, with joints (n, joints)."""
+        """Put every robot on its ground, upright, at rest, in pose (n, joints)."""
 
     @abstractmethod
     def _advance(self, schedule: Schedule) -> None:
@@ -147,10 +147,7 @@ class RolloutWorld(ABC):
         self.active = self.active & ~robots
 
     def _targets(self, command_rad: FloatArray) -> FloatArray:
-        """Copy commands (n, joints) [rad], with equal targets for coupled joints.
-
-        Two joints that share a motor get the mean of their commands.
-        """
+        """Copy commands (n, joints) [rad]; joints that share a motor get their mean."""
         targets = np.array(command_rad, dtype=float)
         for first, second in self.description.coupled:
             mean = (targets[:, first] + targets[:, second]) / 2

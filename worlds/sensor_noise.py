@@ -16,7 +16,7 @@ class SensorNoise:
 
     Sources: gyroscope and accelerometer: the NAO simulator of the RoboCup team HULKs
     (2025); gyroscope bias: the team rUNSWift's configurations of single robots, up to
-    0.023 rad/s; joints: 12 bit per turn (NAO datasheet); feet: 40 g (NAO datasheet).
+    0.023 rad/s; joints, 12 bit per turn, and feet, sensitivity 40 g: datasheet.
 
     Attributes:
       gyroscope_rad_s: standard deviation of white noise about x, y, z.
@@ -51,12 +51,7 @@ class NoisySensors:
     """
 
     def __init__(self, noise: SensorNoise, seeds: list[np.random.SeedSequence]) -> None:
-        """Draw the gyroscopes' biases, which stay constant through a rollout.
-
-        Args:
-          noise: strength of the noise.
-          seeds: one per robot.
-        """
+        """Draw each robot's gyroscope bias, constant in a rollout, from its seed."""
         self._noise = noise
         self._generators = [np.random.default_rng(seed) for seed in seeds]
         self._bias = self._draw(3) * noise.gyroscope_bias_rad_s
@@ -66,14 +61,10 @@ class NoisySensors:
         return np.stack([g.standard_normal(columns) for g in self._generators])
 
     def __call__(self, clean: Observation, tick_s: float) -> Observation:
-        """Return an observation as the noisy sensors report it.
+        """Return `clean` as noisy sensors report it, `tick_s` after the call before.
 
         Joint velocities are differences of quantised positions over one tick, as a
         robot's electronics compute them.
-
-        Args:
-          clean: the noiseless observation.
-          tick_s: time since the call before.
         """
         noise = self._noise
         draws = self._draw(14)

@@ -47,12 +47,7 @@ class FootSpring:
 
     @classmethod
     def sinking(cls, description: Description, sinkage_m: float) -> "FootSpring":
-        """Ground into which a robot at rest on one foot sinks by a given depth.
-
-        Args:
-          description: the robot, for its mass.
-          sinkage_m: the depth; above 0.
-        """
+        """Ground into which a robot at rest on one foot sinks by `sinkage_m` > 0."""
         mass_kg = description.mass_kg
         stiffness_n_m = mass_kg * GRAVITY_M_S2 / sinkage_m
         critical = 2 * math.sqrt(stiffness_n_m * mass_kg)

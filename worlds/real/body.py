@@ -25,7 +25,7 @@ joints together, soft enough for PyBullet's solver."""
 
 @contextlib.contextmanager
 def silent() -> Iterator[None]:
-    """Discard all output to stdout and stderr meanwhile, that of C code included."""
+    """Discard output to stdout and stderr in a `with` block, that of C code as well."""
     kept = [os.dup(1), os.dup(2)]
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), 1)
@@ -58,7 +58,7 @@ class BodySetup:
       friction: coefficient between soles and ground.
       description: gives the feet, the inertial sensor and the joints that share a
         motor; None for a robot without them, such as an arm.
-      springs: soft ground under each whole foot; the last one applies, none is hard.
+      springs: soft ground under a whole foot; the last one applies, empty for hard.
       ground: the ground under a floating robot; None for no ground.
     """
 
@@ -209,10 +209,7 @@ class BulletBody:
         self.velocity_rad_s = np.array([state[1] for state in states])
 
     def push(self, body: str, force_n: FloatArray) -> None:
-        """Let a force (3,) [N] in the world frame act over the next physics step.
-
-        It acts at the centre of mass of the link named `body`.
-        """
+        """Push a link at its centre of mass (3,) [N, world frame] in the next step."""
         link = self._link_of[body]
         bullet, client = self._bullet, self.client
         if link < 0:

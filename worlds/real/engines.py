@@ -1,4 +1,4 @@
-"""The physics engines for robots with hidden effects: MuJoCo and PyBullet."""
+"""MuJoCo and PyBullet for robots with hidden effects, physics that the sim lacks."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

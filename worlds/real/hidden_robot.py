@@ -1,4 +1,4 @@
-"""One robot of the world "real" (PyBullet) with hidden effects."""
+"""One robot of the world "real" (PyBullet) with physics that the sim lacks."""
 
 from collections.abc import Sequence
 from math import ceil
@@ -19,8 +19,8 @@ from worlds.real.robot import OUT_OF_REACH_M, BulletState
 from worlds.world import WorldOptions
 
 FINE_STEP_S = 0.0005
-"""Longest physics step [s] of robots with hidden effects. Their servo torque is that at
-the start of a step, which is unstable at steps a few times as long."""
+"""Longest physics step [s] of robots with hidden effects (physics that the sim lacks).
+Their servo torque is that at a step's start: unstable at a few times this length."""
 
 
 class HiddenRobot:

@@ -24,16 +24,11 @@ from worlds.world import WorldOptions
 class ServoTwin:
     """Computes the joint torques of one robot's motors with a MuJoCo twin of the robot.
 
-    The twin is a model without contacts that takes each physics step beforehand.
+    The twin has no contacts and takes each physics step before PyBullet does.
     """
 
     def __init__(self, description: Description, options: WorldOptions) -> None:
-        """Compile the twin: a MuJoCo model of the robot without ground.
-
-        Args:
-          description: the robot.
-          options: their time step and fixed base are used.
-        """
+        """Compile the MuJoCo twin, with the options' time step and fixed base."""
         import mujoco
 
         self._mujoco = mujoco

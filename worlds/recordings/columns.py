@@ -1,4 +1,4 @@
-"""Column names of a recording: those that format 1 allows, and checks of a set."""
+"""Column names of a recording: those that exist, and checks that none is missing."""
 
 import difflib
 from collections import Counter
@@ -11,8 +11,8 @@ SUPPORT = "support"
 ORIENTATION = "base.orientation"
 POSITION = "position"
 DRIVES = ("command", "command_torque", "torque")
-"""Prefixes of the columns that drive a joint or measure its torque; a recording has at
-least one such column."""
+"""Quantities that show what drove a joint: position target, torque target and measured
+torque. A recording has at least one of their columns, such as command.knee."""
 JOINT_QUANTITIES = (POSITION, "velocity", *DRIVES)
 VECTORS = {
     "base.position": ("x", "y", "z"),
@@ -28,11 +28,7 @@ VECTORS = {
 
 
 def vector_columns(vector: str) -> tuple[str, ...]:
-    """Column names of a vector, such as gyroscope.x, gyroscope.y, gyroscope.z.
-
-    Args:
-      vector: a key of `VECTORS`, such as "gyroscope".
-    """
+    """Column names of a vector, such as gyroscope.x, .y and .z of "gyroscope"."""
     return tuple(f"{vector}.{component}" for component in VECTORS[vector])
 
 

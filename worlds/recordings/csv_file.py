@@ -46,11 +46,7 @@ def read_csv(path: Path) -> dict[str, FloatArray]:
 
 
 def csv_bytes(columns: Mapping[str, FloatArray]) -> bytes:
-    """Turn columns into CSV, with just enough digits to read back the same floats.
-
-    Args:
-      columns: values (rows,) by column name; all of the same length.
-    """
+    """Turn columns (rows,) into CSV, with enough digits to read back equal floats."""
     sink = pa.BufferOutputStream()
     pa.csv.write_csv(to_table(columns), sink)
     content: bytes = sink.getvalue().to_pybytes()
@@ -66,11 +62,9 @@ def _header(path: Path) -> list[str]:
 
 
 def _batches(file: BinaryIO, names: Sequence[str]) -> Iterator[pa.RecordBatch]:
-    """Read a CSV file in blocks of rows; text first, so that errors can name a cell.
+    """Read blocks of rows below a CSV file's header; `names` are its column names.
 
-    Args:
-      file: open in binary mode, at its start.
-      names: column names; the first line, which holds them, is skipped.
+    Cells are read as text before they become numbers, so that errors can name a cell.
     """
     uneven: list[pa.csv.InvalidRow] = []
 

@@ -38,12 +38,7 @@ def read_parquet(path: Path) -> tuple[dict[str, FloatArray], bytes | None]:
 
 
 def parquet_bytes(columns: Mapping[str, FloatArray], metadata: str) -> bytes:
-    """Turn columns and metadata into the content of a Parquet file.
-
-    Args:
-      columns: values (rows,) by column name; all of the same length.
-      metadata: JSON text.
-    """
+    """Turn columns (rows,) and metadata, a JSON text, into a Parquet file's content."""
     table = to_table(columns).replace_schema_metadata({_KEY: metadata})
     sink = pa.BufferOutputStream()
     pq.write_table(table, sink, compression="zstd", write_page_checksum=True)

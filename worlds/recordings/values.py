@@ -15,13 +15,7 @@ decimals keep within it."""
 
 
 def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
-    """Make the error for one wrong value of a recording.
-
-    Args:
-      column: name of the value's column.
-      row: row of the value; the first row of values is row 0.
-      problem: the fault, in a few words.
-    """
+    """Make the error for one wrong value; its `row` counts from 0."""
     return BadRecordingError(
         f"column {column!r}, row {row} (counted from 0): {problem}"
     )

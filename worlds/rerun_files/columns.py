@@ -43,12 +43,9 @@ class ColumnLog:
         self.send(trace.path, rr.Scalars, scalars=trace.values)
 
     def send(self, path: str, kind: Any, **columns: FloatArray) -> None:
-        """Write columns over time, without the rows in which a value is NaN.
+        """Write fields (ticks, ...) of the Rerun archetype `kind`, over time.
 
-        Args:
-          path: path of the entity.
-          kind: Rerun archetype, such as `rr.Scalars`.
-          columns: (ticks, ...) values by the names of the archetype's fields.
+        Rows in which a value is NaN are left out.
         """
         parts = [values.reshape(self._time.size, -1) for values in columns.values()]
         rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
@@ -57,12 +54,9 @@ class ColumnLog:
             self.send_rows(path, rows, kind.columns(**known))
 
     def send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
-        """Write values that are known at some of the times only.
+        """Write values that are known only at the times with the indices `rows`.
 
-        Args:
-          path: path of the entity.
-          rows: indices of the times at which they are known.
-          columns: columns of a Rerun archetype, with one value for each of these rows.
+        `columns` are those of a Rerun archetype, with a value for each of these rows.
         """
         import rerun as rr
 

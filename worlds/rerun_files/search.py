@@ -10,7 +10,7 @@ distribution from which a generation is drawn.
 | `search/reward/{mean,tried}` | of the mean gait; of every gait tried, as points |
 | `search/rewards` | histogram of a generation's rewards, as bars |
 | `search/falls` | share of the tried gaits that fell [%] |
-| `search/parameters/<name>/{mean,spread}` | of the mean gait; +- standard deviation |
+| `search/parameters/<name>/{mean,spread}` | mean gait; +- one standard deviation |
 | `search/parameters/<name>/best` | of the best gait, if it is known |
 | `search/gait` | table of parameters: best gait, mean gait and spread |
 | `search/walk/...` | walk of the best gait, see `worlds.rerun_files.search_walk` |

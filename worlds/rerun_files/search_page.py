@@ -40,11 +40,7 @@ def search_page(history: SearchHistory, generation: int) -> str:
 
 
 def _walk(walk: SearchWalk, rated: float, unit: str) -> str:
-    """Sentence about the best gait's walk.
-
-    It warns if the reward of this walk differs from `rated`, that of the search: then
-    the repeated walk is not the one that the search saw.
-    """
+    """Sentence about the repeated walk; a warning if its reward is not `rated`."""
     end = walk.scene.recording.metadata.end
     text = f"The best gait walked {walk.distance_m:.2f} m in {walk.time_s:.2f} s"
     text += f": {end}." if end else "."

@@ -49,7 +49,7 @@ def write_walks(
 
     Args:
       stream: Rerun stream of the file.
-      walks: at least one; either all have a ground or none, of the same grid.
+      walks: at least one; all with grounds on the same grid, or all without.
       index: position of each walk on a timeline.
       colour: the colour that marks the robot.
     """
@@ -197,9 +197,7 @@ def _reached(walks: Sequence[SearchWalk]) -> FloatArray:
 def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
     """Cut out the part of a ground that covers a rectangle, as far as the ground goes.
 
-    Args:
-      ground: the whole ground.
-      around_m: (2, 2) least x and y of the rectangle, then largest x and y.
+    `around_m` (2, 2) holds the rectangle's least x and y, then its largest x and y.
     """
     size = np.array(ground.heights_m.shape[::-1])
     cells = (around_m - ground.origin_m) / ground.spacing_m
@@ -213,12 +211,7 @@ def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
 
 
 def walk_view(walks: Sequence[SearchWalk], name: str) -> "rrb.Spatial3DView":
-    """View that shows all places of the walks, from the right and a little ahead.
-
-    Args:
-      walks: at least one walk.
-      name: title of the view.
-    """
+    """View with the title `name` of one or more walks, from the right of the robot."""
     import rerun.blueprint as rrb
 
     low_m, high_m = _reached(walks)

@@ -108,12 +108,7 @@ def _pressure(scene: Scene, poses: dict[str, LinkPoses]) -> FloatArray | None:
 def _polygons(
     soles_m: dict[str, FloatArray], loaded: dict[str, BoolArray]
 ) -> list[FloatArray]:
-    """For each tick the (corners, 3) convex hull, seen from above, of the loaded soles.
-
-    Args:
-      soles_m: (ticks, corners, 3) outline of the sole, by side.
-      loaded: (ticks,) whether a foot is loaded, by side.
-    """
+    """For each tick the (corners, 3) hull, seen from above, of the loaded soles [m]."""
     polygons = []
     for tick in range(len(soles_m[SIDES[0]])):
         soles = [soles_m[side][tick] for side in SIDES if loaded[side][tick]]
@@ -189,11 +184,7 @@ def _momenta(
 ) -> tuple[FloatArray, FloatArray]:
     """(ticks, 3) momentum [kg m/s] and angular momentum about the origin [kg m^2/s].
 
-    Args:
-      robot: gives masses and inertias.
-      poses: poses of the links by name.
-      places_m: (links, ticks, 3) centres of mass in the world frame.
-      time_s: (ticks,) times.
+    They follow from the links' poses and centres of mass `places_m` (links, ticks, 3).
     """
     momentum = angular = np.zeros((time_s.size, 3))
     # Rotor inertias are added to the links, as in both worlds' models.
@@ -213,10 +204,7 @@ def _momenta(
 
 
 def _rate(values: FloatArray, time_s: FloatArray) -> FloatArray:
-    """Time derivative of values (ticks, k), smoothed over `SMOOTHING_TICKS`.
-
-    NaN near the first and last tick, where the smoothing has too few values.
-    """
+    """Smoothed time derivative of values (ticks, k); NaN in the 6 ticks at each end."""
     smooth = gaussian_filter1d(values, SMOOTHING_TICKS, axis=0, truncate=3.0)
     rate = np.gradient(smooth, time_s, axis=0)
     margin = int(3.0 * SMOOTHING_TICKS)

@@ -82,12 +82,7 @@ class Camera:
         return np.stack([right, np.cross(ahead, right), ahead])
 
     def picture(self, rounds: Rounds, ground: Heightfield | None) -> Image:
-        """Draw the picture that this camera takes, with the sky behind everything.
-
-        Args:
-          rounds: capsules and spheres.
-          ground: the ground below them; None to draw none.
-        """
+        """Draw capsules, the ground (None for none) and the sky behind them."""
         return _Picture(self, rounds, ground).image()
 
 
@@ -126,7 +121,7 @@ class _Picture:
         return np.asarray(np.clip(mean, 0, 255), np.uint8)
 
     def _meet(self, i: int) -> None:
-        """Assign to capsule `i` the rays that meet it before capsules 0 to i - 1."""
+        """Assign to capsule `i` the rays that meet it nearer than any one before."""
         start, end = self._rounds.start_m[i], self._rounds.end_m[i]
         radius = float(self._rounds.radius_m[i])
         window = self._window(np.stack([start, end]), radius)
@@ -142,12 +137,7 @@ class _Picture:
     def _window(
         self, ends_m: FloatArray, radius_m: float
     ) -> tuple[slice, slice] | None:
-        """Rows and columns of rays that can meet a capsule; None if none can.
-
-        Args:
-          ends_m: (2, 3) ends of the capsule's axis in the world frame.
-          radius_m: its radius.
-        """
+        """Rows and columns of rays that can meet a capsule with axis ends (2, 3)."""
         x, y, ahead = self._axes @ (ends_m - self._eye).T
         nearest_m = ahead.min() - radius_m
         if not nearest_m > 0.01:  # behind the camera, or NaN: unknown at this tick
@@ -212,16 +202,13 @@ class _Picture:
 
 
 def _inside(places: FloatArray, reach: float, size: int) -> tuple[int, int]:
-    """Range (first, last + 1) of the `size` pixels that places, +- `reach`, span."""
+    """First and last + 1 of `size` pixels from places.min() - reach to max + reach."""
     first = np.clip(np.floor(places.min() - reach), 0, size)
     return int(first), int(np.clip(np.ceil(places.max() + reach), 0, size))
 
 
 def _normals(ground: Heightfield, place_m: FloatArray) -> FloatArray:
-    """(n, 3) unit normals of the ground at places (n, 3) [m] on it.
-
-    They follow from the heights half a cell farther along x and along y.
-    """
+    """(n, 3) upward unit normals of the ground at places (n, 3) [m] on it."""
     x, y, z = place_m.T
     normal = np.tile([0.0, 0.0, 1.0], (len(place_m), 1))
     if not ground.is_flat:

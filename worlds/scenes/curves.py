@@ -33,7 +33,7 @@ class Trace(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """Lines in a plot of their own, with times that no scene's recording has to share.
+    """Lines with times of their own, shown in a plot of their own.
 
     Attributes:
       title: title of the plot, with the unit.

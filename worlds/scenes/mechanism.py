@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     import mujoco
 
 _NAO_EXTENT_M = 0.5
-"""Largest extent along x, y or z [m] of a mechanism that is drawn with lines, marks and
-camera distances of a NAO's size, which is 0.57 m tall; other extents scale them."""
+"""Extent [m], the largest along x, y or z, of a mechanism that is drawn at the scale of
+a NAO, which is 0.57 m tall; the scale of others is in proportion."""
 
 _LEAST_KG = 1e-9
 """Least mass [kg] of a link in the description: masses must be above 0, and pictures

@@ -87,14 +87,10 @@ def _sphere(to_eye: FloatArray, rays: FloatArray, radius: float) -> FloatArray:
 
 
 def in_sun(rounds: Rounds, place_m: FloatArray) -> FloatArray:
-    """(n,) share of sunlight that reaches each place: 0 in a shadow, 1 in the sun.
+    """(n,) share of sunlight at places (n, 3): 0 in a capsule's shadow, 1 in the sun.
 
     Seen from the sun, every capsule is a flat stadium: places inside of the stadium
-    and behind the capsule are in its shadow.
-
-    Args:
-      rounds: capsules; those that glow cast no shadow.
-      place_m: (n, 3) places.
+    and behind the capsule are in its shadow. Capsules that glow cast none.
     """
     known = np.isfinite(rounds.start_m + rounds.end_m).all(axis=1)
     shapes = np.flatnonzero(~rounds.glows & known)

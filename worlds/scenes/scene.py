@@ -81,11 +81,7 @@ class Scene:
         return link_poses(self.description, position_rad, base)
 
     def foot_force_n(self, side: str) -> FloatArray | None:
-        """(ticks,) total force on a foot's sensors [N]; None if it was not recorded.
-
-        Args:
-          side: "left" or "right".
-        """
+        """(ticks,) force [N] on the foot "left" or "right"; None if not recorded."""
         if self.recording.has("foot_force"):
             return self.recording.columns[f"foot_force.{side}"]
         if self.recording.has(f"foot_force.{side}"):
@@ -117,11 +113,7 @@ class Scene:
         return np.hstack([points_xy_m, height_m]), forces_n
 
     def pitch_joints(self, side: str) -> tuple[str, ...]:
-        """Names of a leg's recorded joints with a pitch (y) axis, from the hip down.
-
-        Args:
-          side: "left" or "right".
-        """
+        """Names of the recorded pitch joints of a leg ("left", "right"), hip first."""
         links = self.description.links
         if not self.description.feet:
             return ()

@@ -136,10 +136,7 @@ class SimWorld(RolloutWorld):
         )
 
     def _foot_forces(self) -> FloatArray:
-        """(n, 8) force on each foot sensor [N].
-
-        A loop sums in the same order for every n, so that rounding is the same, too.
-        """
+        """(n, 8) foot sensor forces [N]; a loop gives the same bits for every n."""
         touch = self._sensors[:, : len(self._shares)]
         forces = np.zeros((self.n, self._shares.shape[1]))
         for k, shares in enumerate(self._shares):
