@@ -7,4 +7,4 @@ STUDIES = {
     "run": Verb("concealed.run", "ConcealedRun", "diagnose the cases"),
     "score": Verb("concealed.score", "ConcealedScore", "open the truth and count"),
 }
-"""The steps of a study of concealed physics, by their names on the command line."""
+"""The verbs of `groundwalk concealed`, the steps of a study, by name."""

@@ -1,4 +1,4 @@
-"""Makes one concealed case: draws it, simulates it, writes recordings and truth."""
+"""Makes one case with concealed physics: draws it, simulates it, writes its files."""
 
 import json
 import shutil
@@ -30,11 +30,11 @@ from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
 
 REFERENCES = (0, 2)
-"""Numbers of the motions that the healthy robot is recorded in, too."""
+"""Indices of the motions that are also recorded without hidden effects (reference)."""
 _SCALE_STEP_S = 0.0005
-"""Physics step [s] while sizes are sought: coarser than in recordings, and faster."""
+"""Physics step [s] in the search for an effect's size: coarse, and therefore fast."""
 _ATTEMPTS = 30
-"""Draws of a case before it is given up."""
+"""Largest number of times that a case is drawn before it is given up."""
 _SOURCE = "groundwalk concealed"
 
 
@@ -44,17 +44,17 @@ def case_name(number: int) -> str:
 
 
 def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
-    """Make one case: write its truth, then its folder, which is never incomplete.
+    """Make one case: write its truth (the hidden effects), then its complete folder.
 
     Args:
       cases: folder of all cases.
       truths: folder for the truths; gets a file such as `case_000.json`.
-      seed: of the set.
-      number: of the case.
+      seed: seed of the set of cases.
+      number: number of the case.
 
     Raises:
-      GroundwalkError: in every attempt the robot fell, or no size of the effect showed
-        as clearly in the recordings as was drawn.
+      GroundwalkError: in every attempt the robot fell, or no size of the effect was as
+        visible in the recordings as the level that was drawn demands.
     """
     for attempt in range(_ATTEMPTS):
         maker = _Maker(seed, number, attempt)
@@ -75,7 +75,7 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Made:
-    """A simulated motion, its number, and the effects that were hidden in it."""
+    """A simulated motion, its index in the case, and the effects hidden in it."""
 
     motion: int
     run: Run
@@ -83,10 +83,10 @@ class _Made:
 
 
 class _Maker:
-    """One attempt at a case; plant, kind and engine are the same in every attempt."""
+    """One attempt to make a case; robot, kind and engine are the same in each."""
 
     def __init__(self, seed: int, number: int, attempt: int) -> None:
-        # Lists of numbers, not spawned children: a case knows nothing of the others.
+        # Seeds are lists of numbers, so that a case does not depend on the others.
         def rng(part: int) -> np.random.Generator:
             return np.random.default_rng([seed, number, attempt, part])
 
@@ -105,7 +105,7 @@ class _Maker:
         self._hidden: Concealed | None = None
 
     def run(self) -> bool:
-        """Simulate all motions; False if the robot fell or no size fits."""
+        """Simulate all motions; False if the robot fell or no effect size fits."""
         motion = self._motion
         engine = self._sort.engine
         if motion.plant.floating:
@@ -126,12 +126,12 @@ class _Maker:
         return True
 
     def _concealed(self, does: Scales) -> Concealed | None:
-        """The hidden effects with their sizes; None if no size fits the drawn level.
+        """Draw the hidden effects with their sizes; None if no size fits.
 
-        A single effect on a fixed base gets the size at which its recordings tell as
-        many nats as were drawn. Other sizes are drawn directly: on a robot that stands
-        or walks, tiny differences grow into large ones, so that information says
-        little.
+        A single effect on a fixed base gets the size at which the recordings carry the
+        drawn information about it (log-likelihood gain in nats). Other sizes are drawn
+        directly: on a robot that stands or walks, tiny differences of motion grow into
+        large ones, so that this information says little.
         """
         motion = self._motion
 
@@ -157,7 +157,7 @@ class _Maker:
         return None if ease is None else drawn(ease)
 
     def _trials(self, effects: Sequence[Hidden]) -> list[Run]:
-        """All motions in coarse physics steps, for finding the size of an effect."""
+        """Simulate all motions in coarse physics steps, to find an effect's size."""
         return [
             self._move(number, effects, self._sort.engine, _SCALE_STEP_S).run
             for number in range(len(self._motion.names))
@@ -202,7 +202,7 @@ class _Maker:
         write_recording(recording, folder / name)
 
     def truth(self) -> dict[str, Any]:
-        """The case's entry in the sealed file."""
+        """The case's entry in the sealed file, such as its kind and hidden effects."""
         hidden = self._hidden
         if hidden is None:
             raise GroundwalkError("the case has not been run")

@@ -1,9 +1,9 @@
-"""Draws a concealed case: plant, engine, effects and sensors.
+"""Draws a case with concealed physics: robot, engine, effects and sensors.
 
-Only effects that perfect recordings would distinguish from all others are drawn: an
-effect at places where it differs from the others (its `spots`), and two effects
-together only if their sum is not a third (their `apart`). In pairs and triples the
-sizes are from the easier half, so that each effect matters.
+Only effects that perfect recordings would distinguish from all others are drawn: each
+effect only at places where it differs from the other effects (its `spots`), and two
+effects together only if their sum does not look like a third one (their `apart`). In
+pairs and triples the sizes are from the larger half, so that each effect matters.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ PLANTS = {
     "nao_standing": 0.10,
     "nao_walking": 0.05,
 }
-"""Robots of the cases, and the share of cases that each gets."""
+"""Share of the cases for each robot; a NAO hangs in the air, stands or walks."""
 CASE_KINDS = {
     "single": 0.45,
     "pair": 0.15,
@@ -37,7 +37,8 @@ CASE_KINDS = {
     "outside": 0.10,
     "unexcited": 0.10,
 }
-"""Kinds of cases, and the share of cases that each gets."""
+"""Share of the cases for each kind: one, two, three or no hidden effects; one effect
+that a diagnosis does not know ("outside"); one at a joint that is held still."""
 CONFUSABLE = (
     ("coulomb_friction", "backlash"),
     ("command_latency", "viscous_friction"),
@@ -45,20 +46,20 @@ CONFUSABLE = (
     ("ground_slope", "encoder_offset"),
     ("contact_friction", "contact_compliance"),
 )
-"""Pairs of effects that are hard to distinguish."""
+"""Pairs of effects that are hard to distinguish from each other."""
 _CONFUSABLE_SHARE = 0.6
-"""Share of pairs and triples that hold such a pair."""
+"""Share of the cases with two or three effects that contain a pair of `CONFUSABLE`."""
 _COMPOUND_EASE = 0.5
-"""Least ease of effects in pairs and triples."""
+"""Smallest ease (0 hard to 1 easy to see) of the effects in pairs and triples."""
 _QUANTA_RAD = (0.0015, 2 * np.pi / 2**14)
-"""Steps of the encoders [rad]: those of 12 and of 14 bits a turn."""
+"""Possible resolutions of the encoders [rad]: of 12 and of 14 bits per turn."""
 _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "none": 0}
-"""Hidden effects by kind of case."""
+"""Number of hidden effects by kind of case."""
 
 
 @dataclass(frozen=True)
 class CaseSort:
-    """The choices that are made before anything is simulated.
+    """The properties of a case that are drawn before anything is simulated.
 
     Attributes:
       plant: a key of `PLANTS`.
@@ -72,7 +73,7 @@ class CaseSort:
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> "CaseSort":
-        """Draw plant, kind and engine; an unexcited joint needs a fixed base."""
+        """Draw robot, kind and engine; "unexcited" is drawn only with a fixed base."""
         plant = str(rng.choice(list(PLANTS), p=list(PLANTS.values())))
         kind = str(rng.choice(list(CASE_KINDS), p=list(CASE_KINDS.values())))
         if kind == "unexcited" and plant in ("nao_standing", "nao_walking"):
@@ -85,8 +86,8 @@ class Concealed:
     """The effects hidden in a case.
 
     Attributes:
-      effects: with their sizes.
-      ease: how easy they are to see: 1 is easiest, 0 hard, below 0 harder still.
+      effects: the effects with their sizes.
+      ease: how easy they are to see: 1 is easiest, 0 hard, below 0 even harder.
     """
 
     effects: tuple[Hidden, ...]
@@ -94,11 +95,11 @@ class Concealed:
 
 
 def drawn_sensors(kind: str, rng: np.random.Generator) -> tuple[HiddenSensors, float]:
-    """The sensors of a case, and the largest error of its time stamps [s].
+    """Draw the sensors of a case, and the largest error of its time stamps [s].
 
     Args:
-      kind: of the case; with nothing hidden the noise is up to three times as strong.
-      rng: draws both.
+      kind: kind of the case; for "none" the noise is up to three times as strong.
+      rng: source of random numbers.
     """
     stronger = float(rng.uniform(1.0, 3.0)) if kind == "none" else 1.0
     sensors = HiddenSensors(
@@ -122,13 +123,13 @@ def drawn_effects(
     """Draw the effects of a case: their names, places and sizes.
 
     Args:
-      sort: plant, kind and engine.
-      plant: the robot.
-      scales: torques, speeds and ranges of the robot with nothing hidden.
+      sort: robot, kind and engine of the case.
+      plant: the robot's model.
+      scales: torques, speeds and ranges of the robot's motion without hidden effects.
       joints: indices of the joints where effects may be.
-      duration_s: of the recordings [s].
-      rng: draws everything.
-      ease: how easy the effects are to see, 0 to 1; drawn where None.
+      duration_s: duration of each recording [s].
+      rng: source of random numbers.
+      ease: how easy the effects are to see, 0 to 1; None to draw it.
     """
     drawn = float(rng.uniform())
     if sort.kind in ("pair", "triple"):
@@ -153,9 +154,9 @@ def drawn_effects(
 def _spot(
     options: Sequence[Spot], used: set[int], together: bool, rng: np.random.Generator
 ) -> Spot:
-    """Draw a place: at a joint in use if `together`, otherwise at another one.
+    """Draw a place at one of the joints `used` if `together`, else at another joint.
 
-    Where no such place exists, any of the options is drawn.
+    If there is no such place, any of the options is drawn.
     """
     wanted = [spot for spot in options if (spot.joint in used) == together]
     wanted = wanted or list(options)
@@ -182,6 +183,6 @@ def _names(
 
 
 def _compatible(names: Sequence[str], plant: HiddenPlant) -> bool:
-    """Whether these kinds can be distinguished from each other in one case."""
+    """Whether effects of these names can be told apart when they act together."""
     cancelling = [KINDS[name] for name in names if KINDS[name].cancels(plant)]
     return not any(set(kind.apart) & set(names) for kind in cancelling)

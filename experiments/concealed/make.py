@@ -1,6 +1,6 @@
 """`groundwalk concealed make`: draw cases, write recordings, seal the truth.
 
-How cases are drawn is written in docs/concealed.md.
+docs/concealed.md describes how cases are drawn.
 """
 
 import hashlib
@@ -22,9 +22,10 @@ from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_text
 
 _PARTS, _SET = "parts", "set.json"
-"""In the sealed folder: the truths of the cases made so far, and what was asked for."""
+"""In the sealed folder: subfolder with the truths of the cases made so far, and file
+with seed and number of cases of the set."""
 _MOST_CASES = 1000
-"""Names of cases have three digits."""
+"""Largest number of cases in a set, because their names have three digits."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +33,9 @@ class ConcealedMake:
     """Draw cases with hidden physics, and seal their truth in a file with a hash.
 
     Attributes:
-      folder: of the set; a set that was begun there is finished.
+      folder: folder of the set of cases; an unfinished set there is continued.
       cases: number of cases.
-      seed: a case depends on the seed and its own number only.
+      seed: a case depends on this seed and its own number only.
       threads: number of processes; 0 for one per core.
     """
 
@@ -49,7 +50,8 @@ class ConcealedMake:
         """Refuse numbers out of range.
 
         Raises:
-          BadValueError: there would be no case or too many, or a number is negative.
+          BadValueError: no case or too many cases are asked for, or a number is
+            negative.
         """
         if not 1 <= self.cases <= _MOST_CASES:
             raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
@@ -57,7 +59,7 @@ class ConcealedMake:
 
 
 def main(config: ConcealedMake) -> None:
-    """Make the cases that are not there yet, and print the hash of the sealed truth."""
+    """Make the missing cases of a set, and print the hash of its sealed truth."""
     sealed = config.folder / SEALED
     _open(config)
     if not (config.folder / HASH).exists():
@@ -67,7 +69,7 @@ def main(config: ConcealedMake) -> None:
 
 
 def _open(config: ConcealedMake) -> None:
-    """Begin a set, or check that the folder holds the set that is asked for."""
+    """Begin a set, or check that the folder holds a set with this seed and size."""
     asked = {"format": FORMAT, "seed": config.seed, "cases": config.cases}
     path = config.folder / SEALED / _SET
     if path.exists():
@@ -83,7 +85,7 @@ def _open(config: ConcealedMake) -> None:
 
 
 def _make_all(config: ConcealedMake, parts: Path) -> None:
-    """Make the cases that are not there yet, several at a time."""
+    """Make the missing cases of a set, several at a time."""
     cases = config.folder / CASES
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
@@ -102,7 +104,7 @@ def _make_all(config: ConcealedMake, parts: Path) -> None:
 
 
 def _seal(config: ConcealedMake) -> None:
-    """Write all truths into one file, and its hash beside the sealed folder."""
+    """Write the truths of all cases into one file, and its SHA-256 into another."""
     sealed = config.folder / SEALED
     names = [case_name(i) for i in range(config.cases)]
     parts = {name: sealed / _PARTS / f"{name}.json" for name in names}

@@ -1,10 +1,9 @@
-"""How the robot of a concealed case moves: plant, ticks, servo gains and commands.
+"""Motions of a case with concealed physics: robot, ticks, servo gains and commands.
 
-On a fixed base two of the four recordings, the chirp and the ramps, are made with half
-the servo gains, which their metadata state. The effect of a wrong gain grows and
-shrinks with the gain, that of a payload or of friction does not, so that the two can be
-distinguished. A diagnosis holds whole recordings out: most pairs of motions have both
-gains.
+With a fixed base two of the four recordings, chirp and ramps, are made with half the
+servo gains, as their metadata state. The effect of a wrong gain is proportional to the
+gain, that of a payload or of friction is not, so that they can be distinguished.
+Because a diagnosis holds out whole recordings, most pairs of motions have both gains.
 """
 
 from collections.abc import Sequence
@@ -20,27 +19,29 @@ from worlds.hidden.plant import HiddenPlant, hidden_plant
 from worlds.hidden.run import Feed
 
 STEP_S = 0.00025
-"""Physics step with a fixed base [s]."""
+"""Physics step of a robot with a fixed base [s]."""
 FLOATING_STEP_S = 0.0005
-"""Physics step of a robot that stands or walks [s]; contacts make steps expensive."""
+"""Physics step of a robot that stands or walks [s]: longer than with a fixed base,
+because contacts make steps expensive."""
 _STANDING = ("squat", "fast_squat", "sway", "squat")
-"""Motions of a standing robot, one a recording."""
+"""Motions of a standing robot, one for each recording."""
 _RATES_HZ, _RATE_SHARES = (100.0, 200.0, 50.0), (0.7, 0.15, 0.15)
-"""Ticks a second with a fixed base, and how often each is drawn."""
+"""Possible tick rates with a fixed base [Hz], and the probability of each."""
 _FLOATING_HZ = 100.0
-"""Ticks a second of a robot that stands or walks: the rate of a NAO."""
+"""Tick rate of a robot that stands or walks [Hz]: that of the NAO."""
 _DURATION_S, _FLOATING_DURATION_S = (8.0, 10.0), (5.0, 6.0)
-"""Range of durations [s] with a fixed base, and of a robot that stands or walks, whose
-contacts take longer to simulate."""
+"""Range of a recording's duration [s], with a fixed base and for a robot that stands or
+walks, whose contacts take longer to simulate."""
 _SOFT_MOTIONS, _SOFT = ("chirp", "ramps"), 0.5
-"""Motions that are recorded with lower servo gains, and the factor."""
+"""Motions that are recorded with lower servo gains, and the factor of the gains."""
 _MIDDLE = 0.4
-"""A motion's centre lies within this share of the joint's range, around its middle."""
+"""Width of the interval in which a motion's centre is drawn, around the middle of the
+joint's range and as a share of it."""
 _WALK_REST_S = 0.8
-"""Time that a robot stands before it walks [s]."""
+"""Time for which a robot stands before it walks [s]."""
 _BEFORE_S, _STILL_S = (0.3, 1.2), 8.0
-"""Range of times before a recording begins [s], and the time that is added if a joint
-does not move: by then it has sagged under its load."""
+"""Range of the simulated time before a recording begins [s], and the time added if a
+joint is held still, so that it has sagged under its load by then [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,15 +49,15 @@ class CaseMotion:
     """The motions of a case, one for each of its recordings.
 
     Attributes:
-      plant: the robot with its own servo gains.
-      plants: the robot with the servo gains of each recording.
-      names: of the motions.
+      plant: the robot's model with its own servo gains.
+      plants: for each recording, the model with the servo gains of that recording.
+      names: names of the motions.
       places: indices of the joints at which effects may be hidden.
       moves: (j,) whether each joint is excited.
-      centre_rad: (j,) pose from which a robot with a fixed base starts.
-      rate_hz: ticks a second.
-      spans_s: for each recording, the time before it and its duration.
-      jitter_s: largest error of a time stamp.
+      centre_rad: (j,) start pose of a robot with a fixed base [rad].
+      rate_hz: ticks per second.
+      spans_s: for each recording, the time before it and its duration [s].
+      jitter_s: largest error of a time stamp [s].
       seeds: seed of each motion.
     """
 
@@ -75,13 +76,13 @@ class CaseMotion:
     def drawn(
         cls, plant_name: str, held: bool, jitter_s: float, rng: np.random.Generator
     ) -> "CaseMotion":
-        """Draw rate, durations, gains, pose, and the joint that is held still.
+        """Draw tick rate, duration, gains, pose, and the joint that is held still.
 
         Args:
           plant_name: a key of `experiments.concealed.draw.PLANTS`.
-          held: if true, the joint with the hidden effect is not excited.
-          jitter_s: largest error of a time stamp.
-          rng: draws everything.
+          held: whether the joint with the hidden effect is held still.
+          jitter_s: largest error of a time stamp [s].
+          rng: source of random numbers.
         """
         plant, names = _plant(plant_name)
         coupled = plant.description.coupled if plant.description else ()
@@ -115,15 +116,15 @@ class CaseMotion:
 
     @property
     def duration_s(self) -> float:
-        """Duration of each recording."""
+        """Duration of each recording [s]."""
         return self.spans_s[0][1]
 
     def clock(self, number: int, step_s: float | None = None) -> Clock:
         """The times of a recording's ticks and physics steps.
 
         Args:
-          number: of the recording.
-          step_s: physics step; the case's own where None.
+          number: index of the recording in the case.
+          step_s: physics step [s]; None for `STEP_S` or `FLOATING_STEP_S`.
         """
         own = FLOATING_STEP_S if self.plant.floating else STEP_S
         rng = np.random.default_rng([self.seeds[number], 1])
@@ -132,10 +133,10 @@ class CaseMotion:
         )
 
     def feed(self, number: int) -> tuple[FloatArray, Feed]:
-        """Start pose (j,) [rad] and commands of a recording.
+        """The start pose (j,) [rad], and a function that returns the commands [rad].
 
         Args:
-          number: of the recording.
+          number: index of the recording in the case.
         """
         rng = np.random.default_rng([self.seeds[number], 0])
         name, description = self.names[number], self.plant.description
@@ -157,10 +158,11 @@ class CaseMotion:
 
 
 def table_feed(command_rad: FloatArray) -> tuple[FloatArray, Feed]:
-    """A table of commands as start pose and feed.
+    """Turn a table of commands into the start pose (j,) [rad] and a command function.
 
     Args:
-      command_rad: (rows, j), a row for each tick; the first is the start pose.
+      command_rad: (rows, j) position targets [rad], a row for each tick; the first row
+        is the start pose.
     """
     return command_rad[0], lambda row, sense: command_rad[row]
 
@@ -176,10 +178,10 @@ def _plant(name: str) -> tuple[HiddenPlant, tuple[str, ...]]:
 def _gains(
     plant: HiddenPlant, names: Sequence[str], rng: np.random.Generator
 ) -> tuple[HiddenPlant, ...]:
-    """The robot with the gains of each recording; one that stands keeps its own."""
+    """The robot with each recording's servo gains; a floating robot keeps its own."""
     if plant.floating:
         return (plant,) * len(names)
-    # A described robot's gain is known; others' may be set to anything.
+    # The servo gains of a robot with a description are known; others' are free.
     own = 1.0 if plant.description is not None else float(rng.uniform(0.8, 1.25))
     given, softer = plant.with_gains(own), plant.with_gains(own * _SOFT, _SOFT)
     return tuple(softer if name in _SOFT_MOTIONS else given for name in names)

@@ -1,4 +1,4 @@
-"""The files of a set of concealed cases; reads a case without its truth."""
+"""Names of the files of a set of concealed cases; reads a case without its truth."""
 
 import json
 from pathlib import Path
@@ -7,22 +7,24 @@ from diagnosis import Plant, Trace, read_reference, read_traces
 from groundwalk.errors import RunFolderError
 
 CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"
-"""In a set: folder of the cases, folder of the sealed truth, the truth's file, and the
-file with its hash."""
+"""In the folder of a set: folder of the cases, folder of the sealed truth, file of the
+truth (all hidden effects), and file with its SHA-256."""
 RECORDINGS, REFERENCE, PLANT_FILE = "recordings", "reference", "plant.json"
-"""In a case: folder of recordings, folder of recordings of the healthy robot, and the
-file that names the robot model."""
+"""In the folder of a case: folder of recordings, folder of reference recordings (the
+healthy robot), and file that names the robot model."""
 ANSWERS, BASELINE_ANSWERS = "answers", "baselines"
-"""In a set: folder of the diagnosis' verdicts; folder with one for each baseline."""
+"""In the folder of a set: folder of the diagnosis' verdicts, and folder with a
+subfolder of verdicts for each baseline."""
 FORMAT = 1
-"""Version of the file with the sealed truth."""
+"""Version of the format of the file with the sealed truth."""
 
 
 def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
-    """Nominal plant, recordings and reference recordings of a case; not its truth.
+    """Read robot model, recordings and reference recordings of a case; not its truth.
 
     Args:
-      folder: of the case. Only robots that stand or walk have reference recordings.
+      folder: folder of the case; without the reference recordings, which only robots
+        that stand or walk have, the third result is empty.
 
     Raises:
       RunFolderError: the folder holds no case.

@@ -36,10 +36,10 @@ class ConcealedRun:
     """Diagnose the cases of a set; cases with an answer are not diagnosed again.
 
     Attributes:
-      folder: of the set.
+      folder: folder of the set of cases.
       by: the method that answers: the diagnosis, or a baseline to compare it with.
-      seed: the random numbers of a case depend on the seed and the case's name only.
-      threads: cases at a time, each in a process of its own; 0 for one per core.
+      seed: the random numbers of a case depend on this seed and the case's name only.
+      threads: number of cases at a time, each in its own process; 0 for one per core.
     """
 
     if_interrupted: ClassVar[str] = REPEATABLE
@@ -62,7 +62,7 @@ class ConcealedRun:
 
 
 def main(config: ConcealedRun) -> None:
-    """Answer the cases that have no answer yet, and note the version of the code."""
+    """Answer the cases that have no answer yet, and store the version of the code."""
     kind, answer = ANSWERS, diagnosed
     if config.by != "diagnosis":
         kind, answer = (
@@ -74,10 +74,10 @@ def main(config: ConcealedRun) -> None:
 
 
 def _note_code(config: ConcealedRun, kind: str) -> None:
-    """Note the version of the code that answers.
+    """Store the version of the code that answers, beside the answers.
 
-    Where there are answers whose code was never noted, nothing is written: the note
-    would wrongly claim them.
+    If there are older answers without a stored version, nothing is written, because it
+    would seem to apply to these, too.
     """
     answers = RunFolder(config.folder / kind)
     missing, cases = unanswered(config.folder, kind), cases_of(config.folder)
@@ -92,19 +92,19 @@ def unanswered(folder: Path, kind: str) -> list[Path]:
     """Folders of the cases that have no answer yet.
 
     Args:
-      folder: of the set.
+      folder: folder of the set of cases.
       kind: subfolder of the answers, such as "answers" or "baselines/bic".
     """
     return [case for case in cases_of(folder) if not _path(folder, kind, case).exists()]
 
 
 def cases_of(folder: Path) -> list[Path]:
-    """Folders of all cases of a set, in order."""
+    """Folders of all cases of a set, in the order of their names."""
     return sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
 
 
 Answer = Callable[[Path, int], Verdict]
-"""A function from a case's folder and a seed to a verdict."""
+"""A function that returns a verdict for the folder of a case and a seed."""
 
 
 def answer_all(
@@ -113,9 +113,10 @@ def answer_all(
     """Write the missing answers; a case that fails does not stop the others.
 
     Args:
-      folder: of the set.
-      kind: subfolder for the answers.
-      answer: gives the verdict; a function of a module, so that processes find it.
+      folder: folder of the set of cases.
+      kind: subfolder for the answers, such as "answers" or "baselines/bic".
+      answer: returns the verdict on a case; a function defined at the top of a module,
+        so that it can be pickled for the processes.
       seed: given to `answer` for every case.
       threads: number of processes; 0 for one per core.
 
@@ -146,8 +147,8 @@ def diagnosed(case: Path, seed: int) -> Verdict:
     """The diagnosis' verdict on a case; "not_identifiable" if it refuses a recording.
 
     Args:
-      case: its folder.
-      seed: of the random numbers, together with the case's number.
+      case: folder of the case.
+      seed: together with the case's number the seed of the random numbers.
     """
     own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
     try:
@@ -159,11 +160,11 @@ def diagnosed(case: Path, seed: int) -> Verdict:
 
 @one_blas_thread
 def by_baseline(name: str, case: Path, seed: int) -> Verdict:
-    """A baseline's verdict, from the recordings that a diagnosis fits and selects on.
+    """A baseline's verdict, from all recordings of a case but the held-out ones.
 
     Args:
-      name: of the baseline.
-      case: its folder.
+      name: name of the baseline.
+      case: folder of the case.
       seed: not used; baselines draw no random numbers.
     """
     try:

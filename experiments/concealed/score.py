@@ -1,4 +1,4 @@
-"""`groundwalk concealed score`: open the sealed truth and count what was right."""
+"""`groundwalk concealed score`: open the sealed truth and score the answers."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -39,7 +39,7 @@ FORMAT = 1
 DIAGNOSIS = "diagnosis"
 ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
 Answers = Mapping[str, Mapping[str, Verdict]]
-"""Verdicts by method ("diagnosis" or a baseline) and name of the case."""
+"""Verdicts by method ("diagnosis" or the name of a baseline) and name of the case."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class ConcealedScore:
     """Open the sealed truth of a set of cases and score all answers to it.
 
     Attributes:
-      folder: of the set, with answers. The results are written there: score.json,
-        score.md, score.png and report.html.
+      folder: folder of the set of cases, with answers. The results are written there:
+        score.json, score.md, score.png and report.html.
       threads: number of processes that fit the true effects; 0 for one per core.
     """
 
@@ -91,9 +91,10 @@ def score_of(
     """The scores of all methods, in the form of score.json.
 
     Args:
-      truth: of the set.
-      answers: by method and case; "diagnosis" is one of the methods.
-      oracles: by the names of the cases in which a known effect is hidden.
+      truth: the truth of the set of cases.
+      answers: verdicts by method and case; "diagnosis" is one of the methods.
+      oracles: fits of the true effects, by the names of the cases in which an effect
+        that the diagnosis knows is hidden.
     """
     figures = {
         method: measures(
@@ -127,7 +128,7 @@ def score_of(
 
 
 def _code_that_answered(folder: Path) -> str | None:
-    """The commit at which the diagnosis answered; None if it was not noted."""
+    """The git commit of the code with which the diagnosis answered; None if unknown."""
     answers = RunFolder(folder / ANSWERS)
     if not answers.has(PROVENANCE):
         return None
@@ -137,14 +138,14 @@ def _code_that_answered(folder: Path) -> str | None:
 def consult_all(
     folder: Path, cases: Sequence[TrueCase], answers: Answers, threads: int
 ) -> dict[str, Oracle]:
-    """The oracles of all cases in which a known effect is hidden.
+    """The oracles (fits of the true effects) of all cases with a known hidden effect.
 
-    Each is kept in the set's folder, and computed again only if an answer has changed.
+    Each is stored in the set's folder, and only computed again if an answer changed.
 
     Args:
-      folder: of the set.
-      cases: the truth.
-      answers: their effects are replayed on the held-out recordings.
+      folder: folder of the set of cases.
+      cases: the true effects of each case.
+      answers: verdicts whose effects are replayed on the held-out recordings.
       threads: number of processes; 0 for one per core.
     """
     asked = [case for case in cases if case.kind in NAMED_KINDS]
@@ -170,7 +171,7 @@ def consult_all(
 def _consult(
     folder: Path, case: TrueCase, found: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """Compute one oracle, and keep it at once, so that an interruption loses little."""
+    """Fit the true effects of a case, and store the result for a resumed run."""
     oracle = consult(folder / CASES / case.name, case, found)
     write_text(_path(folder, case.name), oracle.to_json())
     return oracle
@@ -181,7 +182,7 @@ def _path(folder: Path, name: str) -> Path:
 
 
 def _kept(folder: Path, name: str, answers: Answers) -> Oracle | None:
-    """The oracle that was kept, if it was computed with the same answers."""
+    """The stored oracle of a case; None if there is none for the same answers."""
     path = _path(folder, name)
     if not path.is_file():
         return None

@@ -1,9 +1,9 @@
-"""Finds the size at which a hidden effect shows as clearly as a case demands.
+"""Finds the size at which a hidden effect is as visible as a concealed case demands.
 
-How clearly it shows is measured by information: the log-likelihood that the true
-physics gains over the nominal model, in nats per recording. That is half the squared
-difference of both motions in units of the encoders' noise. The size itself says little:
-half of one joint's friction may give thousands of nats, a tenth of another's none.
+Visibility is measured as information: the log-likelihood by which the true physics
+beats the nominal model, in nats per recording. That is half the squared difference of
+both motions in units of the encoders' noise. The size alone says little: half of one
+joint's friction may give thousands of nats, a tenth of another's none.
 """
 
 import math
@@ -15,32 +15,36 @@ from worlds.hidden.recorded import HiddenSensors
 from worlds.hidden.run import Run
 
 LEVELS = {"L1": 100.0, "L2": 20.0, "L3": 5.0, "L4": 1.0}
-"""Levels from easy to see to nearly invisible, with their least nats per recording."""
+"""Smallest information of each level [nats per recording]; effects of L1 are easy to
+see, those of L4 nearly invisible."""
 
 MOST_NATS = 1e5
-"""Most nats per recording that are drawn, in the easiest level."""
+"""Largest information that is drawn [nats per recording], in the easiest level."""
 
 SHARES = {"L1": 0.40, "L2": 0.35, "L3": 0.15, "L4": 0.10}
-"""Share of cases that are drawn for each level. The second level is narrow and gets
-many: the level that is later measured by a fit of the true effects often misses it."""
+"""Share of the cases that is drawn for each level. The narrow level L2 gets many cases,
+because the level measured later, by a fit of the true effects, is often another one."""
 
 KEPT = 0.6
-"""Share of the nats that a diagnosis can see: it replays short windows, each with its
-own start state, which takes up a part of the difference. A rough value: levels are
-measured later."""
+"""Share of the information [nats] that a diagnosis can use: it replays short windows
+with fitted start states, which absorb a part of the difference. A rough value suffices,
+because the level of a case is measured later."""
 
 LEAST_EASE, MOST_EASE = -2.0, 1.0
-"""Range in which the ease is sought; sizes are drawn from 0 to 1."""
+"""Range of the search for the ease, a measure of an effect's size from 0 (hard to see)
+to 1 (easy) that may go beyond 0 here."""
 NEAR = math.log(1.3)
-"""The search ends when the nats are right within this factor (as a logarithm)."""
+"""Logarithm of the factor by which the nats may differ from the wanted ones at the end
+of the search."""
 FAR = math.log(3.0)
-"""A best trial that is off by more than this factor (as a logarithm) is no answer."""
+"""Logarithm of the factor above which the nats of the best trial are too far from the
+wanted ones: the search then has no result."""
 MOST_TRIALS = 8
-"""Trials of a search; each simulates all motions of the case."""
+"""Largest number of trials of a search; each simulates all motions of the case."""
 _LEAST_TOLD, _MOST_TOLD = 0.1, 1e9
-"""Nats are kept within these bounds before their logarithm is taken."""
+"""Bounds to which nats are clipped before their logarithm is taken."""
 _INNER = 0.1
-"""A trial keeps this share of the bracket away from the bracket's ends."""
+"""Least distance of a trial from the ends of the search's bracket, as a share of it."""
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
@@ -59,16 +63,16 @@ def level_of(nats_per_recording: float) -> str:
 
 
 def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) -> float:
-    """Nats by which motions with hidden effects differ from nominal ones.
+    """Information [nats] about hidden effects in motions, compared with nominal ones.
 
-    The median over the recordings: an effect that shows in only one of them can be
-    neither learned from the others nor confirmed there. Infinite where the physics blew
-    up.
+    It is the median over the recordings, because an effect that only one of them shows
+    can be neither learned from the others nor confirmed there. It is infinite if a
+    simulation diverged.
 
     Args:
-      nominal: motions with nothing hidden, one a recording.
+      nominal: motions without hidden effects, one for each recording.
       runs: the same motions with the hidden effects.
-      sensors: whose noise counts.
+      sensors: the sensors, whose encoder noise is the unit of differences.
     """
     if not all(run.ok for run in runs):
         return math.inf
@@ -83,17 +87,18 @@ def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) ->
 def ease_that_tells(
     wanted: float, told: Callable[[float], float], first: float
 ) -> float | None:
-    """The ease at which recordings tell nearly the wanted nats; None if none does.
+    """Find the ease at which an effect gives about the wanted nats; None if none does.
 
-    By the secant method on the logarithm of the nats over the ease. Sizes are
-    exponential in the ease and nats go with the square of a size, so that this function
-    is nearly straight. Trials stay between those with too few and too many nats: a
-    torque limit or an end stop gives no nats at all until it is reached.
+    The ease sets the effect's size: 0 is hard to see, 1 easy. The search is the secant
+    method on the logarithm of the nats over the ease, which is nearly linear, because
+    sizes are exponential in the ease and nats proportional to the square of a size.
+    Trials stay between those with too few and too many nats, because a torque limit or
+    an end stop gives no nats at all until it is reached.
 
     Args:
       wanted: nats per recording.
-      told: gives the nats at an ease; each call simulates all motions of a case.
-      first: the ease to begin with.
+      told: returns the nats at an ease; each call simulates all motions of a case.
+      first: the ease of the first trial.
     """
     goal = math.log(wanted)
     tried: dict[float, float] = {}
@@ -112,12 +117,12 @@ def ease_that_tells(
 def _next(tried: dict[float, float], nothing: float) -> float:
     """The next ease to try: the zero of the line through the two best trials.
 
-    The middle of the bracket is tried instead where that zero is not well inside the
-    bracket, or where the lower trial gave no nats at all.
+    It is the middle of the bracket instead if that zero is not well inside the bracket,
+    or if the trial at its lower end gave no nats at all.
 
     Args:
-      tried: by ease, logarithm of the nats over the wanted nats.
-      nothing: that logarithm where there are no nats.
+      tried: log(nats / wanted nats) of the trials so far, by ease.
+      nothing: value of that logarithm for a trial without any nats.
     """
 
     def off(one: float) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Shows a diagnosis: ten lines on the console, a page, and an overlay in Rerun."""
+"""Shows a diagnosis: ten lines on the console, an HTML page, and a Rerun file."""
 
 from typing import TYPE_CHECKING
 
@@ -25,4 +25,5 @@ __getattr__ = lazy_face(
         "page": ["ReportFacts", "write_report"],
     },
 )
-"""Imports nothing before it is used, so that Matplotlib and Rerun stay out."""
+"""Imports a module of this package when one of its names is first used, so that
+Matplotlib and Rerun are not loaded needlessly."""

@@ -1,4 +1,4 @@
-"""A diagnosis in ten lines or fewer."""
+"""Prints a diagnosis on the console in at most ten lines."""
 
 import sys
 from collections.abc import Iterator, Sequence
@@ -18,23 +18,24 @@ from experiments.diagnosis_report.place_words import at_words, choice, listing
 from experiments.diagnosis_report.text import badge, doubts, headline, next_step
 
 _SHOWN_AMOUNTS = 3
-"""Smallest detectable sizes that the line of the verdict "none" tells."""
+"""Largest number of effects whose smallest detectable size is printed with the verdict
+"none"."""
 _MOST_FOUND = 3
-"""Lines about findings, pulses among them."""
+"""Largest number of lines on findings (effects and pulses)."""
 _MOST_UNSURE = 2
-"""Effects whose doubts are told."""
+"""Largest number of effects whose doubts are printed."""
 
 
 def print_verdict(
     verdict: Verdict, files: Sequence[Path], changed: bool = False
 ) -> None:
-    """Print a verdict on standard output; a terminal gets it with bold and grey text.
+    """Print a verdict on standard output, on a terminal with bold and grey text.
 
     Args:
-      verdict: of the diagnosis.
+      verdict: the verdict of the diagnosis.
       files: the files that were written, the most useful first.
-      changed: whether the question was what has changed since the reference
-        recordings, rather than what the sim lacks.
+      changed: whether the diagnosis was asked for changes since the reference
+        recordings (healthy robot), not for physics that the sim lacks.
 
     Example:
       >>> print_verdict(Verdict("not_identifiable", limits=("Nothing moved.",)), [])
@@ -62,9 +63,10 @@ def console_lines(
     """A diagnosis as at most ten lines, each a label such as "doubt" and a text.
 
     Args:
-      verdict: of the diagnosis.
+      verdict: the verdict of the diagnosis.
       files: the files that were written.
-      changed: whether the question was what has changed since the reference.
+      changed: whether the diagnosis was asked for changes since the reference
+        recordings (healthy robot), not for physics that the sim lacks.
 
     Example:
       >>> console_lines(Verdict("not_identifiable", limits=("Nothing moved.",)), [])[1]
@@ -83,7 +85,7 @@ def console_lines(
 
 
 def _verdict(verdict: Verdict, changed: bool) -> str:
-    """The kind of the verdict, with the numbers that belong to it."""
+    """The kind of a verdict in words, with the numbers that belong to it."""
     kind, rest = badge(verdict, changed), verdict.unexplained
     if verdict.kind == "unknown" and rest is not None:
         return (
@@ -101,7 +103,7 @@ def _verdict(verdict: Verdict, changed: bool) -> str:
 
 
 def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
-    """The first findings, and the number of findings that are left out."""
+    """Yield lines on the first findings, and one on the number of findings left out."""
     groups = told_together(verdict.effects)
     found = [at_many(group) if len(group) > 1 else _found(group[0]) for group in groups]
     lines = [*found, *pulse_sentences(verdict.pulses)]
@@ -113,13 +115,13 @@ def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
 
 
 def _found(effect: Found) -> str:
-    """One effect: "play (backlash) at ...: gap 0.030 rad (0.027 to 0.034); 97 %"."""
+    """A text such as "play at ...: gap 0.030 rad (0.027 to 0.034); 97 % sure"."""
     values = ", ".join(f"{name} {value}" for name, value in parameter_rows(effect))
     return f"{at_words(effect)}: {values}; {percent(effect.probability)} sure"
 
 
 def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:
-    """Held-out errors of the worst channel and of all; with a correction, both ways."""
+    """Yield lines on held-out errors of the worst channel and of all channels."""
     fit, worst = verdict.fit, headline(verdict.fit)
     if fit is None or worst is None:
         return
@@ -135,7 +137,7 @@ def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:
 
 
 def _all_channels(fit: Fit) -> str:
-    """Errors of all channels, and what controls and a regression reach instead."""
+    """Errors of all channels together, compared with controls and a regression."""
     controls = {
         "the same effect at another place": fit.wrong_place,
         "another effect at this place": fit.wrong_effect,
@@ -151,7 +153,7 @@ def _all_channels(fit: Fit) -> str:
 
 
 def _doubt(verdict: Verdict) -> str:
-    """Other answers that fit, or the doubts about the effects that are unsure."""
+    """Other answers that fit as well or, without any, doubts about unsure effects."""
     if verdict.alternatives:
         also = "" if verdict.kind == "not_identifiable" else "also "
         return f"the recordings {also}fit {choice(verdict.alternatives)}"
@@ -164,7 +166,7 @@ def _doubt(verdict: Verdict) -> str:
 
 
 def _limits(verdict: Verdict) -> str:
-    """The first limit of the data, and how many more there are."""
+    """The first limit of the data, and the number of further limits."""
     if not verdict.limits:
         return ""
     more = len(verdict.limits) - 1

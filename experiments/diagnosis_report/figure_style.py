@@ -1,4 +1,4 @@
-"""How the figures of a diagnosis look, and how they come into its page as SVG."""
+"""Style of the figures of a diagnosis, and their conversion to SVG for its page."""
 
 import html
 import io
@@ -10,19 +10,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH_IN = 7.6
-"""Width of a figure [inch]; the page shows it as wide as its column of text."""
+"""Width of a figure [inch]: that of the page's column of text."""
 
 REAL, SIM, CORRECTED = "#1f2328", "#d55e00", "#0072b2"
-"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
+"""Colours of the real recording, the sim and the corrected sim, which colour-blind
+people can distinguish (Okabe and Ito)."""
 CONTROL, FAINT, GRID, NOISE = "#a6acb5", "#6a737d", "#e6e8eb", "#eceff2"
-"""Greys: of the controls' bars, of small text, of grid lines, of the noise band."""
+"""Grey colours of bars for comparison, small text, grid lines, and the noise band."""
 
 
 def new_figure(height_in: float) -> "Figure":
     """An empty figure as wide as the page's column of text.
 
     Args:
-      height_in: its height [inch].
+      height_in: height of the figure [inch].
     """
     from matplotlib.figure import Figure
 
@@ -35,8 +36,8 @@ def plain(axes: "Axes", grid: Literal["x", "y"] | None = "y") -> None:
     """Remove the frame of axes, and put a faint grid behind what is drawn.
 
     Args:
-      axes: to be changed.
-      grid: direction whose ticks get grid lines; None for no grid.
+      axes: the axes to change.
+      grid: axis whose ticks get grid lines; None for no grid.
     """
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.spines["bottom"].set_color(CONTROL)
@@ -59,11 +60,11 @@ def note(
     """Write a small text beside a point.
 
     Args:
-      axes: to be drawn on.
-      text: to be written.
-      at: the point, in the axes' units.
-      colour: of the text.
-      offset: of the text's left end from the point [1/72 inch].
+      axes: the axes to draw on.
+      text: the text.
+      at: the point, in data coordinates of the axes.
+      colour: colour of the text.
+      offset: x and y from the point to the text's left end [1/72 inch].
     """
     axes.annotate(
         text,
@@ -80,9 +81,10 @@ def inline_svg(figure: "Figure", name: str, alternative: str) -> str:
     """A figure as an `<svg>` element; the same figure always gives the same bytes.
 
     Args:
-      figure: drawn without pyplot.
-      name: unlike those of the page's other figures; the element's ids begin with it.
-      alternative: what the figure shows, for people who cannot see it.
+      figure: a figure made without pyplot.
+      name: a name that no other figure of the page has; the element's ids begin with
+        it.
+      alternative: description of the figure for people who cannot see it.
     """
     import matplotlib as mpl
 
@@ -100,9 +102,9 @@ def inline_svg(figure: "Figure", name: str, alternative: str) -> str:
 
 
 def _with_ids(svg: str, name: str) -> str:
-    """Keep only the ids that are referred to, and name them after the figure.
+    """Keep only those ids in an SVG that are referred to, and rename them after `name`.
 
-    Matplotlib's own ids are random, or hash the last digits of the layout.
+    Matplotlib's ids are random, or hashes that depend on rounding errors of the layout.
     """
     used = dict.fromkeys(re.findall(r'(?:url\(|href=")#([\w.]+)', svg))
     new = {old: f"{name}-{count}" for count, old in enumerate(used)}

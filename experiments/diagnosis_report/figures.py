@@ -1,4 +1,4 @@
-"""Figures of held-out recordings: motion and errors over time, and errors in all."""
+"""Figures of held-out recordings: motion and errors over time, and total errors."""
 
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CLOSE_UP_S = 1.0
-"""Length of the close-up of a motion [s]: long enough for a reversal or two."""
+"""Duration of a close-up of a motion [s]: long enough for one or two reversals."""
 BARS = {
     "nominal": ("the nominal sim", SIM),
     "wrong_effect": ("control: another effect at this place", CONTROL),
@@ -36,18 +36,18 @@ BARS = {
     "corrected": ("the corrected sim", CORRECTED),
     "ceiling": ("a regression without physics", CONTROL),
 }
-"""Label and colour of each error of a verdict, in the order of the bars."""
+"""Label and colour of the bar of each error of a verdict, from top to bottom."""
 UNCORRECTED = ("nominal", "ceiling")
-"""The errors that are drawn where nothing was corrected."""
+"""The keys of `BARS` that are drawn if no effect was found, so nothing corrected."""
 
 
 class View(NamedTuple):
-    """How to show a channel.
+    """How to show a channel, such as a joint's position.
 
     Attributes:
-      unit: of the channel.
-      floor: its noise floor in that unit; twice of it is shaded. None if unknown.
-      is_corrected: whether there is a corrected sim to be shown.
+      unit: unit of the channel.
+      floor: noise floor of the channel in that unit, or None; twice of it is shaded.
+      is_corrected: whether a corrected sim is shown.
     """
 
     unit: str
@@ -56,12 +56,12 @@ class View(NamedTuple):
 
 
 def overlay_figure(series: HeldOutSeries, channel: str, view: View) -> "Figure":
-    """A close-up of one channel above the errors over the whole recording.
+    """Draw a close-up of a channel, and below it the errors over the whole recording.
 
     Args:
       series: a held-out recording.
       channel: name of one of its channels.
-      view: how to show it.
+      view: unit and noise floor of the channel.
     """
     real, sim, corrected = series.channels[channel]
     rows = close_up(series.time_s, real, sim)
@@ -103,15 +103,15 @@ def _draw_errors(
 
 
 def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
-    """The rows of a second in which the error is both large and easy to see.
+    """Choose the second of a recording in which the error is large and easy to see.
 
-    Among the windows with at least half the squared error of the worst one, that in
-    which the error is largest relative to the range of the motion.
+    It is the window in which the error is largest relative to the range of the motion,
+    among those with at least half the squared error of the worst window.
 
     Args:
-      time_s: (T,) increasing.
-      real: (T,) measured, NaN where a value is missing.
-      sim: (T,) predicted, NaN where the measured value is missing.
+      time_s: (T,) increasing times [s].
+      real: (T,) measured values, NaN where one is missing.
+      sim: (T,) predicted values, NaN where the measured one is missing.
     """
     rows = int(np.searchsorted(time_s, time_s[0] + CLOSE_UP_S, side="right"))
     windows = np.lib.stride_tricks.sliding_window_view
@@ -124,11 +124,11 @@ def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
 
 
 def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
-    """Errors of all channels together, in multiples of their noise floors.
+    """Draw bars of the errors of all channels together, in units of the noise floor.
 
     Args:
       fit: the held-out errors of a verdict.
-      is_corrected: whether there is a corrected sim to be shown, with its controls.
+      is_corrected: whether to show the corrected sim and the controls.
     """
     bars = BARS if is_corrected else UNCORRECTED
     errors = {name: getattr(fit, name) for name in bars}
@@ -152,7 +152,7 @@ def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
 
 
 def unexplained_figure(rest: Unexplained) -> "Figure":
-    """The mean error left, over another quantity, with two standard errors around it.
+    """Draw the mean unexplained error over another quantity, with two standard errors.
 
     Args:
       rest: the shape of the error that no effect explains.

@@ -1,4 +1,4 @@
-"""What a diagnosis found, in words: effects, with places and values, and pulses."""
+"""Words for the findings of a diagnosis: effects with places and values, and pulses."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -12,11 +12,12 @@ from experiments.diagnosis_report.numbers import estimate_text, percent
 from experiments.diagnosis_report.place_words import place_words
 
 MANY = 3
-"""An effect found at this many places or more is summed up in one clause."""
+"""Number of places from which on an effect is summed up in one clause for all."""
 
 SHOWN = 0.01
-"""A value closer to zero than this share of its interval is not told: the data do not
-show it. Insensitive: values that the data show are far above it."""
+"""A value that is smaller than this share of its interval's width is not mentioned,
+because the data do not show it. Values that the data show are far above this share, so
+that its exact size does not matter."""
 
 _WAYS = {
     "actuator input": "came in at the input of the actuator of {joint}",
@@ -29,8 +30,9 @@ def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
     """A clause for each effect; one clause for all places of an effect found at many.
 
     Args:
-      effects: the surest first.
-      changed: whether the question was what has changed since the reference.
+      effects: effects found, the surest first.
+      changed: whether to call them changes since the reference recordings, not physics
+        that the sim lacks.
     """
     return [
         at_many(group) if len(group) > 1 else finding(group[0], changed)
@@ -39,10 +41,10 @@ def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
 
 
 def told_together(effects: Sequence[Found]) -> list[list[Found]]:
-    """Groups of effects to be told in one clause each, in their order.
+    """Group effects, in their order, so that each group can be described in one clause.
 
-    Most groups hold one effect. Those of one name at `MANY` places or more, acting all
-    the time, form one group.
+    Effects of the same name at `MANY` places or more that act all the time form one
+    group; every other effect is a group of its own.
     """
     groups: dict[str, list[Found]] = {}
     for effect in effects:
@@ -56,10 +58,10 @@ def told_together(effects: Sequence[Found]) -> list[list[Found]]:
 
 
 def at_many(alike: Sequence[Found]) -> str:
-    """A clause with the range of one effect's first value, and where its ends are.
+    """A clause on an effect at many places: the range of its first parameter's values.
 
     Args:
-      alike: the same effect at different places.
+      alike: the effects of one name, at different places.
     """
     name = next(iter(alike[0].parameters))
     order = sorted(alike, key=lambda one: one.parameters[name].value)
@@ -79,8 +81,9 @@ def finding(effect: Found, changed: bool = False) -> str:
     """A clause: "the left knee (LKneePitch) has play of about 0.030 rad (...) ...".
 
     Args:
-      effect: to be told.
-      changed: whether the question was what has changed since the reference.
+      effect: an effect found.
+      changed: whether to call it a change since the reference recordings, not physics
+        that the sim lacks.
     """
     words = kind_of(effect.name).words
     numbers = {
@@ -105,7 +108,7 @@ def finding(effect: Found, changed: bool = False) -> str:
 
 
 class _Words(dict[str, str]):
-    """Words that fill a template; a parameter without one is "an unknown amount"."""
+    """Words that fill a text template; missing ones become "an unknown amount"."""
 
     def __init__(self, numbers: dict[str, str], **words: str) -> None:
         super().__init__(numbers | words)
@@ -115,7 +118,7 @@ class _Words(dict[str, str]):
 
 
 def parameter_rows(effect: Found) -> list[tuple[str, str]]:
-    """Each parameter's name and its value with interval, as they are printed."""
+    """Name, and value with interval, of each parameter of an effect, as texts."""
     return [
         (name.replace("_", " "), estimate_text(one))
         for name, one in effect.parameters.items()
@@ -123,7 +126,7 @@ def parameter_rows(effect: Found) -> list[tuple[str, str]]:
 
 
 def pulse_sentences(pulses: Sequence[Pulse]) -> Iterator[str]:
-    """A sentence for the pulses of each recording, joint and source.
+    """Yield a sentence for the pulses of each recording, joint and source.
 
     Args:
       pulses: torques that no servo asked for, in any order.
@@ -139,7 +142,7 @@ def pulse_sentences(pulses: Sequence[Pulse]) -> Iterator[str]:
 
 
 def _amounts(pulses: Sequence[Pulse]) -> str:
-    """Number, mean size, median length and times of some pulses."""
+    """Number, mean size, median duration and times of some pulses, as text."""
     size = np.mean([pulse.torque for pulse in pulses])
     length_s = np.median([pulse.end_s - pulse.start_s for pulse in pulses])
     apart = [after.start_s - before.start_s for before, after in pairwise(pulses)]
@@ -152,7 +155,7 @@ def _amounts(pulses: Sequence[Pulse]) -> str:
 
 
 def _evidence(pulse: Pulse) -> str:
-    """Which measured signal jumps with a pulse, and whether the motion follows it."""
+    """Text: which signal jumps with a pulse, and by how much the motion follows it."""
     signal = "position" if pulse.source == "position sensor" else "torque"
     jumps = min(max(pulse.jumps[signal], 0.0), 1.0)
     edges = f"{percent(jumps)} of their edges are in the measured {signal}"

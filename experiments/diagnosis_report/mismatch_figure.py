@@ -1,4 +1,4 @@
-"""The mismatch map as a figure: channels, parts of the data, and times with errors."""
+"""Figure of the mismatch map: errors by channel, part of the data, and time."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -21,20 +21,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MOST_ROWS = 12
-"""Channels in the map at most."""
+"""Largest number of channels (rows) in the map."""
 _FEW_ROWS, _SMALL_SHARE = 4, 0.005
-"""Below this share of the mismatch a channel is left out, except for the first few."""
+"""Number of channels that are always shown, and share of the mismatch below which any
+further channel is left out."""
 _SHARE_WIDTH, _CELL_WIDTH, _BURST_WIDTH = 2.0, 0.9, 2.6
-"""Relative widths of the bars, of one column of cells, and of the time axis."""
+"""Relative widths of the panel of bars, of a column of cells, and of the time axis."""
 _LEAST_TOP = 0.7
-"""Decimal logarithm of the error at which cells are darkest, at least: 5 noise floors.
-Errors near the noise thus stay pale even where they are the largest ones."""
+"""Least decimal logarithm of the error [noise floors] at which cells are darkest: 5
+noise floors. Errors near the noise stay pale even if they are the largest ones."""
 _DARK = 0.6
-"""Share of the colour scale above which a cell's number is white."""
+"""Share of the colour scale above which the number in a cell is white, not black."""
 
 
 def worst_cells(cells: Sequence[MismatchCell]) -> list[MismatchCell]:
-    """The channels that the map shows, the worst first.
+    """Choose the channels that the map shows, the worst first.
 
     Args:
       cells: all channels of a verdict's mismatch map.
@@ -48,10 +49,10 @@ def worst_cells(cells: Sequence[MismatchCell]) -> list[MismatchCell]:
 
 
 def mismatch_figure(rows: Sequence[MismatchCell]) -> "Figure":
-    """A row for each channel: its share of the mismatch, its errors, its bursts.
+    """Draw for each channel its share of the mismatch, its errors and its bursts.
 
-    Errors are given for each part of the data (regime), such as "reversals". Panels
-    without content are left out.
+    Errors are given for each part of the data (regime), such as "reversals"; a burst is
+    a short time with large errors. Panels without content are left out.
 
     Args:
       rows: channels from top to bottom; at least one.
@@ -91,7 +92,7 @@ def _draw_shares(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
 def _draw_regimes(
     axes: "Axes", rows: Sequence[MismatchCell], regimes: Sequence[str]
 ) -> None:
-    """Draw the errors as cells that darken with the error's logarithm."""
+    """Draw errors as cells, the darker the larger the logarithm of the error is."""
     from matplotlib.colors import LinearSegmentedColormap
 
     colours = LinearSegmentedColormap.from_list(
@@ -134,5 +135,5 @@ def _draw_bursts(axes: "Axes", rows: Sequence[MismatchCell]) -> None:
 
 
 def _head(axes: "Axes", text: str) -> None:
-    """Put two short lines above a panel; a long one would run into the next panel."""
+    """Write a panel's title in two lines, so that it does not reach the next panel."""
     axes.set_title(text, loc="left", fontsize=8.5, color=FAINT)

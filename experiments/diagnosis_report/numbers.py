@@ -1,4 +1,4 @@
-"""Numbers as people read them: no more digits than are known, and handy units."""
+"""Numbers as texts, with no more digits than are known, and in handy units."""
 
 import math
 from collections.abc import Iterable
@@ -12,14 +12,15 @@ _HANDY = {
     "m": (0.1, 1e3, "mm"),
     "1/s": (math.inf, 1e2, "% per second"),
 }
-"""By SI unit: size below which values get another unit, the factor, that unit."""
+"""By SI unit of a value: size below which it is printed in another unit, the factor to
+that unit, and that unit."""
 _ERRORS = {
     "rad": (0.1, 1e3, "mrad"),
     "m": (0.1, 1e3, "mm"),
     "rad/s": (0.1, 1e3, "mrad/s"),
 }
-"""By SI unit of an error: size below which it is printed in another unit, factor, that
-unit."""
+"""By SI unit of an error: size below which it is printed in another unit, the factor to
+that unit, and that unit."""
 
 
 def estimate_text(estimate: Estimate) -> str:
@@ -48,13 +49,13 @@ def error_unit(unit: str, largest: float) -> tuple[float, str]:
 
     Args:
       unit: SI unit of the errors.
-      largest: the largest of all errors that are printed side by side [unit].
+      largest: the largest error of those that are printed side by side, in `unit`.
     """
     return _handy(_ERRORS, unit, largest)
 
 
 def errors_text(errors: Iterable[float | None]) -> list[str]:
-    """Errors to be printed side by side, with equal decimals; a dash for None."""
+    """Errors as texts with the same number of decimals; a dash for None."""
     given = list(errors)
     known = [abs(error) for error in given if error]
     places = 0
@@ -85,11 +86,11 @@ def _handy(
 
 
 def _decimals(width: float, size: float) -> int:
-    """Decimals at which a value is printed so that its interval keeps 1 or 2 digits.
+    """Number of decimals with which a value's interval keeps 1 or 2 digits.
 
     Args:
-      width: of the interval; 0 for a value without one.
-      size: of the value.
+      width: width of the interval; 0 for a value without one.
+      size: absolute value.
     """
     step = width if width > 0 else size / 100
     if step <= 0:

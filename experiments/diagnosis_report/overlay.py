@@ -1,13 +1,13 @@
-"""Real, sim and corrected sim on held-out recordings, as a Rerun file.
+"""Writes a Rerun file: real robot, sim and corrected sim on held-out recordings.
 
-| entity | what |
+| entity | content |
 |---|---|
-| `real`, `sim`, `corrected` | the three robots, as in the first recording |
+| `real`, `sim`, `corrected` | the three robots, moving as in the first recording |
 | `held_out/<recording>/<channel>/course` | lines: real, sim, corrected; SI units |
 | `held_out/<recording>/<channel>/error` | lines: sim - real, corrected - real |
 
-An error is in the unit that its plot's title names, such as mrad. Times count from the
-start of each held-out part: the part of a recording may begin seconds after its start.
+The unit of an error, such as mrad, is in its plot's title. Time 0 is the start of each
+held-out part, which may be seconds after the start of its recording.
 """
 
 import hashlib
@@ -33,9 +33,9 @@ from worlds.scenes.curves import Curve, Trace
 from worlds.scenes.scene import Scene
 
 COLOURS = {name: accent(index) for index, name in enumerate(ChannelSeries._fields)}
-"""Colours of the robots and lines, by version: real, sim, corrected."""
+"""Colours of robots and lines, by version ("real", "sim" or "corrected")."""
 CHANNELS_PER_PAGE = 4
-"""Channels on one tab, each with its course and its error: what fits on a screen."""
+"""Number of channels on one tab of the viewer, each with two plots: as fit a screen."""
 _POSE = (*vector_columns("base.position"), *vector_columns("base.orientation"))
 
 
@@ -45,15 +45,15 @@ def write_overlay(
     fit: Fit | None = None,
     description: Description | None = None,
 ) -> None:
-    """Write the file at once: a tab for each recording and quantity, the worst first.
+    """Write the file: a tab for each recording and quantity, the worst channels first.
 
     Args:
       path: the `.rrd` file.
       series: held-out recordings; at least one.
-      fit: the verdict's held-out errors, which say which channels are worst, and
-        each channel's unit.
-      description: the robot model; None to show curves only. Its three versions then
-        stand side by side and move as in the first recording. A base that was not
+      fit: the verdict's held-out errors, which give the order of the channels and
+        their units.
+      description: the robot model, whose real, sim and corrected versions move side by
+        side as in the first recording; None for curves only. A base that was not
         recorded stays at the origin.
 
     Raises:
@@ -74,7 +74,7 @@ def write_overlay(
 
 
 def _by_kind(channels: Sequence[str]) -> dict[str, list[str]]:
-    """Channels by what they measure, such as "position", in the order given."""
+    """Group channels by quantity, such as "position", in the order given."""
     groups: dict[str, list[str]] = {}
     for channel in channels:
         groups.setdefault(channel.partition(".")[0], []).append(channel)
@@ -84,7 +84,7 @@ def _by_kind(channels: Sequence[str]) -> dict[str, list[str]]:
 def _curves(
     series: HeldOutSeries, at: str, channels: Sequence[str], fit: Fit | None
 ) -> list[Curve]:
-    """Course and error of each channel."""
+    """Curves of each channel's values and of its errors."""
     curves: list[Curve] = []
     for name, part in zip(channels, scene_names(channels), strict=True):
         real, sim, corrected = series.channels[name]
@@ -104,12 +104,12 @@ def _curves(
 
 
 def _in(unit: str) -> str:
-    """A unit as it stands behind a title."""
+    """A unit in brackets, to append to a title; "" without a unit."""
     return f" [{unit}]" if unit else ""
 
 
 def _scenes(series: HeldOutSeries, description: Description) -> list[Scene]:
-    """The robot as it was, as the sim has it, and as the corrected sim has it."""
+    """Scenes of the robot as recorded, as in the sim, and as in the corrected sim."""
     joints = [f"position.{joint}" for joint in description.joints]
     names = [name for name in joints if name in series.channels]
     if not names:
@@ -122,7 +122,7 @@ def _scenes(series: HeldOutSeries, description: Description) -> list[Scene]:
     for version in ChannelSeries._fields:
         columns = {name: getattr(series.channels[name], version) for name in names}
         columns["time"] = series.time_s - series.time_s[0]
-        # What drove the joints is shown nowhere, but a recording has to say it.
+        # A recording must have a command or a torque, although none is shown here.
         drive = names[0].replace("position", "torque", 1)
         columns[drive] = np.full(series.time_s.size, np.nan)
         scenes.append(Scene(version, Recording(columns, metadata), description))
@@ -130,7 +130,7 @@ def _scenes(series: HeldOutSeries, description: Description) -> list[Scene]:
 
 
 def _identity(series: Sequence[HeldOutSeries]) -> str:
-    """32 hexadecimal digits that belong to these series."""
+    """A hash of the series, 32 hexadecimal digits, as identity of the Rerun file."""
     content = hashlib.sha256()
     for one in series:
         content.update(one.name.encode() + one.time_s.tobytes())

@@ -1,4 +1,4 @@
-"""A diagnosis as one HTML page without other files: plain words, then evidence."""
+"""A diagnosis as one self-contained HTML page: first plain words, then evidence."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -38,11 +38,12 @@ from groundwalk.files import write_text
 
 TEMPLATE = "diagnosis_report.html.jinja"
 MOST_PICTURES = 4
-"""Held-out recordings that the page draws; the rest only count in the tables."""
+"""Largest number of held-out recordings that the page draws; the tables use all."""
 SHOWN_ROWS = 13
-"""Rows of the table of errors that are open at once; the rest can be unfolded."""
+"""Number of rows of the table of errors that are visible; the rest can be unfolded."""
 _OFF = 1.05
-"""Multiple of the noise floor; a nominal error below it leaves nothing to close."""
+"""Multiple of the noise floor; where the nominal sim's error is below it, the page does
+not say which share of the error a correction removes."""
 _COLUMNS = ("nominal", "corrected", "floor", "ceiling", "wrong_place", "wrong_effect")
 _USES = {"fit": "fitted on", "select": "selected on", "test": "held out"}
 NOISE_FLOOR = (
@@ -53,23 +54,23 @@ NOISE_FLOOR = (
     f"{100 * LEAST_TORQUE:.0f} % of a measured torque: smaller errors are within the "
     "accuracy of encoders, clocks, simulation and motor constants."
 )
-"""What the page's "noise floor" is."""
+"""The page's explanation of the words "noise floor"."""
 
 
 @dataclass(frozen=True)
 class ReportFacts:
-    """Where a diagnosis comes from, as its page tells it.
+    """Facts on the origin of a diagnosis for its report page.
 
     Attributes:
-      robot: its name, or the model's file.
+      robot: name of the robot, or its model file.
       base: "fixed" or "floating".
       command: the command line that makes this report again.
       settings: the options of the run, by name.
-      versions: of groundwalk and the packages it uses, by name.
-      files: the other files of the run and what they hold, by their names relative to
-        the report.
+      versions: versions of groundwalk and the packages it uses, by name.
+      files: descriptions of the run's other files, by their paths relative to the
+        report.
       changed: whether reference recordings of the healthy robot were given, so that the
-        question is what has changed since them.
+        question is what has changed since then.
 
     Example:
       >>> ReportFacts("nao", "fixed", command="groundwalk diagnose a.parquet ...")
@@ -87,17 +88,17 @@ class ReportFacts:
 def write_report(
     path: Path, verdict: Verdict, series: Sequence[HeldOutSeries], facts: ReportFacts
 ) -> None:
-    """Write the page; it is complete or, after an error, not there.
+    """Write the page; after an error no partial file remains.
 
     Args:
       path: the `.html` file.
-      verdict: of the diagnosis.
-      series: held-out recordings with the predictions of both sims, those to be drawn
-        first; may be empty.
-      facts: where the diagnosis comes from.
+      verdict: the verdict of the diagnosis.
+      series: held-out recordings with the predictions of nominal and corrected sim, the
+        most important first; may be empty.
+      facts: origin of the diagnosis.
 
     Raises:
-      UnknownNameError: the verdict names an effect that has no words.
+      UnknownNameError: the verdict names an unknown effect.
 
     Example:
       >>> facts = ReportFacts("nao", "fixed", command="groundwalk diagnose ...")
@@ -108,7 +109,7 @@ def write_report(
 
 
 def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
-    """The page's sentences and small tables, by their names in the template."""
+    """Sentences and small tables of the page, by their names in the Jinja template."""
     return {
         "verdict": verdict,
         "title": f"Diagnosis: {facts.robot}",
@@ -129,7 +130,7 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
 
 
 def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
-    """How the page was made, by the names of the parts in the template."""
+    """Command, settings and other facts on the page's origin, for the template."""
     recordings = [
         (_USES[use], ", ".join(names))
         for use, names in vars(verdict.recordings).items()
@@ -149,7 +150,7 @@ def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
 
 
 def _shown(verdict: Verdict, series: Sequence[HeldOutSeries]) -> dict[str, Any]:
-    """The page's figures, by their names in the template."""
+    """Figures of the page, by their names in the Jinja template."""
     rest, cells = verdict.unexplained, worst_cells(verdict.mismatch)
     return {
         "unexplained": rest
@@ -179,7 +180,7 @@ def _shown(verdict: Verdict, series: Sequence[HeldOutSeries]) -> dict[str, Any]:
 
 
 def _picture(series: HeldOutSeries, verdict: Verdict, name: str) -> dict[str, Any]:
-    """Name and figure of a held-out recording: its worst channel over time."""
+    """Name of a held-out recording, and a figure of its worst channel over time."""
     channel = by_error(series, verdict.fit)[0]
     scored = verdict.fit.channels.get(channel) if verdict.fit else None
     view = View(
@@ -217,7 +218,7 @@ def _label_and_place(name: str, place: str) -> dict[str, str]:
 
 
 def _fit_rows(fit: Fit) -> list[dict[str, Any]]:
-    """Rows of the table of errors: all channels together, then the worst first."""
+    """Rows of the table of errors: all channels together, then each, worst first."""
     channels = sorted(fit.channels.items(), key=lambda item: -item[1].excess)
     return [
         _fit_row("all channels", "noise floors", fit),
@@ -226,9 +227,9 @@ def _fit_rows(fit: Fit) -> list[dict[str, Any]]:
 
 
 def _fit_row(name: str, unit: str, fit: Errors) -> dict[str, Any]:
-    """One row: errors as texts with their unit, and the share that is closed.
+    """A row of the table of errors: texts with a unit, and the share that was removed.
 
-    The share is at most 100 %: below the noise floor there is nothing left to close.
+    That share of the error above the noise floor is limited to 100 %.
     """
     errors = [getattr(fit, column) for column in _COLUMNS]
     factor, unit = error_unit(unit, max(filter(None, errors), default=0.0))

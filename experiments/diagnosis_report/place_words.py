@@ -17,7 +17,7 @@ def place_words(place: str, kind: str = "joint") -> str:
 
     Args:
       place: name of the joint or body.
-      kind: "joint" or "body"; any other kind of place is called by its name.
+      kind: "joint" or "body"; of any other kind of place the name is returned.
     """
     sided = _SIDED.fullmatch(place)
     if kind not in ("joint", "body"):
@@ -25,7 +25,7 @@ def place_words(place: str, kind: str = "joint") -> str:
     if sided is None:
         return f"the {kind} {place}"
     parts = [part.lower() for part in re.findall(r"[A-Z][a-z]+", sided[2])]
-    if parts[0] == "knee":  # it has only one joint
+    if parts[0] == "knee":  # a knee has only one joint
         parts = parts[:1]
     return f"the {_SIDES[sided[1]]} {' '.join(parts)} ({place})"
 
@@ -39,12 +39,12 @@ def at_words(effect: PlacedEffect | Found) -> str:
 
 
 def answer_words(effects: tuple[PlacedEffect, ...]) -> str:
-    """Effects of one answer: "dry friction at hip together with late commands"."""
+    """The effects of one answer: "dry friction at hip together with late commands"."""
     return " together with ".join(map(at_words, effects))
 
 
 def choice(answers: Sequence[tuple[PlacedEffect, ...]]) -> str:
-    """Several answers, of which one is right, with "; or" between them."""
+    """Join alternative answers, of which one is right, with "; or"."""
     return "; or ".join(map(answer_words, answers))
 
 
@@ -57,16 +57,16 @@ def channel_words(channel: str) -> str:
 
 
 def listing(parts: list[str], word: str) -> str:
-    """Texts as a list in a sentence: "a, b and c".
+    """Join texts to a list in a sentence: "a, b and c".
 
     Args:
       parts: the texts; at least one.
-      word: before the last text, such as "and".
+      word: the word before the last text, such as "and".
     """
     *first, last = parts
     return f"{', '.join(first)} {word} {last}" if first else last
 
 
 def sentence(text: str) -> str:
-    """A text with a capital letter at its start and a full stop at its end."""
+    """Make a text a sentence: a capital letter at its start, a full stop at its end."""
     return f"{text[:1].upper()}{text[1:]}".rstrip(".") + "."

@@ -22,7 +22,7 @@ BADGES = {
     "unknown": "unknown physics",
     "not_identifiable": "these data cannot tell",
 }
-"""Each kind of verdict in a few words, where the question is what the sim lacks."""
+"""Words for each kind of verdict, if the question is what physics the sim lacks."""
 
 CHANGE_BADGES = {
     "effects": "changed since the reference",
@@ -30,16 +30,17 @@ CHANGE_BADGES = {
     "unknown": "changed since the reference, by unknown physics",
     "not_identifiable": "these data cannot tell whether anything has changed",
 }
-"""Each kind of verdict in a few words, where reference recordings of the healthy robot
-were given and the question is what has changed since."""
+"""Words for each kind of verdict, if reference recordings of the healthy robot were
+given, so that the question is what has changed since then."""
 
 
 def badge(verdict: Verdict, changed: bool = False) -> str:
     """The kind of a verdict in a few words.
 
     Args:
-      verdict: of the diagnosis.
-      changed: whether the question was what has changed since the reference.
+      verdict: the verdict of the diagnosis.
+      changed: whether the question is what has changed since the reference recordings,
+        not what physics the sim lacks.
     """
     return (CHANGE_BADGES if changed else BADGES)[verdict.kind]
 
@@ -48,8 +49,8 @@ def question(robot: str, changed: bool) -> str:
     """The question that a diagnosis answers.
 
     Args:
-      robot: its name or its model file.
-      changed: whether reference recordings were given.
+      robot: name of the robot, or its model file.
+      changed: whether reference recordings of the healthy robot were given.
     """
     if changed:
         return f"What has changed about {robot} since the reference recordings?"
@@ -57,11 +58,12 @@ def question(robot: str, changed: bool) -> str:
 
 
 def answer(verdict: Verdict, changed: bool = False) -> list[str]:
-    """The answer in one to a few sentences, the most important first.
+    """The answer of a diagnosis in a few sentences, the most important first.
 
     Args:
-      verdict: of the diagnosis.
-      changed: whether the question was what has changed since the reference.
+      verdict: the verdict of the diagnosis.
+      changed: whether the question is what has changed since the reference recordings,
+        not what physics the sim lacks.
     """
     pulses = [*map(sentence, pulse_sentences(verdict.pulses))]
     if verdict.kind == "none":
@@ -76,14 +78,14 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
 
 
 class Headline(NamedTuple):
-    """Held-out errors of the channel with the nominal sim's worst error, as texts.
+    """Held-out errors, as texts, of the channel in which the nominal sim is worst.
 
     Attributes:
-      channel: its name in words.
+      channel: name of the channel in words.
       nominal: rms error of the nominal sim.
       corrected: rms error of the corrected sim.
-      floor: the channel's noise floor.
-      unit: of these three numbers.
+      floor: noise floor of the channel.
+      unit: unit of these three numbers.
     """
 
     channel: str
@@ -94,7 +96,7 @@ class Headline(NamedTuple):
 
 
 def headline(fit: Fit | None) -> Headline | None:
-    """The errors to tell first; None where there are no held-out errors.
+    """The errors of the worst channel; None if no data were held out.
 
     Args:
       fit: the held-out errors of a verdict.
@@ -109,7 +111,7 @@ def headline(fit: Fit | None) -> Headline | None:
 
 
 def _gain(verdict: Verdict) -> list[str]:
-    """A sentence with the errors before and after, if anything was corrected."""
+    """A sentence on the errors without and with correction; none without effects."""
     errors, fit = headline(verdict.fit), verdict.fit
     if errors is None or fit is None or not verdict.effects:
         return []
@@ -183,7 +185,7 @@ def doubts(verdict: Verdict) -> list[str]:
     """Sentences on how sure each effect is, and on other answers that fit as well.
 
     Args:
-      verdict: of the diagnosis.
+      verdict: the verdict of the diagnosis.
     """
     lines = []
     for effect in verdict.effects:
@@ -201,10 +203,10 @@ def doubts(verdict: Verdict) -> list[str]:
 
 
 def next_step(verdict: Verdict) -> str:
-    """The experiment that would tell most; empty if nothing is open.
+    """The experiment that would answer most open questions; "" if none is open.
 
     Args:
-      verdict: of the diagnosis.
+      verdict: the verdict of the diagnosis.
     """
     step = verdict.next_experiment
     if step is None:
