@@ -1,1 +1,1 @@
-"""From the result of a search to a verdict: intervals, probabilities and controls."""
+"""Turns a search's result into a verdict: intervals, probabilities and controls."""

@@ -1,4 +1,4 @@
-"""The kind of verdict that a search result means, and the effects it reports."""
+"""Decides the kind of verdict that follows from a search, and its effects."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,28 +15,28 @@ from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import Found, VerdictKind, When
 
 LEAST_CLOSED = 0.95
-"""Share of the energy above the noise that a model must remove; with less, something
-else is missing, too, and the verdict is `unknown`."""
+"""Share of the nominal sim's energy (half the sum of squared residuals) above the noise
+that a model must remove; with less, more is missing and the verdict is `unknown`."""
 
 MOST_LEFT = 0.5
-"""Relative excess over the noise energy up to which the share does not matter: what
-is left is then hardly more than noise."""
+"""If the error energy that remains exceeds that of the noise by at most this share of
+it, hardly more than noise remains, and the verdict is not `unknown`."""
 
 
 UNSURE_NATS, WEAK = 15.0, 4.0
-"""An effect is unsure if models without it are worse by less than `UNSURE_NATS`. Then
-it is kept only if it gains more than `WEAK` times the least gain of the search."""
+"""An effect is unsure if a model without it is less plausible by less than the first
+number [nats]; it must then gain the second number times what other effects must."""
 
 
 def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
-    """Remove the last effect if it is neither certain nor clearly useful.
+    """Remove the effect that was added last if it is neither certain nor a large gain.
 
     Two simulators of the same physics always differ a little, and some effect always
-    explains a part of the difference.
+    explains a part of the difference. The only effect of a model stays.
 
     Args:
       searched: a search result.
-      least_gain: gain [nats] that the search required of an effect.
+      least_gain: gain [nats] that the search required of each effect.
     """
     winner = searched.winner
     if winner is None or searched.chosen == 1:
@@ -50,7 +50,7 @@ def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
 
 
 def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
-    """The kind of verdict.
+    """The kind of verdict: "effects", "none", "unknown" or "not_identifiable".
 
     Args:
       searched: the result of the search.
@@ -75,12 +75,12 @@ def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> Verdic
 def believed_effects(
     both: Predictor, searched: SearchResult, refitted: FittedModel | None
 ) -> tuple[Found, ...]:
-    """The effects of a verdict with estimates and probabilities, the surest first.
+    """The effects of a verdict with estimates, the most probable first.
 
     Args:
       both: predictor of fitting and selection data.
       searched: the result of the search.
-      refitted: the winning model fitted to these data; None for no effect.
+      refitted: the winning model fitted to these data; None if it has no effect.
     """
     if refitted is None or searched.winner is None:
         return ()
@@ -108,7 +108,7 @@ def _distinct(effects: Sequence[PlacedEffect]) -> tuple[PlacedEffect, ...]:
 
 
 def _when(both: Predictor, placed: PlacedEffect) -> When:
-    """When an effect acted, given the times of the recordings."""
+    """When an effect acted: always, or from when to when in the recordings' time."""
     first_s = min(float(trace.time_s[0]) for trace in both.traces)
     last_s = max(float(trace.time_s[-1]) for trace in both.traces)
     return effect(placed.name).acted(placed, first_s, last_s)

@@ -1,4 +1,4 @@
-"""How probable each effect of a search result is, and which others may be the truth."""
+"""Computes how probable each found effect is, and which others may be the truth."""
 
 import numpy as np
 
@@ -9,26 +9,26 @@ from diagnosis.search.result import SearchResult
 from diagnosis.verdict.verdict import VerdictKind
 
 TIED_NATS = 10.0
-"""Models that are less plausible by at most this [nats] may be the truth as well. The
-margin is wide because residuals of neighbouring rows are correlated."""
+"""Models that are less plausible than the best one by at most this [nats] may be the
+truth as well. It is large since residuals of neighbouring rows are correlated."""
 
 SLOPE, EVEN_NATS = 1.0, 3.0
-"""Calibration: the log odds that an effect is right are SLOPE ln(1 + gap / EVEN_NATS),
-where the gap is the distance [nats] to the best model without the effect. From 39
-answers to concealed cases (seed 777, 38 of them right; cases without excitation left
+"""The log odds that a found effect is right are SLOPE ln(1 + gap / EVEN_NATS), the gap
+being the distance [nats] to the best model without it. Calibrated on 39 diagnoses of
+hidden physics (seed 777, 38 right; those in which the joints did not move enough left
 out); slopes of 0.8 to 1.5 describe these about as well."""
 
 MOST = 0.98
-"""Largest probability that is stated: physics that the library lacks can look like one
-of its effects."""
+"""Largest probability that is stated for an effect: physics that the library of effects
+lacks can look like one of them."""
 
 
 def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects that explain the recordings as well in place of one of the winner's.
+    """Effects that could replace one of the winning model and explain the data as well.
 
     Args:
       found: the result of a search.
-      placed: an effect of its winner.
+      placed: the effect of the winning model.
     """
     winner = found.winner
     assert winner is not None
@@ -43,14 +43,14 @@ def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect,
 
 
 def twins(plant: Plant, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects that no recording of this robot can distinguish from the given one."""
+    """Effects that no recording of this robot can distinguish from `placed`."""
     return effect(placed.name).twins(plant, placed.place)
 
 
 def alternatives(
     found: SearchResult, kind: VerdictKind
 ) -> tuple[tuple[PlacedEffect, ...], ...]:
-    """Other models with as many effects that explain the recordings as well.
+    """Other models with as many effects as the winner that explain the data as well.
 
     Args:
       found: the result of a search.
@@ -69,10 +69,10 @@ def alternatives(
 
 
 def gap(found: SearchResult, placed: PlacedEffect) -> float:
-    """How much less plausible the best model without an effect of the winner is [nats].
+    """How much less plausible the best model without an effect is than the winner.
 
     Returns:
-      At least 0; infinite if no model without the effect was tried.
+      A difference [nats] of at least 0; infinite if no model without it was tried.
     """
     same = {placed.key, *(grown.key for grown in grown_from(placed))}
     without = [
@@ -85,6 +85,9 @@ def gap(found: SearchResult, placed: PlacedEffect) -> float:
 
 
 def probability(found: SearchResult, placed: PlacedEffect) -> float:
-    """Probability that an effect of the winner is right, from `gap`."""
+    """Probability, 0.49 to 0.98, that an effect of the winning model is right.
+
+    It follows from how much less plausible [nats] the best model without it is.
+    """
     odds = SLOPE * np.log1p(gap(found, placed) / EVEN_NATS)
     return float(MOST / (1 + np.exp(-odds)))

@@ -1,4 +1,4 @@
-"""Controls of a diagnosis: the effect elsewhere, another effect at the same place."""
+"""Controls of a diagnosis: wrong models that must predict worse than the one found."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -11,17 +11,19 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
 
 MOST = 4
-"""Most candidates of a control that are fitted; the others look worse unfitted."""
+"""Number of models that are fitted to find the best wrong one: those with the smallest
+errors before the fit."""
 
 STEPS = 4
-"""Most steps of their fits, enough for a comparison."""
+"""Most steps of the fit of a wrong model, enough for a comparison."""
 
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """Models that differ from the believed one in its main effect.
+    """Models that differ from the one found in its main effect.
 
-    A diagnosis is convincing if all of them predict held-out recordings worse.
+    A diagnosis is convincing if they all predict held-out recordings worse. The main
+    effect is the one whose removal increases the error most.
 
     Attributes:
       without: the other effects alone, fitted again.
@@ -45,8 +47,8 @@ class Controls:
         """Fit the controls of a model.
 
         Args:
-          predictor: of the data to fit to.
-          model: the believed model, with at least one effect.
+          predictor: predictor of the data to fit.
+          model: the model found, with at least one effect.
           alike: keys "effect@place" of effects that may be the truth as well and
             therefore are no controls.
           rng: chooses the wrong effect.
@@ -60,7 +62,7 @@ class Controls:
 
 
 def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
-    """The effect whose removal increases the error most, and the refitted others."""
+    """The effect whose removal increases the error most, and the others refitted."""
     if len(model) == 1:
         return model[0], ()
     rests = [tuple(one for one in model if one is not main) for main in model]
@@ -85,7 +87,7 @@ def _by_lot(
     alike: Collection[str],
     rng: np.random.Generator,
 ) -> list[PlacedEffect]:
-    """A random other effect of typical size at the main one's place, or none.
+    """An effect of typical size at the main effect's place, chosen at random, if any.
 
     Effects with as many values as the main one are preferred.
     """
@@ -118,7 +120,7 @@ def _contains(one: PlacedEffect, other: PlacedEffect) -> bool:
 def _best(
     predictor: Predictor, rest: Model, options: list[PlacedEffect]
 ) -> Model | None:
-    """The other effects with the option that fits best; None without options."""
+    """The effects `rest` with the option that fits best; None without options."""
     taken = {placed.key for placed in rest}
     models = [(*rest, one) for one in options if one.key not in taken]
     if not models:
@@ -129,5 +131,5 @@ def _best(
 
 
 def _fitted(predictor: Predictor, models: list[Model]) -> list[FittedModel]:
-    """Models after the few steps of a fit that a comparison needs."""
+    """Models after a few steps of a fit, enough for a comparison."""
     return fit_all(predictor, models, STEPS, followed=True)

@@ -16,11 +16,12 @@ def smallest_detectable(
 ) -> Mapping[str, Amount]:
     """The size of each effect whose gain would just be enough to be reported.
 
-    A signature is proportional to the size of its effect, hence the gain grows with the
-    square of the size. Effects that act only above a threshold have no such size.
+    The change of the residual by an effect (its signature) is taken as proportional to
+    the effect's size, hence the gain grows with the square of the size. Effects that
+    act only above a threshold are left out.
 
     Args:
-      predictor: of the data.
+      predictor: predictor of the data.
       found: signatures of the effects.
       gain: gain [nats] that an effect needs to be reported.
 

@@ -1,4 +1,4 @@
-"""Intervals of the values of a fitted model."""
+"""Computes intervals for the values (parameters of effects) of a fitted model."""
 
 import itertools
 from collections.abc import Mapping
@@ -14,26 +14,28 @@ Z_80 = 1.2815515655446004
 """Half width of an 80 % interval of the normal distribution, in standard deviations."""
 
 PRIOR_SPREAD = 10.0
-"""Standard deviation of the prior on scaled coordinates, which are of order one. Values
-that the data do not determine get intervals of this width."""
+"""Standard deviation of the prior on values, in coordinates scaled to be of order one:
+values that the data do not determine get intervals about this wide."""
 
 SYSTEMATIC = 0.015
 """Relative error of every value from differences between simulators: two simulators of
 the same physics disagree by this much, however long the recordings are."""
 
 FEWEST = 8
-"""Fewest blocks from which a correlation of neighbouring blocks can be estimated."""
+"""Fewest time blocks from which a correlation of the errors in neighbouring ones is
+estimated."""
 
 SIGNIFICANT = 2.0
-"""Standard deviations of chance above which a correlation of blocks counts as real."""
+"""A correlation of the errors in neighbouring time blocks counts as real from this
+multiple of the standard deviation that chance gives it."""
 
 
 def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estimate]]:
     """The values of each effect of a model with 80 % intervals and units.
 
     Args:
-      predictor: of the data that the model was fitted to.
-      fit: the model with a Jacobian taken by differences at its values.
+      predictor: predictor of the data to which the model was fitted.
+      fit: the model with a Jacobian by finite differences at its values.
 
     Returns:
       One mapping from parameter name to estimate for each effect, in the model's order.
@@ -61,16 +63,16 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
 
 
 def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
-    """(p,) standard errors of the values, in scaled coordinates.
+    """(p,) standard errors of a model's values, in scaled coordinates.
 
-    White's sandwich estimator of 1980 with blocks of time: no simulator is exact, so
-    residuals are correlated and larger than the sensors' noise. The error that all
-    simulators have in common does not show in the data; it is added as a fixed share
-    of each value.
+    They are those of White's sandwich estimator of 1980 with blocks of time: no
+    simulator is exact, so residuals are correlated and larger than the sensors' noise.
+    The systematic error of simulators does not show in the data; it is added as a fixed
+    share of each value.
 
     Args:
-      predictor: of the data that the model was fitted to.
-      fit: the model with a Jacobian taken by differences at its values.
+      predictor: predictor of the data to which the model was fitted.
+      fit: the model with a Jacobian by finite differences at its values.
     """
     jacobian, residual = fit.jacobian, fit.residual
     known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
@@ -88,7 +90,7 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
 
 
 def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
-    """(p,) variances of values, where residuals of one time block may be correlated.
+    """(p,) variances of fitted values if residuals of one time block are correlated.
 
     The influences are summed within each block and the squares of the sums are added,
     which is right if blocks are independent. If neighbouring blocks are significantly
@@ -96,8 +98,8 @@ def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
     the position, for example, causes an error as long as a stroke lasts.
 
     Args:
-      influence: (N, p) change of each value by each row of the residual.
-      block: (N,) block numbers from 0, rising with time.
+      influence: (N, p) change of each value by each entry of the residual.
+      block: (N,) number of each entry's time block from 0, increasing with time.
     """
     sums = np.zeros((int(block.max()) + 1, influence.shape[1]))
     np.add.at(sums, block, influence)
@@ -105,7 +107,7 @@ def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
 
 
 def _variance(sums: FloatArray) -> float:
-    """Variance of one value from the (blocks,) sums of its influences."""
+    """Variance of one value from (blocks,) sums of the residuals' influences on it."""
     variance = float(sums @ sums)
     if len(sums) < FEWEST or variance <= 0:
         return variance
@@ -117,11 +119,11 @@ def _variance(sums: FloatArray) -> float:
 
 
 def _neutral(fit: FittedModel, index: int) -> float:
-    """Scaled coordinate at which a value has no effect; 0 where that is infinite."""
+    """Scaled coordinate at which a value changes nothing; 0 if that is infinite."""
     neutral = fit.coordinates.scaled(index, fit.coordinates.parameters[index].neutral)
     return neutral if np.isfinite(neutral) else 0.0
 
 
 def _values(fit: FittedModel, x: FloatArray) -> list[float]:
-    """The values of all effects at (p,) scaled coordinates."""
+    """The p values of all effects at the (p,) scaled coordinates `x`."""
     return [value for placed in fit.coordinates.model_at(x) for value in placed.values]

@@ -1,8 +1,7 @@
-"""A flexible regression without physics: how much of the error is predictable at all.
+"""A flexible regression without physics, which shows how much error is predictable.
 
-It does not explain anything, but it raises an alarm: if it removes more of the error
-than the named effects do, there is structure that no effect of the library has (model
-discrepancy, Kennedy and O'Hagan 2001).
+If it removes more of the nominal sim's error than the effects found do, then the error
+has structure that no known effect has (model discrepancy, Kennedy and O'Hagan 2001).
 """
 
 import numpy as np
@@ -12,34 +11,34 @@ from diagnosis.traces.trace import filled
 from groundwalk.arrays import FloatArray
 
 FEATURES = 150
-"""Number of random cosines."""
+"""Number of random cosines of the inputs that serve as features of the regression."""
 
 FINE = 3.0
-"""Standard deviation of the rates of cosines of a single input, which is scaled to a
-standard deviation of 1."""
+"""Standard deviation of the random frequencies of cosines of a single input [radians
+per standard deviation of the input]."""
 
 LAGS = (0, 1, 3, 6, 12)
 """Delays [rows] at which the regression sees each input."""
 
 FEWEST = 200
-"""Fewest rows from which a regression is learned."""
+"""Fewest rows from which a regression is learned; with fewer it predicts 0."""
 
 PENALTIES = (1.0, 10.0, 100.0, 1000.0)
-"""Ridge penalties that are tried."""
+"""Penalties of the ridge regression that are tried."""
 
 
 def flexible_regression_errors(
     learn: Predictor, judge: Predictor, seed: np.random.SeedSequence
 ) -> FloatArray:
-    """(c,) rms [noise] of the nominal sim's error that the regression leaves.
+    """(c,) rms, in units of noise, of the error that a regression leaves per channel.
 
-    For each channel a ridge regression on random Fourier features (Rahimi and Recht
-    2007) of the nominal sim's motion, the commands and the time. The penalty is chosen
-    on a quarter of the rows, in blocks of 50.
+    For each channel a ridge regression predicts the nominal sim's error from random
+    Fourier features (Rahimi and Recht 2007) of simulated motion, commands and time. Its
+    penalty is chosen on a quarter of the rows, in blocks of 50.
 
     Args:
       learn: predictor of the data to learn from.
-      judge: predictor of the data on which the error is measured, same channels.
+      judge: predictor, with the same channels, of the data on which it is tested.
       seed: seed of the features.
     """
     rng = np.random.default_rng(seed)
@@ -58,10 +57,10 @@ def flexible_regression_errors(
 
 
 class _Lift:
-    """Features of a regression: scaled inputs and random cosines of them.
+    """Computes a regression's features: scaled inputs, random cosines, a constant.
 
-    Half of the cosines are smooth functions of all inputs. The others have shorter
-    waves and a single input each, as the cogging of a motor has.
+    Half of the cosines are smooth functions of all inputs. The others have higher
+    frequencies and a single input each, as the cogging of a motor has.
     """
 
     def __init__(self, inputs: FloatArray, rng: np.random.Generator) -> None:
@@ -75,14 +74,21 @@ class _Lift:
         self._phase = rng.uniform(0, 2 * np.pi, FEATURES)
 
     def __call__(self, inputs: FloatArray) -> FloatArray:
-        """(rows, features) of (rows, inputs)."""
+        """(rows, features) features of (rows, inputs) inputs."""
         z = (inputs - self._middle) / self._scale
         cosines = np.cos(z @ self._weight + self._phase)
         return np.hstack([z, cosines, np.ones((len(z), 1))])
 
 
 def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
-    """Coefficients of the regression; zeros if there are too few rows to learn from."""
+    """(features,) coefficients of a ridge regression whose penalty fits best.
+
+    They are 0 if there are too few rows to learn from.
+
+    Args:
+      features: (rows, features).
+      wanted: (rows,) values to predict.
+    """
     if len(wanted) < FEWEST:
         return np.zeros(features.shape[1])
     held = np.arange(len(wanted)) // 50 % 4 == 3
@@ -97,13 +103,18 @@ def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
 
 
 def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatArray:
-    """Coefficients of the ridge regression with a penalty."""
+    """(features,) coefficients of a ridge regression with a given penalty."""
     gram = features.T @ features + penalty * np.eye(features.shape[1])
     return np.asarray(np.linalg.solve(gram, features.T @ wanted))
 
 
 def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArray]:
-    """Inputs of each recording, (rows, c) errors to explain and whether each counts."""
+    """The data of a regression.
+
+    Returns:
+      For each recording its (T, c + j + 1) simulated channels, commands and time;
+      (rows, c) errors of the nominal sim, in units of noise; whether each counts.
+    """
     c = len(predictor.channels.names)
     nominal = predictor.predict([()])[0]
     wrong = predictor.residuals([()])[0].reshape(-1, c)
@@ -121,7 +132,11 @@ def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArra
 
 
 def _inputs(blocks: list[FloatArray], column: int, c: int) -> FloatArray:
-    """One joint's predicted and commanded positions now and before, speed, and time."""
+    """(rows, inputs) inputs of the regression for one joint.
+
+    They are its simulated and commanded positions now and some rows before, its speed
+    and the speed's sign, and the time.
+    """
     parts = []
     for block in blocks:
         own = block[:, [column, c + column]]

@@ -1,4 +1,4 @@
-"""Errors on the held-out recordings, and doubts that follow from them."""
+"""Computes errors on held-out recordings, and finds doubts that follow from them."""
 
 import numpy as np
 
@@ -12,13 +12,14 @@ from diagnosis.verdict.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
 
 SURPRISE = 2.0
-"""Ratio of held-out to learned error from which a verdict expresses a doubt."""
+"""A verdict expresses a doubt if the rms error on held-out data is at least this
+multiple of that on the data of the fit."""
 
 
 class HeldOutErrors:
-    """Errors of the nominal sim, the model and its controls on the held-out data.
+    """Errors on held-out data: of the nominal sim, a model and wrong models (controls).
 
-    The held-out data are used once, here, after all decisions are made.
+    The held-out data are used only here, after effects are chosen and fitted.
     """
 
     def __init__(
@@ -33,13 +34,13 @@ class HeldOutErrors:
         """Compute all errors.
 
         Args:
-          nominal: predictors of the learned and of the held-out data, calibrated at the
-            nominal robot model.
-          both: predictor of the learned data, calibrated at `model`.
+          nominal: predictors of the data used so far (fitting and selection) and of the
+            held-out data, both calibrated at the nominal robot model.
+          both: predictor of the data used so far, calibrated at `model`.
           test: predictor of the held-out data, calibrated at `model`.
           searched: the result of the search.
           model: the effects that are reported, fitted to `both`.
-          seed: for the flexible regression and for the random choice of a control.
+          seed: seed of the flexible regression and of the random choice of a control.
         """
         self._test = test
         self._errors = {"nominal": _error(nominal[1], ())}
@@ -72,7 +73,7 @@ class HeldOutErrors:
 
 
 def _alike(both: Predictor, searched: SearchResult, model: Model) -> set[str]:
-    """Keys ("effect@place") of effects that may be the truth behind one of a model."""
+    """Keys "effect@place" of effects that may be true instead of one in `model`."""
     return {
         f"{at.name}@{at.place}"
         for placed in model
@@ -86,7 +87,7 @@ def _error(test: Predictor, model: Model) -> FloatArray:
 
 
 def channel_rms(predictor: Predictor, residual: FloatArray) -> FloatArray:
-    """(c,) rms of each channel of a residual (N,), both in units of noise."""
+    """(c,) rms of each channel of an (N,) residual, both in units of noise."""
     c = len(predictor.channels.names)
     count = np.maximum(np.bincount(predictor.channel, predictor.scored, c), 1)
     return np.asarray(np.sqrt(np.bincount(predictor.channel, residual**2, c) / count))
@@ -99,7 +100,7 @@ def model_refuted(
 
     Args:
       nominal: (N,) residual of the nominal sim on the held-out data, in units of noise.
-      corrected: (N,) residual of the corrected sim there.
+      corrected: (N,) residual of the sim with the effects found, on the same data.
       least_gain: log-likelihood [nats] that an effect must gain to be reported.
 
     Returns:
@@ -116,10 +117,10 @@ def model_refuted(
 def larger_than_learned(
     learned: Predictor, left: FloatArray, fit: Fit
 ) -> tuple[str, ...]:
-    """A sentence if the held-out error is much larger than the error that was learned.
+    """A sentence if the held-out error is much larger than that on the fitted data.
 
     Args:
-      learned: predictor of the data that the model was fitted to.
+      learned: predictor of the data to which the model was fitted.
       left: (N,) residual of the model on these data, in units of noise.
       fit: errors on the held-out data.
 

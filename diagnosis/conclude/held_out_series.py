@@ -1,4 +1,4 @@
-"""Measured and predicted values over time on the held-out recordings."""
+"""Lists measured and simulated values over time on held-out recordings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ class ChannelSeries(NamedTuple):
     """One measured quantity over T ticks, in SI units; NaN is a missing value.
 
     Attributes:
-      real: (T,) as it was measured.
-      sim: (T,) as the nominal sim predicts it.
-      corrected: (T,) as the sim with the diagnosed effects predicts it.
+      real: (T,) measured values.
+      sim: (T,) values predicted by the nominal sim.
+      corrected: (T,) values predicted by the sim with the diagnosed effects.
     """
 
     real: FloatArray
@@ -28,13 +28,13 @@ class ChannelSeries(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class HeldOutSeries:
-    """A held-out recording, or a part of one, beside what both sims predict for it.
+    """A held-out recording, or a part of one, with the predictions of two sims.
 
     Attributes:
-      name: of the recording.
-      time_s: (T,) increasing.
-      channels: by name, such as "position.LKneePitch" or "base.orientation.w"; the
-        text before the first dot is the quantity.
+      name: name of the recording.
+      time_s: (T,) times, increasing.
+      channels: channels by name, such as "position.LKneePitch"; the text before the
+        first dot is the quantity.
     """
 
     name: str
@@ -64,12 +64,12 @@ class HeldOutSeries:
 def held_out_series(
     nominal: Predictor, corrected: Predictor, model: Model
 ) -> list[HeldOutSeries]:
-    """Measured, nominal and corrected course of each held-out recording.
+    """Measured values of held-out recordings, and those predicted by both sims.
 
     Args:
-      nominal: predicts the held-out recordings, calibrated at the plant alone.
-      corrected: predicts the same recordings, calibrated at `model`.
-      model: the effects of the corrected sim.
+      nominal: predictor of the held-out recordings, calibrated at the nominal model.
+      corrected: predictor of the same recordings, calibrated at `model`.
+      model: the effects that the corrected sim has.
     """
     sim, after = _by_trace(nominal, ()), _by_trace(corrected, model)
     names = corrected.channels.names
@@ -85,24 +85,24 @@ def held_out_series(
 
 
 def _by_trace(predictor: Predictor, model: Model) -> Sequence[FloatArray]:
-    """The prediction of each trace, (ticks, channels) each."""
+    """For each trace the (ticks, channels) values that a model predicts."""
     predicted = predictor.predict([model])[0]
     ends = np.cumsum([trace.ticks for trace in predictor.traces])
     return np.split(predicted, ends[:-1])
 
 
 def rms(values: FloatArray) -> float:
-    """Root mean square of the values that are not NaN; 0 if all are."""
+    """Root mean square of the values that are not NaN; 0 if all are NaN."""
     known = values[~np.isnan(values)]
     return float(np.sqrt(np.mean(known**2))) if known.size else 0.0
 
 
 def by_error(series: HeldOutSeries, fit: Fit | None) -> list[str]:
-    """Names of the scored channels, the one with the nominal sim's worst error first.
+    """Names of channels in order of the nominal sim's rms error, the largest first.
 
-    Errors are compared in multiples of each channel's noise floor. Channels without a
-    floor, such as the pose of a base that nothing measured, are left out; where no
-    channel has one, all are kept and compared in their own units.
+    Errors are compared as multiples of each channel's noise floor. Channels without a
+    floor, such as the pose of a base that nothing measured, are left out; if no channel
+    has one, all are kept and compared in their own units.
 
     Args:
       series: the recording.

@@ -23,10 +23,10 @@ TICK_S = 0.01
 """Control tick of the proposed motion [s]."""
 
 REACH = 0.8
-"""Share of the range of the recordings that the motion uses."""
+"""Share of each joint's range in the recordings that the proposed motion uses."""
 
 Motion = Callable[[FloatArray, float], FloatArray]
-"""A function of (T,) times [s] and the duration [s] to (T,) positions in -1 to 1."""
+"""A function from (T,) times [s] and a duration [s] to (T,) positions from -1 to 1."""
 
 MOTIONS: dict[str, Motion] = {
     "slow ramp there and back": lambda t, d: 1 - 2 * np.abs(1 - 2 * t / d),
@@ -38,26 +38,26 @@ MOTIONS: dict[str, Motion] = {
     "small fast sine": lambda t, d: 0.1 * np.sin(2 * np.pi * 3 * t),
     "hold at mirrored poses": lambda t, d: np.where(t < d / 2, 0.8, -0.8),
 }
-"""The motions that are compared, by the words in which they are proposed."""
+"""The motions that may be proposed, by the words that the report uses for them."""
 
 STIFFER = "the same with servos of twice the stiffness and half the damping"
-"""Words for the variant of a motion with changed servo gains."""
+"""Words that the report uses for a motion with changed servo gains."""
 
 
 def next_experiment(
     plant: Plant, found: SearchResult, traces: Sequence[Trace]
 ) -> NextExperiment | None:
-    """The motion for which the two best answers predict the most different courses.
+    """The motion to record next: the two best models predict it most differently.
 
     This is the criterion of Hunter and Reiner 1965 (T-optimality).
 
     Args:
       plant: nominal robot model.
       found: the result of a search.
-      traces: the recordings so far, whose range is not exceeded.
+      traces: the recordings so far; the motion stays within their range.
 
     Returns:
-      None if one answer is clear, or if the robot does not take position commands.
+      None if no other model is plausible, or if a recording has no position commands.
     """
     rivals = _rivals(found)
     if rivals is None or any(trace.command_rad is None for trace in traces):
@@ -80,7 +80,7 @@ def next_experiment(
 
 
 def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
-    """The winner and the most plausible other model; None if that is much worse."""
+    """The winner and the most plausible other model; None if that one is much worse."""
     winner = found.winner
     if winner is None:
         return None
@@ -93,7 +93,7 @@ def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
 
 
 def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
-    """A recording of the motion at all joints, within the range of the recordings."""
+    """A trace in which all joints follow a motion within the range used so far."""
     time_s = np.arange(0, DURATION_S, TICK_S)
     middle = (usage.low_rad + usage.high_rad) / 2
     half = REACH * (usage.high_rad - usage.low_rad) / 2
@@ -102,7 +102,7 @@ def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
 
 
 def _changed_servo(trace: Trace) -> Trace:
-    """The same recording with stiffer, less damped servos."""
+    """The same trace with servos of twice the stiffness and half the damping."""
     servo = replace(
         trace.servo,
         kp_nm_rad=2 * trace.servo.kp_nm_rad,

@@ -1,8 +1,8 @@
-"""Fits a known structure: the error that the true effects leave, once fitted.
+"""Fits effects that are known to be true, to see what a perfect diagnosis would reach.
 
-A diagnosis has to find which effects are missing. Where these are known, as in
-recordings made with hidden physics, fitting them alone says how much the recordings can
-tell about them at all, and how small the error can get.
+A diagnosis has to find which effects a sim lacks. If these are known, as in recordings
+made with hidden physics, fitting only their sizes shows how clearly the recordings tell
+them, and how small the error can get.
 """
 
 from collections.abc import Sequence
@@ -23,14 +23,16 @@ from groundwalk.blas import one_blas_thread
 
 @dataclass(frozen=True)
 class StructureFit:
-    """The errors of a known structure on recordings, beside those of other models.
+    """Errors on recordings: of a known structure (the true effects) and other models.
+
+    Rms errors are those on held-out recordings, in units of noise.
 
     Attributes:
-      gain: mean over recordings of the log-likelihood [nats] by which the fitted
+      gain: mean over all recordings of the log-likelihood [nats] by which the fitted
         structure beats the nominal model.
-      nominal: rms error of the nominal model on held-out recordings, in units of noise.
-      fitted: rms error of the fitted structure there.
-      others: rms error there of each other model, in the order they were given.
+      nominal: rms error of the nominal model.
+      fitted: rms error of the fitted structure.
+      others: rms error of each other model, in the order they were given.
     """
 
     gain: float
@@ -47,13 +49,13 @@ def fit_structure(
     structure: Model,
     others: Sequence[Model] = (),
 ) -> StructureFit:
-    """Fit the values of a known structure; replay other models beside it.
+    """Fit the values of a known structure (the true effects); compare other models.
 
     The values are fitted to the same recordings that a diagnosis fits. The other
     models keep the values they are given.
 
     Args:
-      plant: nominal.
+      plant: nominal robot model.
       traces: recordings of the robot.
       reference: recordings of the healthy robot; may be empty.
       structure: the true effects at their true places, with values to start from.
