@@ -1,4 +1,4 @@
-"""Picture of a score: accuracy by level, and calibration of stated probabilities."""
+"""Figure of a score: accuracy by level, and calibration of stated probabilities."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,16 +23,16 @@ def draw_score(score: Mapping[str, Any], path: Path) -> None:
 
     Args:
       score: the contents of score.json.
-      path: of the PNG file.
+      path: the PNG file to write.
     """
     write_figure(score_figure(score), path)
 
 
 def score_figure(score: Mapping[str, Any]) -> "Figure":
-    """Figure with the accuracy of all methods, and with the diagnosis' calibration.
+    """Draw the accuracy of all methods, and the calibration of the diagnosis.
 
-    Left, the share of single effects named rightly, by level. Right, the share of right
-    names over the stated probability.
+    The left panel shows the share of single effects that were named correctly, by level
+    of difficulty; the right one the share of correct names over the stated probability.
 
     Args:
       score: the contents of score.json.
@@ -97,7 +97,7 @@ def _draw_reliability(axes: "Axes", bins: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _bars(figures: Sequence[Mapping[str, Any]]) -> list[list[float]]:
-    """Lengths of error bars: a row below and a row above the values."""
+    """Lengths of error bars for Matplotlib: a row below and a row above the values."""
     below = [max(one["value"] - one["low"], 0.0) for one in figures]
     above = [max(one["high"] - one["value"], 0.0) for one in figures]
     return [below, above]

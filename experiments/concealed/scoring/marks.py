@@ -1,4 +1,4 @@
-"""Compares the answer to one concealed case with its truth."""
+"""Compares the answer (a verdict) to one concealed case with the hidden effects."""
 
 import math
 from collections.abc import Sequence
@@ -11,25 +11,27 @@ from experiments.concealed.scoring.truth import TrueCase
 from worlds.hidden.effects import Hidden
 
 NAMED_KINDS = ("single", "pair", "triple")
-"""Kinds of cases in which effects that the diagnosis knows are hidden and excited."""
+"""Kinds of cases whose hidden effects are known to the diagnosis and excited by the
+motion."""
 
 _BOUND = 1.0
-"""Shares of closed error are kept within plus and minus this, so that one bad answer
-does not decide a mean."""
+"""Limit, in both directions, of the share of the error that an answer removes, so that
+a single bad answer does not decide a mean."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """What is right and wrong about one answer.
+    """The comparison of an answer (a verdict on a case) with the truth.
 
     Attributes:
       case: the truth.
-      level: of difficulty, "L1" (easy) to "L4"; None where no known effect is hidden.
-      kind: of the verdict, or "missing".
+      level: level of difficulty, "L1" (easy) to "L4"; None if no effect that the
+        diagnosis knows is hidden.
+      kind: kind of the verdict, or "missing".
       names_something: whether any effect is named.
       top1: whether the verdict is "effects" and its first effect has a true name.
       in_set: whether a true name is among all names that the answer considers.
-      set_size: how many names the answer considers.
+      set_size: number of names that the answer considers.
       places: for each effect found with a true name, whether its place is true.
       hits: number of effects found that are true in name and place.
       extra: number of effects found that are not.
@@ -37,11 +39,11 @@ class Mark:
       errors: relative error of each effect that is true in name and place.
       covered: for each main parameter of these effects, whether its interval holds the
         truth.
-      closed: the part of the error that the oracle removes which the answer removes,
-        too; None where there is nothing to remove.
-      wrong_place: the part that the answer's own control at a wrong place removes.
-      wrong_effect: the part that its control with a wrong effect removes.
-      probability: stated for the first effect; None without one.
+      closed: held-out error that the answer removes, as a share of the error that the
+        fitted true effects remove; None if they remove nothing.
+      wrong_place: the same share for the answer's control with the place changed.
+      wrong_effect: the same share for the answer's control with the effect changed.
+      probability: stated probability of the first effect; None without an effect.
     """
 
     case: TrueCase
@@ -66,9 +68,10 @@ class Mark:
     def right(self) -> bool:
         """Whether the answer is right as a whole.
 
-        Exactly the hidden effects are named, at their places. Where nothing is hidden,
-        nothing is named; outside the library, the verdict is not "effects"; where the
-        joint never moves, "none" and "not_identifiable" are right, too.
+        It is right if exactly the hidden effects are named, at their places; nothing if
+        none is hidden. For an effect that the diagnosis does not know any verdict but
+        "effects" is right; if the joint never moves, also "none" and
+        "not_identifiable".
         """
         exact = self.kind == "effects" and not self.extra and not self.missed
         match self.case.kind:
@@ -90,8 +93,9 @@ def mark(
     Args:
       case: the truth.
       verdict: the answer; None (no answer) is wrong in every respect.
-      oracle: of the case; None where no known effect is hidden.
-      method: that gave the answer, such as "diagnosis".
+      oracle: fit of the true effects; None if no effect that the diagnosis knows is
+        hidden.
+      method: name of the method that answered, such as "diagnosis".
     """
     found = verdict.effects if verdict else ()
     true = {_at(each): each for each in case.effects}
@@ -145,9 +149,9 @@ def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
     """Error of the main parameters, relative to the size of the true effect.
 
     The parameters form a vector. The error is the distance from the estimate to the
-    truth, the size that from the truth to the value at which the effect does nothing.
-    Where that value is infinite, as with a stiffness, it counts as zero. A parameter
-    that is not stated counts as if it did nothing.
+    truth, the size is the distance from the truth to the values at which the effect
+    does nothing; an infinite one of these, as for a stiffness, counts as zero. For a
+    parameter that the answer does not state the value is used at which it does nothing.
     """
     key = f"{true.name}@{true.place}"
     neutral = oracle.neutral.get(key, {}) if oracle else {}
@@ -171,10 +175,10 @@ def _covered(found: Found, true: Hidden) -> list[bool]:
 
 
 def _closed(oracle: Oracle, method: str) -> float | None:
-    """The part of the oracle's gain in held-out error that an answer reaches.
+    """Held-out error removed by an answer, as a share of that by the true effects.
 
-    From -1 to 1; 0 for an answer that is missing or names nothing. None in cases that
-    are too hard (beyond level L2), or where the oracle gains nothing.
+    From -1 to 1; 0 for an answer that is missing or names nothing; None in cases that
+    are too hard (levels L3, L4) or if the true effects remove nothing.
     """
     if oracle.level not in ("L1", "L2") or oracle.nominal <= oracle.fitted:
         return None
@@ -186,11 +190,11 @@ def _closed(oracle: Oracle, method: str) -> float | None:
 def _controls(
     verdict: Verdict | None, closed: float | None
 ) -> tuple[float | None, float | None]:
-    """Error closed by the control at a wrong place, and by that with a wrong effect.
+    """Shares of error removed by the controls at a wrong place and with a wrong effect.
 
-    Each is `closed` times the control's gain over the gain of the effect it replaces,
-    from the held-out errors that the answer states. None where that effect gains
-    nothing.
+    Each is `closed` times the ratio of the error that the control removes to the error
+    that the replaced effect removes, from the held-out errors that the answer states;
+    None if that effect removes nothing.
     """
     fit = verdict.fit if verdict else None
     if fit is None or closed is None:

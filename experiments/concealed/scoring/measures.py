@@ -1,9 +1,8 @@
 """The figures of a method's score: shares, means and medians with their intervals.
 
-Every figure is {"value", "n", "low", "high"}, with a 95 % interval: Wilson's for
-shares of things that are right or wrong, otherwise the bootstrap over cases (Efron
-1979). Where there is nothing to count, n is 0 and the others are None. The definitions
-are in docs/concealed.md.
+Each figure is a dict {"value", "n", "low", "high"} with a 95 % interval: Wilson's for
+shares of right answers, otherwise by the bootstrap over cases (Efron 1979). If there is
+nothing to count, n is 0 and the others are None. Definitions: docs/concealed.md.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -19,17 +18,17 @@ Figure = dict[str, float | int | None]
 Statistic = Callable[[Sequence[Mark]], float]
 
 RESAMPLES = 1000
-"""Bootstrap samples; a usual number for 95 % intervals."""
+"""Number of bootstrap samples, as usual for 95 % intervals."""
 BINS = 10
-"""Bins of stated probability, from 0 to 1."""
+"""Number of equal bins of the stated probability, from 0 to 1."""
 
 
 def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
-    """All figures of one method.
+    """Compute all figures of one method's score.
 
     Args:
-      marks: one for each case.
-      seed: of the bootstrap.
+      marks: comparison of answer and truth, one for each case.
+      seed: seed of the bootstrap.
     """
     rng = np.random.default_rng(seed)
     hidden, single = by_kind(marks, *NAMED_KINDS), by_kind(marks, "single")
@@ -86,7 +85,7 @@ def f1(marks: Sequence[Mark]) -> float:
     """F1 score of the effects named: 2 hits / (2 hits + extra + missed).
 
     Args:
-      marks: whose effects are counted together.
+      marks: comparisons of answers and truths, whose effects are counted together.
     """
     hits = sum(each.hits for each in marks)
     wrong = sum(each.extra + each.missed for each in marks)
@@ -99,10 +98,11 @@ def median_error(marks: Sequence[Mark]) -> float:
 
 
 def calibration_error(marks: Sequence[Mark]) -> float:
-    """Expected calibration error: mean gap of bins, weighted by their cases.
+    """Expected calibration error of the probabilities stated for the first effects.
 
-    Ten bins of equal width over the stated probability (Guo, Pleiss, Sun and
-    Weinberger 2017, "On calibration of modern neural networks", equation 3).
+    It is the mean gap between stated probability and share of right names over ten bins
+    of equal width, weighted by their cases (Guo, Pleiss, Sun and Weinberger 2017, "On
+    calibration of modern neural networks", equation 3).
     """
     total = sum(row["n"] for row in reliability(marks))
     gaps = (
@@ -113,7 +113,7 @@ def calibration_error(marks: Sequence[Mark]) -> float:
 
 
 def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
-    """Calibration by bins of stated probability, for the bins that hold cases.
+    """Calibration by bins of stated probability; bins without cases are left out.
 
     Returns:
       For each bin the mean stated probability ("stated"), the number of cases ("n") and

@@ -1,7 +1,7 @@
-"""The oracle: how much a case's recordings can tell about the effects hidden in it.
+"""The oracle of a case: how much its recordings can tell about its hidden effects.
 
 The true effects at their true places are fitted to the recordings that a diagnosis
-fits. The log-likelihood by which they beat the nominal model is the case's level.
+fits. The log-likelihood by which they beat the nominal model gives the case's level.
 """
 
 import hashlib
@@ -24,16 +24,17 @@ from groundwalk.json_data import from_plain, parse_json, to_plain
 
 @dataclass(frozen=True)
 class Oracle:
-    """The errors that the true effects of one case leave once they are fitted.
+    """Result of fitting the true effects of one case to its recordings.
 
     Attributes:
       gain: log-likelihood [nats] per recording by which the fitted true effects beat
         the nominal model.
       nominal: rms error of the nominal model on held-out recordings, in units of noise.
-      fitted: rms error there with the fitted true effects.
-      neutral: value at which a parameter does nothing, by "effect@place" and name;
-        None where that is infinite.
-      answered: by method, the hash of the effects it found and the rms error with them.
+      fitted: the same error with the fitted true effects.
+      neutral: value at which a parameter does nothing, by "effect@place" and name of
+        the parameter; None for infinity.
+      answered: for each method the hash of the effects that it found, and the held-out
+        rms error with them.
     """
 
     gain: float
@@ -44,7 +45,7 @@ class Oracle:
 
     @property
     def level(self) -> str:
-        """How easy the case is, from "L1" (easiest) to "L4"."""
+        """Level of difficulty of the case, from "L1" (easiest) to "L4"."""
         return level_of(self.gain)
 
     def to_json(self) -> str:
@@ -53,10 +54,10 @@ class Oracle:
 
     @classmethod
     def from_json(cls, text: str) -> "Oracle":
-        """Read what `to_json` has written.
+        """Read an oracle from the text that `to_json` returns.
 
         Raises:
-          BadValueError: it is no JSON, or a key or a value is wrong.
+          BadValueError: the text is no JSON, or a key or a value is wrong.
         """
         return from_plain(cls, parse_json(text, "oracle"), "oracle")
 
@@ -75,13 +76,13 @@ def answer_key(found: Sequence[Found]) -> str:
 def consult(
     folder: Path, case: TrueCase, answers: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """Fit the true structure of a case, and replay the answers on held-out recordings.
+    """Fit the true effects of a case, and replay the answers on held-out recordings.
 
     Args:
-      folder: of the case.
+      folder: folder of the case.
       case: the truth.
-      answers: by method, the effects it found. An effect that the diagnosis' library
-        does not have, or not at that place, is left out.
+      answers: the effects found by each method. An effect that the diagnosis does not
+        know, or not at that place, is left out.
     """
     plant, traces, reference = read_case(folder)
     true = tuple(_placed(plant, e.name, e.place, e.parameters) for e in case.effects)
@@ -112,7 +113,7 @@ def _values(found: Found) -> dict[str, float]:
 def _placed(
     plant: Plant, name: str, place: str, values: Mapping[str, float]
 ) -> PlacedEffect:
-    """The effect with its values within their bounds, typical ones where not given."""
+    """An effect with values clipped to bounds; typical values for missing ones."""
     return PlacedEffect(
         name,
         place,
@@ -124,7 +125,7 @@ def _placed(
 
 
 def _neutral(plant: Plant, placed: PlacedEffect) -> dict[str, float | None]:
-    """Values at which the effect does nothing, by parameter; None where infinite."""
+    """Values at which an effect does nothing, by parameter; None for infinity."""
     kind = effect(placed.name)
     names = [one.name for one in kind.parameters(plant, placed.place)]
     values = kind.neutral_values(plant, placed)

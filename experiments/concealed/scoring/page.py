@@ -1,4 +1,4 @@
-"""The score of a set of concealed cases as a page of Markdown and as a table."""
+"""The score of a set of concealed cases as a report page and as a table."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ docs/concealed.md.
 
 @dataclass(frozen=True)
 class Goal:
-    """A figure of the score, and the range that it should lie in.
+    """A figure of the score, and the range in which it should lie.
 
     Attributes:
-      title: of the figure, in plain words.
-      path: keys that lead to it in score.json.
-      low: the least value that is good enough; None without a lower bound.
-      high: the largest value that is good enough; None without an upper bound.
+      title: title of the figure in plain words.
+      path: keys that lead to the figure in score.json.
+      low: smallest value that meets the goal; None without a lower bound.
+      high: largest value that meets the goal; None without an upper bound.
     """
 
     title: str
@@ -41,7 +41,7 @@ class Goal:
         return dict(found)
 
     def holds(self, figures: Mapping[str, Any]) -> bool | None:
-        """Whether the figure is good enough; None where nothing was counted."""
+        """Whether the figure meets the goal; None if nothing was counted."""
         value = self.of(figures)["value"]
         if value is None:
             return None
@@ -50,7 +50,7 @@ class Goal:
 
     @property
     def asked(self) -> str:
-        """The goal in words, such as "at least 0.9"; empty without bounds."""
+        """The goal in words, such as "at least 0.9"; "" without bounds."""
         if self.low is not None and self.high is not None:
             return f"{self.low:.0%} to {self.high:.0%}"
         if self.low is not None:
@@ -81,8 +81,8 @@ GOALS = (
     Goal("not excited, and said so", ("unexcited_right",)),
     Goal("calibration error (ECE)", ("ece",), high=0.10),
 )
-"""The figures on the page, with the goals of the diagnosis. A control's goal is to
-close less than half of the error that the diagnosis closes."""
+"""The figures on the page, with the goals of the diagnosis. The goal of a control is to
+remove less than half of the error that the diagnosis removes."""
 
 
 def text_of(figure: Mapping[str, Any], with_interval: bool = True) -> str:
@@ -126,7 +126,7 @@ def _asked(goal: Goal, score: Mapping[str, Any]) -> str:
 
 
 def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
-    """Whether a goal is met; None where there is none, or nothing was counted."""
+    """Whether a goal is met; None if it has no bounds, or nothing was counted."""
     if _is_control(goal):
         half, value = _half(score), goal.of(score)["value"]
         return None if half is None or value is None else bool(value < half)
@@ -134,11 +134,11 @@ def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
 
 
 def score_report(score: Mapping[str, Any], figure: str) -> Report:
-    """The page of a score.
+    """Make the report page of a score.
 
     Args:
       score: the contents of score.json.
-      figure: name of the picture's file.
+      figure: file name of the picture.
     """
     body = markdown_table(*score_rows(score))
     body += ["", f"![Accuracy by level, and calibration]({figure})", "", NOTES.strip()]

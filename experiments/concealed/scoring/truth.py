@@ -23,7 +23,7 @@ class TrueCase:
     """The truth of one case.
 
     Attributes:
-      name: such as "case_000".
+      name: name of the case, such as "case_000".
       plant: name of the robot model, such as "so101".
       engine: "mujoco" or "bullet", which made the recordings.
       kind: "single", "pair" or "triple" (number of hidden effects), "none", "outside"
@@ -46,10 +46,11 @@ class _SealedCase:
     Attributes:
       plant: name of the robot model.
       engine: "mujoco" or "bullet".
-      kind: of the case.
+      kind: kind of the case, such as "single".
       effects: the hidden effects with their parameters.
-      size: how easy they are to see, from 0 to 1; None where nothing is hidden.
-      held: joints that never move.
+      size: how easy the effects are to see: 1 easiest, 0 hard, below 0 even harder;
+        None if nothing is hidden.
+      held: names of the joints that never move.
     """
 
     plant: str
@@ -60,7 +61,7 @@ class _SealedCase:
     held: tuple[str, ...] = ()
 
     def named(self, name: str) -> TrueCase:
-        """The case with its name, for scoring."""
+        """Make a `TrueCase` with this name."""
         return TrueCase(name, self.plant, self.engine, self.kind, self.effects)
 
 
@@ -77,9 +78,9 @@ class Truth:
     """The truth of a set of cases.
 
     Attributes:
-      seed: from which the cases were drawn.
+      seed: seed of the random numbers with which the cases were drawn.
       sha256: hash of the sealed file, as it was printed when the cases were made.
-      cases: in the order of their numbers.
+      cases: all cases, in the order of their numbers.
     """
 
     seed: int
@@ -91,7 +92,7 @@ def read_truth(folder: Path) -> Truth:
     """Open the sealed file of a set of cases.
 
     Args:
-      folder: of the set.
+      folder: folder of the set.
 
     Raises:
       RunFolderError: the file is missing, has changed since it was sealed, or cannot be
@@ -123,11 +124,11 @@ def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
     """The verdicts in a folder, by the names of the cases that have one.
 
     Args:
-      folder: of the verdicts.
-      names: of the cases to look for.
+      folder: folder of the verdicts.
+      names: names of the cases to look for.
 
     Raises:
-      RunFolderError: the folder is not there, or a verdict in it cannot be read.
+      RunFolderError: the folder does not exist, or a verdict in it cannot be read.
     """
     if not folder.is_dir():
         raise RunFolderError(f"{folder} is missing: run groundwalk concealed run first")
@@ -147,8 +148,8 @@ def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Ve
     """The verdicts of each baseline that answered, by baseline and case.
 
     Args:
-      folder: of the set.
-      names: of the cases to look for.
+      folder: folder of the set.
+      names: names of the cases to look for.
     """
     parent = folder / BASELINE_ANSWERS
     found = sorted(path for path in parent.glob("*") if path.is_dir())
