@@ -69,10 +69,7 @@ def coverage(residuals: FloatArray, levels: Sequence[float]) -> FloatArray:
 
     Nine in ten residuals of a calibrated model lie within the interval of level 0.9,
     and fewer of an over-confident one. Heavy tails show only at the high levels.
-
-    Args:
-      residuals: (N, d) standardised.
-      levels: probabilities of the intervals, between 0 and 1.
+    Residuals (N, d) are standardised; levels are probabilities between 0 and 1.
     """
     bounds = [NormalDist().inv_cdf((1 + level) / 2) for level in levels]
     return np.array([(np.abs(residuals) <= bound).mean(axis=0) for bound in bounds])
@@ -95,10 +92,7 @@ def lagged_pairs(
 
 
 def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> FloatArray:
-    """(lags, d) correlation of residuals (N, d) with those 1 ... `lags` ticks before.
-
-    Only rows with the same number in `episode` (N,) are paired.
-    """
+    """(lags, d) correlation of residuals (N, d) with those 1 ... `lags` ticks ago."""
     off = residuals - residuals.mean(axis=0)
     rows = []
     for lag in range(1, lags + 1):

@@ -79,12 +79,7 @@ class NoiseStream:
     """
 
     def __init__(self, law: NoiseLaw, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode.
-
-        Args:
-          law: distribution of the noise of each robot.
-          seeds: n seeds, one for each robot.
-        """
+        """Start an episode of n robots, each with its own seed."""
         self._law = law
         self._generators = [np.random.default_rng(seed) for seed in seeds]
         self._member = np.array([g.random() for g in self._generators])
@@ -123,10 +118,6 @@ def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
     """A child seed for one use; the same parent and number always give the same child.
 
     `SeedSequence.spawn` changes its parent, and so gives another child at each call.
-
-    Args:
-      seed: the parent, which is not changed.
-      use: number of the use, 0 or more.
 
     Example:
       >>> child_of(np.random.SeedSequence(1), 2).spawn_key

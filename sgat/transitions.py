@@ -18,8 +18,8 @@ class Transitions:
     histories, which models see but need not predict.
 
     Attributes:
-      state: (N, s).
-      action: (N, a).
+      state: (N, s) states before the actions.
+      action: (N, a) actions.
       next_state: (N, p) with p <= s, the state after the action. At an episode's end it
         is the true last state, never the first state of the next episode.
       episode: (N,) number of the episode; its rows are consecutive in time.

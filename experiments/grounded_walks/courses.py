@@ -113,7 +113,7 @@ def world_at(
     grounds: Sequence[Heightfield],
     seeds: Sequence[np.random.SeedSequence],
 ) -> World:
-    """A world with one robot on each of n grounds; n seeds of the sensors' noise."""
+    """The world of a place, a robot on each of n grounds, n seeds of sensor noise."""
     if isinstance(place, RealCourse):
         return worlds.make("real", description, grounds, seeds, place.options)
     return make_sim(description, grounds, seeds, place.options, place.correction)

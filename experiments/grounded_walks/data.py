@@ -16,10 +16,12 @@ from sgat.walks.walk_senses import leg_senses
 from sgat.walks.watched_world import WatchedWorld
 
 WALK = TrialRules(limit_s=7.5, start_spread_rad=0.01)
-"""A walk of 7.5 s, as in the SGAT paper; start poses vary by 0.01 rad per joint."""
+"""Rules of a walk of 7.5 s, as in the SGAT paper. Joint positions at the start vary by
+0.01 rad (standard deviation)."""
 
 ON_COURSE = TrialRules(limit_s=15.0, start_spread_rad=0.01)
-"""A walk of 15 s: the time that a course of 3 m takes."""
+"""Rules of a walk of 15 s, the time for a course of 3 m at 20 cm/s. Joint positions at
+the start vary by 0.01 rad (standard deviation)."""
 
 FLAT_TICKS = 300
 """Ticks (3 s) at the start of a real walk that a grounding does not learn from: the

@@ -46,7 +46,7 @@ class GroundedRater:
     rules: TrialRules = RATED
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """(n,) mean rewards [cm/s] of gaits (n, 16); see `Rater`."""
+        """(n,) mean rewards [cm/s] of gaits (n, 16), with randomness from a seed."""
         trials = walk_in_sim(self.sim, vectors, self.repeats, seed, self.rules)
         rewards = _reward_cm_s(trials, self.rules)
         return np.asarray(rewards.reshape(len(vectors), -1).mean(axis=1))
@@ -67,7 +67,7 @@ class RandomisedRater:
     friction: tuple[float, float] = (0.4, 1.0)
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """(n,) mean rewards [cm/s] of gaits (n, 16); see `Rater`."""
+        """(n,) mean rewards [cm/s] of gaits (n, 16), with randomness from a seed."""
         grounds = [terrain.make("flat", 0)] * len(vectors)
         rewards = []
         for child in seed.spawn(self.repeats):
@@ -99,7 +99,7 @@ class RealRater:
     course: RealCourse
 
     def __call__(self, vectors: FloatArray, seed: np.random.SeedSequence) -> FloatArray:
-        """(n,) rewards [cm/s] of gaits (n, 16); see `Rater`."""
+        """(n,) rewards [cm/s] of gaits (n, 16), with randomness from a seed."""
         grounds = self.course.grounds(seed.spawn(REAL_GROUNDS))
         trials = []
         for first in range(0, len(vectors), MOST_AT_ONCE):

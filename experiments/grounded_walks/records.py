@@ -28,7 +28,7 @@ class RealWalks(NamedTuple):
 
     Attributes:
       noted: transitions, without those on the flat ground around the start.
-      vectors: (n, 16) gaits that walked without exploration.
+      vectors: (n, 16) gaits that walked without noise on their commands.
       fell: (n,) whether each of these fell.
     """
 
@@ -46,7 +46,7 @@ class WalkRecords:
       sim: transitions of the flat sim.
       uneven: transitions of the sim on lumps of all sizes, with sensors as noisy as the
         real world's.
-      vectors: (n, 16) gaits of the real walks without exploration.
+      vectors: (n, 16) gaits of the real walks without noise on commands.
       fell: (n,) whether each of these fell.
     """
 

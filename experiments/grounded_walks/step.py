@@ -95,5 +95,5 @@ class GroundingStep:
         if uneven:
             lumps_m = LUMPS_MARGIN * self.models.lumps_m
             sim = replace(sim, place=self._places.sim(lumps_m, SHORT_START_M))
-        # Where lumps make a robot fall, a longer walk shows more.
+        # On lumps, a longer walk shows more of the falls.
         return GroundedRater(sim, repeats, ON_COURSE if uneven else RATED)

@@ -123,7 +123,7 @@ class TransferNao(RunOptions):
 
     @property
     def effort(self) -> Effort:
-        """How much is walked and searched."""
+        """The numbers of walks and the sizes of searches."""
         return Effort(
             self.trials,
             self.repeats,

@@ -109,10 +109,8 @@ def solve(
 ) -> list[dict[str, Any]]:
     """The best action in the sim, in both grounded sims and in the real world.
 
-    Args:
-      toy: the sim and the real world.
-      episodes: number of random real transitions that estimate a forward model.
-      generator: draws these transitions.
+    Forward models are the exact one, and one that is estimated from as many random real
+    transitions as `episodes` says.
     """
     anything = np.zeros(toy.sim.states, np.intp)
     seen = roll_out(toy.real, anything, episodes, generator, exploration=1.0).counts

@@ -59,8 +59,8 @@ class WalkEnv(Environment):
 
     ## Reward
 
-    Forward progress in cm over `limit_s`, less 15 at a fall: a whole episode is worth
-    `experiments.walking.trials.reward_cm_s`, in cm/s.
+    Forward progress [cm] divided by `limit_s` [s], minus 15 for a fall; the sum over an
+    episode is `experiments.walking.trials.reward_cm_s` [cm/s].
 
     ## Start
 

@@ -24,14 +24,7 @@ class WalkEpisode:
     def __init__(
         self, world: World, gait: Gait, rules: TrialRules, seed: np.random.SeedSequence
     ) -> None:
-        """Put the robot on its ground, ready to walk.
-
-        Args:
-          world: a world with one robot.
-          gait: gait with which the robot walks.
-          rules: when the trial is over.
-          seed: seed of the start pose, if poses vary.
-        """
+        """Put the world's only robot on its ground; the seed is that of its pose."""
         self._world, self._rules = world, rules
         self._engine = WalkEngine(biped(world.description), [gait], TICK_S)
         pose_rad = start_pose(self._engine, rules, [seed])
@@ -49,7 +42,7 @@ class WalkEpisode:
             held within the joints' ranges. The engine does not see it.
         """
         low, high = self._world.description.joint_range_rad.T
-        # the engine's own commands may be past a range's end by the last bit
+        # the engine's own commands may be beyond a joint's range by rounding
         moved_rad = np.clip(self.command_rad + added_rad, low, high)
         given_rad = np.where(added_rad == 0, self.command_rad, moved_rad)
         self.observation = self._world.step(given_rad[None])

@@ -37,7 +37,7 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
         """Wrap an environment.
 
         Args:
-          env: with Box actions and Box observations of one axis each.
+          env: environment with Box actions and Box observations of one axis each.
           transformer: changes the actions. No other environment may use it; an
             environment that is made again from its `spec` gets a copy.
           reward_of: corrects the reward. If None, the reward is the environment's own,

@@ -13,8 +13,8 @@ from sgat.transitions import Transitions
 _ROUNDS = 3
 """Gauss-Newton steps to the wanted mean; three are enough for smooth networks."""
 _FREEDOM = 10.0
-"""Weak prior on the change of an action: its standard deviation, in those of the
-training actions. Components that no next state depends on stay as the policy's."""
+"""Standard deviation of a weak prior on the change of an action, in those of the
+training actions. Components on which no next state depends stay as the policy's."""
 _FINEST = 1e-4
 """Errors of a next state below this share of its standard deviation do not count, which
 keeps the matrices of weights invertible."""
@@ -117,10 +117,7 @@ class DistributionalInverse:
     def _pull(
         self, state: FloatArray, action: FloatArray, precision: FloatArray
     ) -> FloatArray:
-        """(n, a, p) change of the action that corrects an error of the next state by 1.
-
-        Errors (p) are weighted by `precision` (n, p, p).
-        """
+        """(n, a, p) change of the action per error of the next state to correct."""
         effect = self.sim.action_effect(state, action)
         weighted = effect.mT @ precision
         free = np.diag((_FREEDOM * self.sim.action_scale(action.shape[1])) ** -2.0)

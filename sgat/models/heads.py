@@ -23,9 +23,9 @@ Parts: TypeAlias = tuple[Any, ...]
 LOG_VARIANCE = (-7.0, 4.0)
 """Bounds of a log-variance in scaled units: standard deviations from 0.03 to 7.
 
-Without bounds, a network can predict any spread away from its data. With a lower bound,
-nearly singular covariances are so stiff that large variances are learned badly: with
--10, the standard deviation of noise on a single action was learned a third too large.
+Without bounds, a network can predict any spread away from its data. With a lower least
+variance, nearly singular covariances make training so stiff that large variances are
+learned badly: with -10, the noise on a single action was learned a third too large.
 """
 
 
@@ -49,10 +49,7 @@ class Head(ABC):
 
     @abstractmethod
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """A distribution's parameters from raw outputs (..., width).
-
-        `xp` is the module of `raw`: numpy or torch.
-        """
+        """Parameters from raw outputs (..., width); `xp` is their module, as numpy."""
 
     @abstractmethod
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:
@@ -79,12 +76,9 @@ class Head(ABC):
 
     @abstractmethod
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) samples made of standard noise.
+        """(n, d) samples of n distributions, made of standardised noise z (n, d).
 
-        Args:
-          parts: parameters of n distributions, as NumPy arrays.
-          z: (n, d) standardised noise.
-          choice: (n,) uniform numbers from 0 to 1 that choose a mixture's component.
+        `choice` (n,), uniform from 0 to 1, chooses the components of mixtures.
         """
 
     @abstractmethod
@@ -150,7 +144,7 @@ class FullHead(Head):
 
     @property
     def width(self) -> int:
-        """Number of raw outputs: means, log-variances for L's diagonal, L's others."""
+        """Number of raw outputs: means, log-variances (diagonal of L), rest of L."""
         return self.dimensions * (self.dimensions + 3) // 2
 
     def parts(self, raw: Any, xp: Any) -> Parts:
@@ -186,8 +180,7 @@ class LowRankHead(Head):
     """A normal distribution with the covariance U U^T + D, where D is diagonal.
 
     Attributes:
-      rank: number of columns of U, each a disturbance that moves all dimensions at
-        once.
+      rank: number of columns of U; each is a disturbance that moves all dimensions.
     """
 
     rank: int = 2

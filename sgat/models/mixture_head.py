@@ -32,7 +32,7 @@ class MixtureHead(Head):
         return self.components * (1 + 2 * self.dimensions)
 
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Weights (..., k), means and deviations (..., k, d each), from raw outputs."""
+        """Weights (..., k), means and standard deviations (..., k, d) of components."""
         k, d = self.components, self.dimensions
         logits = _LARGEST_LOGIT * xp.tanh(raw[..., :k] / _LARGEST_LOGIT)
         weights = xp.exp(logits)

@@ -22,13 +22,9 @@ _FORMAT = 1
 def write_model(
     path: Path, kind: str, config: NetworkConfig, network: ScaledNetwork
 ) -> None:
-    """Write one model into one file.
+    """Write a fitted network and its settings; the folder is made if it does not exist.
 
-    Args:
-      path: the file; its folder is made if it does not exist.
-      kind: name of the kind of model, which `read_model` checks.
-      config: settings with which the network was made.
-      network: the fitted network.
+    `kind` names the kind of model, which `read_model` checks.
     """
     header = {"format": _FORMAT, "kind": kind, "config": asdict(config)}
     content = io.BytesIO()

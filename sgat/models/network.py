@@ -39,7 +39,7 @@ class Network:
         return int(self.weights[-1].shape[2])
 
     def member(self, which: int, x: FloatArray) -> Float32Array:
-        """(n, outputs) of network number `which` for inputs x (n, inputs)."""
+        """(n, outputs) raw outputs of network number `which` for x (n, inputs)."""
         values: Any = x.astype(np.float32)
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             values = np.tanh(values @ weight[which] + bias[which])
@@ -47,10 +47,7 @@ class Network:
         return last
 
     def slope(self, which: int, x: FloatArray, inputs: int) -> Float32Array:
-        """(n, outputs, inputs) derivative of network number `which` at x.
-
-        It is taken by the last `inputs` columns of x (n, all inputs).
-        """
+        """(n, outputs, inputs) derivative of one network by the last columns of x."""
         values: Any = x.astype(np.float32)
         slope: Any = np.eye(self.inputs, dtype=np.float32)[-inputs:]
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
@@ -60,7 +57,7 @@ class Network:
         return last
 
     def mixed(self, x: FloatArray, member: IntArray) -> Float32Array:
-        """(n, outputs) for x (n, inputs); `member` (n,) is the network of each row."""
+        """(n, outputs) raw outputs for x (n, inputs) of the networks `member` (n,)."""
         if self.members == 1:
             return self.member(0, x)
         result = np.empty((len(x), self.outputs), np.float32)

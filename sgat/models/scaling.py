@@ -33,7 +33,7 @@ class Scaling:
 
     @classmethod
     def of(cls, values: FloatArray) -> Self:
-        """The scaling of (N, d) values."""
+        """The scaling of the columns of values (N, d)."""
         spread = values.std(axis=0)
         varies = spread > _CONSTANT * np.abs(values).max(axis=0)
         mean = np.where(varies, values.mean(axis=0), values[0])

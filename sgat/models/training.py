@@ -113,10 +113,7 @@ def one_thread() -> Iterator[None]:
 def _first_parameters(
     sizes: list[int], members: int, generator: torch.Generator
 ) -> list[Tensor]:
-    """Random weights (Glorot and Bengio 2010, eq. 16) and zero biases of all layers.
-
-    The list alternates: weight, bias, weight, bias ...; `sizes` are the layers' widths.
-    """
+    """Weight, bias, weight ... of the layers, by Glorot and Bengio 2010, eq. 16."""
     parameters = []
     for inputs, outputs in itertools.pairwise(sizes):
         bound = (6 / (inputs + outputs)) ** 0.5
@@ -128,10 +125,7 @@ def _first_parameters(
 
 
 def raw_outputs(parameters: Sequence[Tensor], x: Tensor) -> Tensor:
-    """(members, n, outputs) raw outputs of networks for x (n, inputs), with gradients.
-
-    Parameters alternate: weight, bias, weight, bias ...
-    """
+    """(members, n, outputs) outputs of networks for x (n, inputs), with gradients."""
     values = x.expand(len(parameters[0]), *x.shape)
     for weight, bias in zip(parameters[:-2:2], parameters[1:-2:2], strict=True):
         values = torch.tanh(torch.baddbmm(bias, values, weight))

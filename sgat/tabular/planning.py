@@ -26,8 +26,7 @@ def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray
 
     An action changes only if another one is better by more than rounding, so each round
     improves the policy and the search ends. Of equally good actions the first is taken.
-    Steps should cost something; otherwise never ending can be as good as reaching a
-    goal.
+    Steps should cost something; else never ending can be as good as reaching a goal.
 
     Args:
       mdp: the world to plan in.
@@ -73,11 +72,8 @@ def action_values(mdp: FiniteMdp, values: FloatArray) -> FloatArray:
 def expected_return(mdp: FiniteMdp, policy: IntArray, step_limit: int) -> float:
     """Exact expected sum of rewards of an episode from the start, undiscounted.
 
-    Args:
-      mdp: the world.
-      policy: (S,) actions.
-      step_limit: number of steps after which an episode is cut, so that the sum is
-        finite for policies that never end.
+    The policy holds the action in each state (S,). Episodes are cut after `step_limit`
+    steps, so that the sum is finite for policies that never end.
     """
     steps = _steps(mdp, policy)
     now = steps @ mdp.reward

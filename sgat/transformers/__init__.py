@@ -1,7 +1,7 @@
 """Action transformers, which change a sim's actions, and the groundings that make them.
 
-A grounding is a method, such as GAT or SGAT, that learns a transformer from data. A new
-one is one file in this folder; see `sgat.transformers.catalogue`.
+A grounding is a method, such as SGAT, that learns a transformer from data; a new one is
+one file in this folder. See `sgat.transformers.catalogue`.
 """
 
 from sgat.transformers.action_noise import ActionNoise

@@ -85,7 +85,7 @@ class ActionTransformer:
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(a,) least and largest action."""
+        """(a,) least and (a,) largest action, in the action's units."""
         return self._low, self._high
 
     @property

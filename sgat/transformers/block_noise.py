@@ -59,8 +59,7 @@ class BlockNoise:
 def _standardised(residuals: FloatArray, starts: IntArray, ticks: int) -> FloatArray:
     """(N, d) residuals whose mean is 0 and variance 1 when they are drawn in blocks.
 
-    Rows near either end of an episode are drawn less often, since fewer blocks contain
-    them; `starts` holds the first row of each block.
+    Fewer blocks contain the rows near either end of an episode.
     """
     edges = np.zeros(len(residuals) + 1)
     np.add.at(edges, starts, 1.0)

@@ -82,7 +82,7 @@ class DirectTransformer:
             `real`.
           tried: the sim's transitions that `sim` was fitted to; their states have only
             the first columns of those of `real`.
-          seed: of the training.
+          seed: seed of the training.
         """
         rng = np.random.default_rng(seed)
         held_out = held_out_rows(real.episode, self.config.validation_share, rng)
@@ -105,7 +105,7 @@ class DirectTransformer:
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(a,) least and largest action."""
+        """(a,) least and (a,) largest action, in the action's units."""
         return self._low, self._high
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:

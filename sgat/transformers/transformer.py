@@ -22,10 +22,7 @@ class Transformer(Protocol):
         """Start an episode of n robots, each with its own seed."""
 
     def __call__(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, a) actions that the world is given, from a policy's actions (n, a).
-
-        `state` (n, s) holds the states of the robots.
-        """
+        """(n, a) actions for the world, from states (n, s) and asked actions (n, a)."""
 
 
 class KeptTransformer(Transformer, Protocol):

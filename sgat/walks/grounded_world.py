@@ -52,7 +52,7 @@ class GroundedWorld(WorldWrapper):
         senses = self._senses
         action = self._transformer(senses.state(), senses.action(command_rad))
         transformed_rad = senses.command(action, command_rad)
-        # The real world's past commands are those that the gait gave.
+        # In the data of the real world, too, past commands are those of the gait.
         senses.remember(command_rad)
         observation = self.world.step(transformed_rad)
         senses.observe(observation)

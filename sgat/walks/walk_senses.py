@@ -137,7 +137,7 @@ def tilted(
     accelerometer unless that is almost zero.
 
     Args:
-      up: (n, 3) unit vectors.
+      up: (n, 3) present estimates, which are unit vectors.
       rate_rad_s: (n, 3) gyroscope [rad/s].
       force_m_s2: (n, 3) accelerometer [m/s^2].
     """

@@ -14,16 +14,15 @@ EXPLORATION_MEMORY = 0.9
 ticks (0.1 s), long enough to move the torso."""
 
 SETTLING_TICKS = 5
-"""Ticks at the start that are not recorded. A state contains the commands of the ticks
-before, and there are none yet."""
+"""Number of ticks at the start that are not recorded: a state contains the commands of
+the ticks before, of which the first ticks have too few."""
 
 
 class WatchedWorld(WorldWrapper):
-    """Records transitions of the world inside, with noise on the commands if asked.
+    """Records transitions of the world that it wraps, with noise on commands if asked.
 
-    The walks of a gait alone hardly show the effect of an action, because a gait always
-    gives the same action at the same phase of a step. Noise that lasts for several
-    ticks shows the effect.
+    The walks of a gait alone hardly show the effect of an action, because each action
+    comes at its own phase of the step. Noise that lasts for several ticks shows it.
 
     Example:
       >>> world = WatchedWorld(sim, leg_senses(robots.get("nao")))

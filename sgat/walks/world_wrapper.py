@@ -6,9 +6,7 @@ from worlds import End, Observation, Truth, World, WorldOptions
 
 
 class WorldWrapper:
-    """A world that passes every call on to another one, the world inside.
-
-    Subclasses override the calls that they change.
+    """A world that passes every call on to the world inside; subclasses change some.
 
     Example:
       See `GroundedWorld`.

@@ -30,9 +30,8 @@ def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":
 
     The paths are those at the noise value where the two methods differ most.
 
-    Args:
-      rows: results, one entry for each noise value; at least one.
-      grid: number of rows and of columns of the grid world.
+    `rows` has at least one entry of results, one for each noise value; `grid` is the
+    number of rows and of columns of the grid world.
     """
     from matplotlib.figure import Figure
 

@@ -56,14 +56,9 @@ def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
 
 
 def intended_path(sim: FiniteMdp, policy: IntArray) -> list[int]:
-    """The states that a policy visits if no move is random.
+    """The states that a policy (S,) visits in a deterministic world of S states.
 
-    Args:
-      sim: a deterministic world with S states.
-      policy: (S,) action in each state.
-
-    Returns:
-      States from the start to an end, or to the first state that is visited twice.
+    They lead from the start to an end, or to the first state that is visited twice.
     """
     path = [sim.start]
     while not sim.ends[path[-1]] and path[-1] not in path[:-1]:

@@ -68,11 +68,7 @@ def write_cliff_page(
 ) -> None:
     """Write `result.md` and `report.html`; the figure is in the folder already.
 
-    Args:
-      folder: the run's folder.
-      study: settings with which the methods were compared.
-      rows: results, one entry for each noise value.
-      claims: the SGAT paper's claims, checked.
+    `rows` has one entry of results for each noise value.
     """
     cut = sum(method["cut"] for row in rows for method in row["methods"].values())
     notes = NOTES.format(

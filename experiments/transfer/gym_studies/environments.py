@@ -47,10 +47,7 @@ class Domain:
         return self._behind(transformer, self._plain())
 
     def noisy_sim(self, noise: float) -> Environment:
-        """The sim with Gaussian noise on its actions.
-
-        Its standard deviation is a fraction of half of the action's range.
-        """
+        """The sim with noise on actions, in fractions of half of the action's range."""
         return self._behind(self._noise(noise), self._plain())
 
     def real(self, setting: str, noise: float) -> Environment:
@@ -75,7 +72,7 @@ class Domain:
         return space.low.astype(float), space.high.astype(float)
 
     def _plain(self) -> Environment:
-        quiet_mujoco()  # of attributes that MuJoCo 4 calls deprecated
+        quiet_mujoco()  # no warnings about attributes that MuJoCo 4 deprecates
         return gym.make(self.environment, disable_env_checker=True)
 
     def _noise(self, noise: float) -> ActionNoise:
@@ -100,7 +97,7 @@ class Domain:
 
 
 INVERTED_PENDULUM = Domain("inverted-pendulum", "InvertedPendulum-v5", 10.0, ("pole",))
-"""The paper's real pendulum: its pole weighs ten times as much (50.186 kg)."""
+"""The SGAT paper's real pendulum: its pole weighs ten times as much (50.186 kg)."""
 
 HALF_CHEETAH = Domain(
     "half-cheetah",
@@ -109,4 +106,4 @@ HALF_CHEETAH = Domain(
     control_cost=0.1,
     settings=(NOISY_SIM, NOISY_REAL),
 )
-"""The paper's real cheetah weighs 43 % more: 20 instead of 14 kg."""
+"""The SGAT paper's real cheetah weighs 43 % more: 20 instead of 14 kg."""

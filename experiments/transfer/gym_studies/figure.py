@@ -26,8 +26,7 @@ GROUP_WIDTH = 0.8
 def returns_figure(rows: Sequence[Row]) -> "Figure":
     """Bars for the methods over noise, dashed lines for training in the real world.
 
-    Args:
-      rows: results from `rows_of`, at least one; each setting has its own axes.
+    There is at least one row of results; each setting has its own axes.
     """
     from matplotlib.figure import Figure
 

@@ -154,11 +154,8 @@ def noise_ratio(
     happens if one noise moves several dimensions, but the model samples each dimension
     independently: the inverse model then averages the differences out.
 
-    Args:
-      transformer: a transformer that adds noise.
-      inverse: its inverse model.
-      real: real transitions that the models have not seen.
-      seed: seed of the transformer's noise.
+    `inverse` is the transformer's inverse model, `real` holds real transitions that the
+    models have not seen, and the seed is that of the transformer's noise.
     """
     n = min(LOOKED_AT, real.n)
     state, asked = real.state[:n], real.action[:n]

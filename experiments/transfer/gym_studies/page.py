@@ -53,12 +53,8 @@ def write_gym_page(
 ) -> None:
     """Write `result.md` and `report.html` into the run's folder.
 
-    Args:
-      folder: the run's folder; the figure is in it already.
-      title: the study's question.
-      figure: file name of the figure.
-      what: name of the size, and the study.
-      result: rows and claims, as in `result.json`.
+    `figure` is the name of a file that is in the folder already, `what` the name of the
+    study's size and the study, `result` the rows and claims as in `result.json`.
     """
     size, study = what
     rows = result["rows"]

@@ -138,16 +138,10 @@ class Job:
 
 
 def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
-    """Train a policy that other jobs start from, or compute a method's result (cell).
+    """Train a policy that other jobs start from, or compute a method's result.
 
-    Args:
-      study: the study that the job is a part of.
-      folder: the run's folder, with the policies of earlier stages.
-      job: the job to do.
-
-    Returns:
-      A cell, which the caller writes into the job's file; None if the job was to train
-      a policy, which is in its file already.
+    The run's folder holds the policies of earlier stages. A result is returned for the
+    caller to write; a policy is in its file already, so None is returned.
     """
     with one_thread():
         if job.setting:
@@ -186,7 +180,7 @@ def _cell(study: GymStudy, folder: Path, job: Job) -> Cell:
 
 
 def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, float]]:
-    """The policy that a job's method finds, and the cost and quality of the way."""
+    """The policy that a job's method finds, and numbers on its data and models."""
     start = folder / Job(job.k, NONE).file
     if job.method == NONE:
         return load(start), {"real_steps": 0}

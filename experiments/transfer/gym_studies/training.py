@@ -89,7 +89,7 @@ def train(
       make: makes a new environment.
       config: parameters of TRPO.
       timesteps: steps in all environments together, rounded up to whole batches.
-      seed: of everything random.
+      seed: seed of everything random.
       start: file of the policy to start from; None for random weights.
     """
     from sb3_contrib import TRPO
@@ -112,7 +112,7 @@ def save(model: "TRPO", path: Path) -> None:
 
 
 def load(path: Path) -> "TRPO":
-    """Read a file that `save` wrote; it may run code in it, so trust its source."""
+    """Read a policy that `save` wrote; a file can run code, so use your own only."""
     from sb3_contrib import TRPO
 
     return TRPO.load(path, device="cpu")
@@ -140,12 +140,8 @@ def evaluate(
 ) -> Trials:
     """Try a policy in episodes that run side by side.
 
-    Args:
-      model: the policy.
-      make: makes a new environment.
-      episodes: number of episodes.
-      seed: of the environments and of the policy's random actions.
-      deterministic: whether the policy takes its mean action instead of a random one.
+    The seed is that of the environments and of the policy's random actions; if
+    `deterministic`, the policy takes its mean action instead.
     """
     from stable_baselines3.common.utils import set_random_seed
 
@@ -172,15 +168,9 @@ def exploring(
     exploration: float,
     rng: np.random.Generator,
 ) -> Policy:
-    """The policy, with a share of its actions replaced by uniformly random ones.
+    """A policy whose own random actions are partly replaced by uniformly random ones.
 
-    The policy's own actions are random as well.
-
-    Args:
-      model: the policy.
-      space: the actions' space, from which the random ones are drawn.
-      exploration: share of actions that are replaced, from 0 to 1.
-      rng: decides which actions are replaced, and by which.
+    `exploration` is the share that is replaced, from 0 to 1.
     """
     space.seed(int(rng.integers(2**31)))
 

@@ -62,9 +62,9 @@ def measures_of(
     """Measure the models of the groundings `MEASURED` on held-out real walks.
 
     Args:
-      models: learned from other walks.
+      models: models learned from other walks.
       unseen: transitions of real walks that the models have not seen.
-      seed: of the transformers' noise.
+      seed: seed of the transformers' noise.
 
     Returns:
       For each grounding the attributes of `GroundingReport`, and the mean and standard

@@ -83,11 +83,8 @@ def table_of(rows: Sequence[Row]) -> list[list[str]]:
 def correlation_interval(r: float, pairs: int) -> tuple[float, float]:
     """95 % interval of a correlation (Fisher 1921).
 
-    atanh(r) is nearly normal with the standard deviation 1 / sqrt(pairs - 3).
-
-    Args:
-      r: the observed correlation.
-      pairs: number of pairs that it was computed from.
+    If the correlation r is computed from a number of pairs, atanh(r) is nearly normal
+    with the standard deviation 1 / sqrt(pairs - 3).
     """
     if pairs <= 3:
         return -1.0, 1.0
@@ -99,13 +96,9 @@ def correlation_interval(r: float, pairs: int) -> tuple[float, float]:
 def write_falls_page(
     folder: RunFolder, rows: Sequence[Row], state: Mapping[str, Any], trials: int
 ) -> None:
-    """Write `result.md` and `report.html`.
+    """Write `result.md` and `report.html` of the study of falls into the run's folder.
 
-    Args:
-      folder: the run's folder.
-      rows: numbers of each grounding, from `prediction_rows`.
-      state: the results that the rows were made from.
-      trials: number of real walks of each gait.
+    `prediction_rows` made the rows from `state`; `trials` are real walks of each gait.
     """
     count = len(state["real"]["fall_rate"])
     by_name = {row["grounding"]: row["fall_rate"]["correlation"] or 0.0 for row in rows}

@@ -217,7 +217,7 @@ def _hidden(course: RealCourse, cells: Sequence[Cell]) -> list[str]:
 
 
 def answer_of(cells: Sequence[Cell]) -> list[str]:
-    """Sentences: the best gait, the one tuned in the plain sim, is the goal reached."""
+    """Sentences on the best gait, the plain sim's, and whether the goal is reached."""
     best = max(cells, key=worth_cm_s)
     step = f", step {best['step']}" if best["step"] else ""
     good = "It reaches" if _is_good(best) else "It does not reach"

@@ -123,13 +123,9 @@ class NaoStudy:
     def __init__(
         self, folder: RunFolder, effort: Effort, places: Places, seed: int
     ) -> None:
-        """Start a study, or continue the one that the folder holds.
+        """Start a study, or continue the one that the run's folder holds.
 
-        Args:
-          folder: the run's folder.
-          effort: numbers of walks and sizes of searches.
-          places: the real course, and the diagnosis that corrects the sim.
-          seed: number from which all random numbers follow.
+        `places` has the real course, and the diagnosis that corrects the sim.
         """
         self._folder, self._effort, self._entropy = folder, effort, seed
         self._diagnosed, self._plain = places, Places(places.real)
