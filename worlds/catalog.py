@@ -15,8 +15,7 @@ from worlds.sim.world import SimWorld
 from worlds.world import World, WorldOptions
 
 REAL_LATENCY_S = 0.036
-"""Time from a command to the measured motion on a real NAO [s]: three cycles of 12 ms,
-as the RoboCup team B-Human reports."""
+"""Time from command to measured motion on a NAO [s]: 3 cycles of 12 ms (B-Human)."""
 
 
 @dataclass(frozen=True)

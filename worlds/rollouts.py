@@ -94,7 +94,7 @@ class RolloutWorld(ABC):
     def step(self, command_rad: FloatArray) -> Observation:
         """Advance the active robots by one tick of 10 ms; see `World.step`."""
         targets = self._targets(command_rad)
-        # MuJoCo would take NaN for zero.
+        # MuJoCo would treat a NaN command as zero.
         self._end(End.DIVERGED, ~_are_positions(targets))
         schedule = list(self._delay.tick(targets))
         if self.active.any():

@@ -20,8 +20,7 @@ class SensorNoise:
 
     Attributes:
       gyroscope_rad_s: standard deviation of white noise about x, y, z.
-      gyroscope_bias_rad_s: standard deviation of an offset that is constant in a
-        rollout.
+      gyroscope_bias_rad_s: standard deviation of an offset, constant in a rollout.
       accelerometer_m_s2: standard deviation of white noise along x, y, z.
       joint_quantum_rad: resolution of the joint encoders; 0 for no rounding.
       foot_force_n: standard deviation of white noise of each foot sensor.

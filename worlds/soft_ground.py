@@ -35,11 +35,9 @@ sticking foot creeps at tangential force / damping; at 100 a hundredth as fast."
 class FootSpring:
     """Stiffness and damping of soft ground under one whole foot.
 
-    A flat foot that has sunk in by r feels the normal force K r + B r'.
-
     Attributes:
-      stiffness_n_m: K [N/m].
-      damping_n_s_m: B [N s/m].
+      stiffness_n_m: K in the normal force K r + B r' on a foot that has sunk in by r.
+      damping_n_s_m: B in the same formula.
     """
 
     stiffness_n_m: float

@@ -44,11 +44,9 @@ class WorldOptions:
       latency_s: time until a command takes effect; a multiple of `timestep_s`.
       noise: noise of the sensors; None for perfect sensors.
       friction: coefficient between sole and ground.
-      sinkage_m: how deep the ground gives way under the robot at rest on one foot; 0
-        for hard ground.
+      sinkage_m: how deep a robot at rest on one foot sinks in; 0 for hard ground.
       fixed_base: whether the torso is held in the air where it started.
-      hidden: effects (such as backlash) that only the real world has: the sim refuses
-        them.
+      hidden: effects, such as backlash, for the real world only; a sim refuses them.
       threads: threads of the sim, or processes of the real world; 0 for one per core.
 
     Example:

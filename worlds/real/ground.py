@@ -52,7 +52,7 @@ def load_ground(client_id: int, field: Heightfield) -> int:
         heightfieldData=turned_m.ravel().tolist(),
         numHeightfieldRows=turned_m.shape[1],
         numHeightfieldColumns=turned_m.shape[0],
-        # Without it feet stumble over the edges between coplanar triangles.
+        # Without this flag feet stumble over edges between coplanar triangles.
         flags=pybullet.GEOM_CONCAVE_INTERNAL_EDGE,
         physicsClientId=client_id,
     )

@@ -57,14 +57,9 @@ class HiddenRobot:
         return self._state(self._world.sense())
 
     def step(self, schedule: Sequence[tuple[FloatArray, int]]) -> BulletState | None:
-        """Advance by one tick.
+        """Advance by one tick; the state is None if the physics diverged.
 
-        Args:
-          schedule: commands (joints,) [rad], each with the number of physics steps of
-            `WorldOptions.timestep_s` for which it acts.
-
-        Returns:
-          The state after the tick; None if the physics diverged.
+        The schedule holds commands (joints,) [rad], each with its number of time steps.
         """
         for command, steps in schedule:
             self._drive.send(command)

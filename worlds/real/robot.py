@@ -29,8 +29,7 @@ class BulletState:
       position_rad, velocity_rad_s: (joints,) state of the joints.
       gyroscope_rad_s: (3,) torso frame.
       accelerometer_m_s2: (3,) torso frame, mean over the last physics step.
-      foot_force_n: (8,) force on each foot sensor in the last physics step, left foot
-        first.
+      foot_force_n: (8,) foot sensor forces in the last physics step, left foot first.
     """
 
     base_pose: FloatArray

@@ -62,10 +62,9 @@ class ServoTwin:
         """(joints,) torques [N m] to apply over the next physics step.
 
         Args:
-          base_pose: (7,) torso position [m] and quaternion w, x, y, z; unused with a
-            fixed base.
+          base_pose: (7,) position [m], quaternion w, x, y, z; unused if base is fixed.
           base_velocity: (6,) linear [m/s] in the world frame, angular [rad/s] in the
-            torso frame; unused with a fixed base.
+            torso frame; unused if the base is fixed.
           position_rad: (joints,) joint positions.
           velocity_rad_s: (joints,) joint velocities.
           command_rad: (joints,) position targets.

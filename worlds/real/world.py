@@ -19,8 +19,7 @@ from worlds.sim.start_height import StartHeight
 from worlds.world import TICK_S, WorldOptions
 
 _PATIENCE_S = 5.0
-"""How long a worker process may take to end [s] before it is killed; it needs some
-milliseconds."""
+"""Time [s] for a worker process to end before it is killed; it needs milliseconds."""
 
 
 class RealWorld(RolloutWorld):
@@ -63,8 +62,8 @@ class RealWorld(RolloutWorld):
             there.close()
             self._connections.append(here)
             self.processes.append(process)
-        # Sent, not passed as arguments: `start` would hang if a process ended before
-        # it had read them.
+        # Sent, because `start` would hang with large arguments if a process ended
+        # before it had read them.
         self._send(
             [
                 (description, [self._grounds[i] for i in share], options)

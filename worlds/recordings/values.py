@@ -10,8 +10,7 @@ from groundwalk.errors import BadRecordingError
 from worlds.recordings.columns import ORIENTATION, SUPPORT, TIME, vector_columns
 
 UNIT_TOLERANCE = 1e-3
-"""Largest allowed |norm - 1| of a quaternion; components that were rounded to three
-decimals keep within it."""
+"""Largest allowed |norm - 1| of a quaternion; rounding to three decimals is allowed."""
 
 
 def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
@@ -99,9 +98,9 @@ def _check_increasing(time_s: FloatArray) -> None:
 
 
 def _check_unit(quaternion: FloatArray) -> None:
-    with np.errstate(over="ignore"):  # an infinite norm is refused all the same
+    with np.errstate(over="ignore"):  # an infinite norm is refused below
         norm = np.sqrt(np.sum(quaternion**2, axis=0))
-    # A norm of NaN is that of a quaternion with a missing part.
+    # A quaternion with a missing component has the norm NaN, which passes.
     _refuse(
         vector_columns(ORIENTATION)[0],
         np.abs(norm - 1.0) > UNIT_TOLERANCE,

@@ -22,7 +22,7 @@ class SearchWalk(NamedTuple):
 
     @property
     def fell(self) -> bool:
-        """Whether the robot fell; physics that blew up counts as a fall."""
+        """Whether the robot fell; diverged physics counts as a fall."""
         return self.scene.recording.metadata.end in FALLS
 
 

@@ -201,7 +201,7 @@ def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
     """
     size = np.array(ground.heights_m.shape[::-1])
     cells = (around_m - ground.origin_m) / ground.spacing_m
-    # At least one cell, even where no robot was on the ground.
+    # At least one cell, even if no robot was on the ground.
     first = np.clip(np.floor(cells[0]).astype(np.intp), 0, size - 2)
     last = np.clip(np.ceil(cells[1]).astype(np.intp), first + 1, size - 1)
     (column, row), (right, left) = first.tolist(), last.tolist()

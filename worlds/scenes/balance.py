@@ -87,10 +87,7 @@ def loaded_feet(scene: Scene) -> dict[str, BoolArray] | None:
 
 
 def _pressure(scene: Scene, poses: dict[str, LinkPoses]) -> FloatArray | None:
-    """(ticks, 3) centre of pressure [m]: sum(F_i p_i) / sum(F_i) over foot sensors i.
-
-    NaN where nearly no force is measured; None without force sensors.
-    """
+    """(ticks, 3) centre of pressure sum(F_i p_i) / sum(F_i) [m]; NaN if unloaded."""
     moment: FloatArray | float = 0.0
     force: FloatArray | float = 0.0
     for side in SIDES:
@@ -194,7 +191,7 @@ def _momenta(
         axes = poses[name].axes()
         own = inertial.mass_kg * _rate(place_m, time_s)
         momentum = momentum + own
-        # dR/dt R^T is the matrix of w x.
+        # dR/dt R^T is the cross product matrix of the angular velocity.
         spin = _rate(axes.reshape(-1, 9), time_s).reshape(-1, 3, 3) @ axes.mT
         turning = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
         inertia = axes @ inertial.inertia_kg_m2 @ axes.mT

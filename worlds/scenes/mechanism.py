@@ -17,12 +17,10 @@ _NAO_EXTENT_M = 0.5
 a NAO, which is 0.57 m tall; the scale of others is in proportion."""
 
 _LEAST_KG = 1e-9
-"""Least mass [kg] of a link in the description: masses must be above 0, and pictures
-need no true ones."""
+"""Least mass [kg] of a link: it must be above 0, and pictures need no true masses."""
 
 _THIN = 0.03
-"""Radius of the rod drawn for a link without shapes, as a share of the mechanism's
-largest extent."""
+"""Radius of the rod drawn for a link without shapes, as a share of the extent."""
 
 _NO_MOTOR = Motor(0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -42,10 +40,7 @@ def mechanism(model: "mujoco.MjModel", name: str) -> Description:
 
 
 class _Mechanism:
-    """A MuJoCo model with all joints at 0, and the links that are made from it.
-
-    In that pose all link frames of a description are parallel to the world frame.
-    """
+    """Makes links from a MuJoCo model with joints at 0, where frames are parallel."""
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         import mujoco
@@ -83,11 +78,7 @@ class _Mechanism:
         )
 
     def _geoms(self) -> list[tuple[int, FloatArray, float]]:
-        """Capsules around all geoms but planes.
-
-        Returns:
-          MuJoCo's body id, (2, 3) ends of the axis in the world [m], and radius [m].
-        """
+        """Capsules for geoms but planes: body id, axis ends (2, 3) and radius [m]."""
         import mujoco
 
         model, data, found = self._model, self._data, []

@@ -51,9 +51,7 @@ class LinkCapsules(NamedTuple):
 
 
 class SceneCamera:
-    """Takes pictures of a scene with a camera that follows the robot.
-
-    Its distance is scaled so that robots of all sizes look equally large.
+    """A camera that follows a scene's robot; robots of all sizes look equally large.
 
     Attributes:
       parts: capsules of the robot's links and soles.
@@ -182,7 +180,7 @@ def _sole(
     (x0, y0), (x1, y1) = outline_m.T, np.roll(outline_m, -1, axis=0).T
     with np.errstate(divide="ignore", invalid="ignore"):
         part = (x_m - x0) / (x1 - x0)
-    # Where each bar's line meets an edge of the outline, which is convex.
+    # Each bar's line meets two edges of the outline, which is convex.
     y_m = np.where((part >= 0) & (part <= 1), y0 + part * (y1 - y0), np.nan)
     sides = [
         np.hstack([x_m, pick(y_m, axis=1)[:, np.newaxis]])

@@ -59,7 +59,7 @@ def capsules(shapes: Sequence[Capsule], accent: Colour) -> Capsules:
     is_sphere = length == 0
     axis[is_sphere] = (0, 0, 1)
     x, y, z = axis.T / np.where(is_sphere, 1, length)
-    # From +z to an upward axis a: the turn about z x a by half the sum of both.
+    # The quaternion that turns +z into an upward axis a is (1 + z . a, z x a).
     turns = np.stack([-y, x, np.zeros_like(x), 1 + z], axis=1)
     return Capsules(
         lengths=length,
@@ -101,7 +101,7 @@ def sole_mesh(foot: Foot, colour: Colour) -> Mesh:
     outward = np.hstack([outline_m - outline_m.mean(axis=0), np.zeros((corners, 1))])
     outward /= np.linalg.norm(outward, axis=1, keepdims=True)
     down, up = np.tile([0.0, 0.0, -1.0], (corners, 1)), np.tile([0, 0, 1], (corners, 1))
-    # Four rings of vertices, because edges are sharp: below, above, around twice.
+    # Four rings of vertices, for sharp edges: lower face, upper face, two of the side.
     index = np.arange(corners)
     after = np.roll(index, -1)
     first = np.zeros(corners, np.intp)
