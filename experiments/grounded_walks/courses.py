@@ -148,5 +148,5 @@ class Places:
     def sim(
         self, lumps_m: float | tuple[float, ...] = 0.0, start_m: float = SHORT_START_M
     ) -> SimPlace:
-        """The sim, by the amplitude of its lumps and its flat start's radius, in m."""
+        """The sim with lumps of this amplitude [m], flat around the start [m]."""
         return SimPlace(lumps_m, start_m, self.correction)

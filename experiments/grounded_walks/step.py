@@ -46,8 +46,8 @@ class GroundingStep:
         """Describe the step; no robot walks yet.
 
         Args:
-          around: the gait that the gaits to walk with vary.
-          cloud: draws the gaits to walk with.
+          around: gait around which the gaits that walk are drawn.
+          cloud: draws the gaits that walk.
           walks: numbers of walks in the real world and in the sim.
           seed: seed of gaits, walks and trainings.
           before: the previous step, whose walks are used as well.

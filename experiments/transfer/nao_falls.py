@@ -120,7 +120,7 @@ def _stages(
 
 
 def _seed(config: TransferNaoFalls, use: int) -> np.random.SeedSequence:
-    """The seed of the use with a number, which is the same at each call."""
+    """The seed for the use with this number, the same at each call."""
     return np.random.SeedSequence(config.seed, spawn_key=(use,))
 
 

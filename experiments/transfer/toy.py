@@ -109,8 +109,8 @@ def solve(
 ) -> list[dict[str, Any]]:
     """The best action in the sim, in both grounded sims and in the real world.
 
-    Forward models are the exact one, and one that is estimated from as many random real
-    transitions as `episodes` says.
+    Grounding uses the exact forward model, and for comparison one that is estimated
+    from `episodes` random real transitions.
     """
     anything = np.zeros(toy.sim.states, np.intp)
     seen = roll_out(toy.real, anything, episodes, generator, exploration=1.0).counts

@@ -49,7 +49,7 @@ class Head(ABC):
 
     @abstractmethod
     def parts(self, raw: Any, xp: Any) -> Parts:
-        """Parameters from raw outputs (..., width); `xp` is their module, as numpy."""
+        """Parameters from raw outputs (..., width), which are arrays of module `xp`."""
 
     @abstractmethod
     def log_density(self, parts: Parts, y: Tensor) -> Tensor:

@@ -144,9 +144,9 @@ class DirectTransformer:
 
 
 def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArray:
-    """(N, columns + p) states and changes of `real`, scaled as in the sim's model.
+    """(N, k + p) states and changes of `real`, scaled as in the sim's forward model.
 
-    Columns are those that a state of `tried` has, p those of a next state.
+    k is the number of columns of a state of `tried`, p that of a next state.
     """
     inputs, targets = sim.scalings
     columns = slice(tried.state.shape[1])

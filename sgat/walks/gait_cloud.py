@@ -40,7 +40,7 @@ class GaitCloud:
         """Draw random gaits.
 
         Args:
-          around: the gait that the others vary.
+          around: gait around which the others are drawn.
           count: number of gaits.
           seed: the same seed gives the same gaits.
 
