@@ -75,6 +75,9 @@ class Diagnose(RunOptions):
         to be reported, from 0 to below 1.
       threads: processor threads of the replays.
       audit_only: only check the recordings, print their limits, and stop.
+
+    Example:
+      See docs/python.md.
     """
 
     recordings: Annotated[

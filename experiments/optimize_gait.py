@@ -47,6 +47,9 @@ class OptimizeGait(RunOptions):
       sigma: spread of the first generation, as a share of each parameter's range.
       trials: trials of each gait in each world, on a course of 3 m.
       threads: processor threads; 0 for all.
+
+    Example:
+      See docs/python.md.
     """
 
     robot: str = "nao"

@@ -61,6 +61,9 @@ class Record:
         coulomb_friction@LKneePitch:torque=0.2; `groundwalk list effects` shows all.
       duration: length of the recording [s].
       seed: every random number follows from it.
+
+    Example:
+      See docs/python.md.
     """
 
     out: Path

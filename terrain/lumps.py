@@ -38,6 +38,9 @@ class Lumps(Ground):
       wavelength_m: the middle of the octave [m]: wavelengths reach from
         wavelength_m / sqrt(2) to wavelength_m * sqrt(2), uniform in their
         logarithm. At least 4 grid spacings.
+
+    Example:
+      >>> ground = Lumps(amplitude_m=0.012).make(seed=7)
     """
 
     ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(

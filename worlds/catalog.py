@@ -46,7 +46,12 @@ WORLDS = {
     ),
 }
 """The worlds by name. "real" differs from "sim" by its physics engine and, by default,
-by its latency, its sensor noise and its ground."""
+by its latency, its sensor noise and its ground.
+
+Example:
+  >>> sorted(WORLDS)
+  ['real', 'sim']
+"""
 
 
 def kind(name: str) -> WorldKind:

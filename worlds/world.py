@@ -14,7 +14,12 @@ from worlds.observation import Observation, Truth
 from worlds.sensor_noise import SensorNoise
 
 TICK_S = 0.01
-"""Length of a control tick [s]: a command (joint position targets) holds this long."""
+"""Length of a control tick [s]: a command (joint position targets) holds this long.
+
+Example:
+  >>> round(7.5 / TICK_S)  # ticks of a trial of 7.5 s
+  750
+"""
 
 
 class End(enum.StrEnum):
@@ -32,7 +37,12 @@ class End(enum.StrEnum):
 
 
 FALLS = (End.FALL, End.DIVERGED)
-"""Reasons of `End` that count as falls; diverged physics is one of them."""
+"""Reasons of `End` that count as falls; diverged physics is one of them.
+
+Example:
+  >>> End.FALL in FALLS
+  True
+"""
 
 
 @dataclass(frozen=True)

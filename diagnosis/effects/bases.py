@@ -50,6 +50,9 @@ class JointNumber(JointEffect):
       array: name of the quantity: an attribute of `Joints`, or a field of `MjModel`
         with a value for each degree of freedom, such as "dof_damping".
       combined: function of the quantity and the parameter that gives the new quantity.
+
+    Example:
+      See docs/python.md, "An effect of your own".
     """
 
     array: ClassVar[str]
@@ -68,7 +71,11 @@ class JointNumber(JointEffect):
 
 
 class ServoNumber(JointNumber, ServoEffect):
-    """A `JointNumber` for joints whose servo has a stiffness above 0."""
+    """A `JointNumber` for joints whose servo has a stiffness above 0.
+
+    Example:
+      See docs/python.md, "An effect of your own".
+    """
 
 
 class TorqueEffect(JointEffect):

@@ -105,7 +105,12 @@ def effect(name: str) -> Effect:
 
 
 def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """More general effects that contain this one, at its place, with start values."""
+    """More general effects that contain this one, at its place, with start values.
+
+    Example:
+      >>> grown_from(PlacedEffect("coulomb_friction", "LKneePitch", (0.1,)))[0].name
+      'stribeck_friction'
+    """
     return tuple(
         grown for one in all_effects().values() for grown in one.grown_from(placed)
     )

@@ -88,6 +88,9 @@ class JointMotion:
       command_rate_rad_s: derivative of the position target.
       kp_nm_rad: stiffness of the servo.
       torque_nm: torque for this motion by inverse dynamics of the nominal model.
+
+    Example:
+      See docs/python.md, "An effect of your own".
     """
 
     since_s: FloatArray

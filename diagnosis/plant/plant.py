@@ -11,7 +11,12 @@ if TYPE_CHECKING:
     import mujoco
 
 Base = Literal["fixed", "floating"]
-"""How a robot's base is held: welded to the world, or free to move."""
+"""How a robot's base is held: welded to the world, or free to move.
+
+Example:
+  >>> load_plant("nao", base="floating").base
+  'floating'
+"""
 ROOT = "root"
 """Name of a floating base's free joint."""
 _SLIDING = (("kg m^2", "kg"), ("N m", "N"), ("rad", "m"))

@@ -11,7 +11,11 @@ from diagnosis.replay.tape import Replayed, Tape
 from diagnosis.traces.windows import Run
 
 STEP_S = 0.002
-"""Time step of the physics, unless another one is asked for."""
+"""Time step of the physics, unless another one is asked for.
+
+Example:
+  >>> predicted = replay(runs, variants, step_s=STEP_S / 2)
+"""
 
 BLOCK = 256
 """Number of steps whose commands are computed at once; insensitive."""
@@ -30,6 +34,10 @@ def replay(
 
     Returns:
       For each run the predicted measurements of all variants.
+
+    Example:
+      >>> predicted = replay(runs, variants, threads=4)
+      >>> position_rad = predicted[0].position_rad  # (n, rows, joints) of the first run
     """
     batch = ReplayBatch(runs, variants, step_s, threads)
     start_s = np.array([run.trace.time_s[0] for run in runs])

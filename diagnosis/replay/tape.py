@@ -22,6 +22,9 @@ class Replayed:
       servo_nm: (n, T, j) torques of the servos, without back-EMF.
       base: (n, T, 13) as `Run.base`; None for a fixed base.
       gyroscope_rad_s: (n, T, 3).
+
+    Example:
+      >>> position_rad = replay(runs, variants)[0].position_rad
     """
 
     position_rad: FloatArray

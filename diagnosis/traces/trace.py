@@ -13,7 +13,11 @@ from groundwalk.errors import BadRecordingError
 
 DriveBy = Literal["servos", "torques"]
 """What drives the joints in a replay of a recording: simulated servos that follow the
-recorded commands, or the measured torques."""
+recorded commands, or the measured torques.
+
+Example:
+  See `driven_by_torques`.
+"""
 
 JOINT_WISE = (
     *("position_rad", "velocity_rad_s", "torque_nm", "added_nm"),

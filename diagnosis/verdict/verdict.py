@@ -41,6 +41,7 @@ __all__ = [
 
 FORMAT = 1
 VerdictKind = Literal["effects", "none", "unknown", "not_identifiable"]
+"""The answer of a diagnosis in one word. See docs/diagnosis_json.md."""
 
 
 @dataclass(frozen=True)

@@ -146,4 +146,9 @@ example-robot-data, its base fixed and level, with the stated joint servos.""",
         gains=ServoGains(20.0, 1.5, 23.7),
     ),
 }
-"""The real robots by their names on the command line."""
+"""The real robots by their names on the command line.
+
+Example:
+  >>> sorted(ROBOTS)
+  ['emps', 'go2', 'so101']
+"""

@@ -24,6 +24,9 @@ class RunOptions:
       out: folder of the run; a new one under runs/ by default.
       resume: continue the run of this folder, with its options.
       json: print the result as JSON.
+
+    Example:
+      See docs/python.md.
     """
 
     if_interrupted: ClassVar[str] = RESUMABLE

@@ -46,7 +46,12 @@ def process_pool(processes: int, calls: int | None = None) -> Iterator[Executor]
 def as_done(
     calls: Mapping[Key, "Future[Result]"],
 ) -> Iterator[tuple[Key, "Future[Result]"]]:
-    """Yield each key and its submitted call, in the order in which the calls finish."""
+    """Yield each key and its submitted call, in the order in which the calls finish.
+
+    Example:
+      >>> calls = {seed: pool.submit(work, seed) for seed in (1, 2)}
+      >>> results = {seed: call.result() for seed, call in as_done(calls)}
+    """
     keys = {call: key for key, call in calls.items()}
     for call in as_completed(keys):
         yield keys[call], call

@@ -6,7 +6,12 @@ IDS = {
     "Groundwalk/Nao-Real-v0": "real",
     "Groundwalk/Nao-Grounded-v0": "grounded",
 }
-"""Ids of the environments, and their worlds; all take the arguments of `WalkEnv`."""
+"""Ids of the environments, and their worlds; all take the arguments of `WalkEnv`.
+
+Example:
+  >>> IDS["Groundwalk/Nao-Sim-v0"]
+  'sim'
+"""
 
 
 def register_envs() -> None:

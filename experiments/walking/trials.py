@@ -45,11 +45,19 @@ class TrialRules:
 
 SEARCH_TRIAL = TrialRules(limit_s=7.5)
 """Rules of a trial in a search: 7.5 s or until a fall, as in the NAO experiment of the
-SGAT paper."""
+SGAT paper.
+
+Example:
+  >>> trials = walk_trials(world, gaits, SEARCH_TRIAL)
+"""
 
 COURSE_TRIAL = TrialRules(limit_s=40.0, course_m=3.0, start_spread_rad=0.01)
 """Rules of a trial in an evaluation: a course of 3 m, as in the SGAT paper. Start poses
-have a standard deviation of 0.01 rad, so that no two trials are alike."""
+have a standard deviation of 0.01 rad, so that no two trials are alike.
+
+Example:
+  >>> trials = walk_trials(world, gaits, COURSE_TRIAL)
+"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,6 +24,9 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
       BadRecordingError: the file cannot be read or is no recording. The message names
         the file and, where it applies, the column and row of the first fault; the
         first row of values is row 0.
+
+    Example:
+      See docs/recordings.md.
     """
     is_csv = _is_csv(path)
     with _naming(path):
@@ -52,6 +55,9 @@ def write_recording(recording: Recording, path: Path) -> None:
 
     Raises:
       BadRecordingError: the path ends with neither .parquet nor .csv.
+
+    Example:
+      >>> write_recording(recording, Path("swing.parquet"))
     """
     if _is_csv(path):
         write_text(path.with_suffix(".json"), recording.metadata.to_json() + "\n")

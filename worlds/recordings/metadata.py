@@ -17,7 +17,12 @@ _REQUIRED = ("robot", "base", "source")
 
 @dataclass(frozen=True)
 class ServoGains:
-    """Gains of a joint's position servo: torque = kp * error - kd * velocity."""
+    """Gains of a joint's position servo: torque = kp * error - kd * velocity.
+
+    Example:
+      >>> ServoGains(kp=20.0, kd=0.5, max_torque=3.0).kp
+      20.0
+    """
 
     kp: float
     """Stiffness of the servo [N m/rad; N/m for a sliding joint]."""
@@ -60,6 +65,10 @@ class RecordingMetadata:
 
     Optional fields are None (or empty) if unknown. Values are kept as they would be
     read back from JSON: tuples become lists, keys text.
+
+    Example:
+      >>> RecordingMetadata("pendulum.xml", base="fixed", source="in water").base
+      'fixed'
     """
 
     robot: str

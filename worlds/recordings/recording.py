@@ -56,6 +56,12 @@ class Recording:
 
     The constructor checks all columns and metadata against format 1, and raises
     `BadRecordingError` at the first fault. The arrays are read-only.
+
+    Example:
+      >>> columns = {"time": time_s, "position.swing": measured_rad,
+      ...            "command.swing": command_rad}
+      >>> metadata = RecordingMetadata("pendulum.xml", "fixed", "in water")
+      >>> recording = Recording(columns, metadata)
     """
 
     columns: dict[str, FloatArray]

@@ -66,6 +66,9 @@ def write_rrd(
     Raises:
       BadValueError: there are neither scenes nor pages, or a scene has the name of
         another one or a name that is the first part of another one's path.
+
+    Example:
+      >>> write_rrd(Path("walk.rrd"), [Scene("sim", recording, robots.get("nao"))])
     """
     import rerun as rr
 

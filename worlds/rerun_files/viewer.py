@@ -28,6 +28,9 @@ def open_viewer(paths: Sequence[Path]) -> "subprocess.Popen[bytes]":
     Raises:
       BadRecordingError: a file does not exist.
       GroundwalkError: the program `rerun` is not installed.
+
+    Example:
+      >>> process = open_viewer([Path("walk.rrd")])
     """
     for path in paths:
         if not path.is_file():

@@ -55,6 +55,9 @@ class SceneCamera:
 
     Attributes:
       parts: capsules of the robot's links and soles.
+
+    Example:
+      >>> camera = SceneCamera(scene, accent, size_px=(640, 480))
     """
 
     def __init__(

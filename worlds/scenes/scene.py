@@ -31,6 +31,9 @@ class Scene:
       recording: the motion of the robot.
       description: the robot; it must have all joints of the recording.
       ground: the ground on which it walked; None if there was none or it is unknown.
+
+    Example:
+      >>> scene = Scene("sim", recording, robots.get("nao"), ground)
     """
 
     name: str

@@ -42,6 +42,10 @@ class Quantity:
       unit: such as "N m"; "1" for a plain number.
       low, high: sensible range; values outside of it are refused.
       default: value where none is given; None if one must be given.
+
+    Example:
+      >>> KINDS["backlash"].parameters["gap"].unit
+      'rad'
     """
 
     name: str

@@ -29,7 +29,12 @@ def _found() -> Iterator[HiddenKind]:
 KINDS: Mapping[str, HiddenKind] = {
     kind.name: kind for kind in sorted(_found(), key=lambda one: (one.rank, one.name))
 }
-"""All kinds of hidden physics by name, in the order from which test cases are drawn."""
+"""All kinds of hidden physics by name, in the order from which test cases are drawn.
+
+Example:
+  >>> KINDS["backlash"].place
+  'joint'
+"""
 
 
 @dataclass(frozen=True)
