@@ -59,7 +59,7 @@ class HiddenRobot:
     def step(self, schedule: Sequence[tuple[FloatArray, int]]) -> BulletState | None:
         """Advance by one tick; the state is None if the physics diverged.
 
-        The schedule holds commands (joints,) [rad], each with its number of time steps.
+        The schedule holds commands (joints,) [rad], each with its number of steps.
         """
         for command, steps in schedule:
             self._drive.send(command)

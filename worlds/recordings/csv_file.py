@@ -19,13 +19,10 @@ _OTHER_SEPARATORS = (";", "\t", "|")
 
 
 def read_csv(path: Path) -> dict[str, FloatArray]:
-    """Read the columns of a recording; an empty cell or `nan` is a missing value.
+    """Read columns (rows,) by name; missing values, empty cells or `nan`, become NaN.
 
     Args:
       path: a CSV file in UTF-8, with commas and with column names in the first line.
-
-    Returns:
-      Values (rows,) by column name; NaN where one is missing.
 
     Raises:
       BadRecordingError: the text is no such CSV, its columns are not those of a

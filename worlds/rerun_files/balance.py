@@ -112,12 +112,7 @@ def support_look() -> "rr.StateConfiguration":
 
 
 def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
-    """Rows of the recording at which the set of loaded feet changes.
-
-    Returns:
-      The rows, row 0 included, and the feet from each on: "left", "right", "both" or
-      "none". No rows without force sensors.
-    """
+    """Rows where the loaded feet change, and the new: left, right, both or none."""
     loaded = loaded_feet(scene)
     if loaded is None:
         return np.empty(0, np.intp), []

@@ -155,7 +155,7 @@ def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
 
 
 def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]":
-    """Rows of plots, last a row of the supporting legs, and their relative heights."""
+    """Rows of plots, the last for the supporting legs, and their relative heights."""
     import rerun.blueprint as rrb
 
     at = f"/{scene.name}"

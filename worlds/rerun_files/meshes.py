@@ -130,7 +130,7 @@ def _shaded(mesh: "Trimesh") -> tuple[FloatArray, IntArray, FloatArray]:
 
 
 def _distinct(rows: IntArray) -> tuple[IntArray, IntArray]:
-    """Indices of the first of equal rows; for each row, its place among those."""
+    """Indices of the distinct rows, and for each row, which of those equals it."""
     from trimesh.grouping import unique_rows
 
     first, which = unique_rows(rows)  # type: ignore[no-untyped-call]  # has no types

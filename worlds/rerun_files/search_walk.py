@@ -78,7 +78,7 @@ class _WalkLog:
 
 
 def stills(ticks: int) -> IntArray:
-    """At most `POSES` rows of a recording of `ticks` rows, evenly spaced."""
+    """At most `POSES` row indices, evenly spaced over a recording of `ticks` rows."""
     return np.unique(np.rint(np.linspace(0, ticks - 1, POSES)).astype(np.intp))
 
 

@@ -74,10 +74,7 @@ def balance(scene: Scene) -> Balance:
 
 
 def loaded_feet(scene: Scene) -> dict[str, BoolArray] | None:
-    """By side, (ticks,) whether the foot is loaded; None without force sensors.
-
-    A foot is loaded if its force exceeds `LOADED_PART` of the robot's weight.
-    """
+    """(ticks,) by side whether a foot carries weight; None without force sensors."""
     least_n = LOADED_PART * scene.description.mass_kg * GRAVITY_M_S2
     forces_n = {side: scene.foot_force_n(side) for side in SIDES}
     known = {side: force for side, force in forces_n.items() if force is not None}

@@ -138,12 +138,7 @@ def _rows(plots: Sequence[Plot]) -> list[Sequence[Plot]]:
 
 
 def support_changes(scene: Scene) -> tuple[IntArray, list[str]]:
-    """Rows of the recording at which the gait's supporting leg changes.
-
-    Returns:
-      The rows, the first known one included, and the leg from each row on: "left",
-      "right" or "both".
-    """
+    """Rows where the gait's supporting leg changes, and the new: left, right, both."""
     support = scene.recording.columns.get(SUPPORT, np.empty(0))
     known = np.flatnonzero(~np.isnan(support))
     changes = known[np.diff(support[known], prepend=np.nan) != 0]

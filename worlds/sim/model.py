@@ -117,11 +117,7 @@ def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
 
 
 def touch_shares(description: Description) -> FloatArray:
-    """(touch sensors, 8) share of each touch sensor's force in each foot sensor.
-
-    The model has a touch sensor at each contact point of a sole; a robot has four force
-    sensors in each foot, the left foot's first.
-    """
+    """(contact points, 8) share of each point's force in each of the foot sensors."""
     left, right = (contact_shares(foot) for foot in description.feet)
     shares = np.zeros((len(left) + len(right), 8))
     shares[: len(left), :4], shares[len(left) :, 4:] = left, right
