@@ -1,6 +1,6 @@
-# One command each; every target first sets up the environment that it needs.
+# Each target first sets up the environment that it needs.
 
-# The Python that makes the environment: 3.11 where there is one.
+# The Python that makes the environment: 3.11 if it is installed.
 PYTHON ?= $(shell python3.11 -c "" 2>/dev/null && echo python3.11 || echo python3)
 
 VENV := .venv
@@ -9,14 +9,15 @@ RUN := runs/walk
 RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
 STUDIES := toy cliff inverted-pendulum half-cheetah nao-falls
-# Cases whose truth is sealed. The seed is the first six digits of the commit at which the
-# diagnosis was frozen (64b0843), so that nobody has chosen it; what is changed takes another.
+# Cases with concealed hidden effects. The seed is the hexadecimal number 64b084, from the commit
+# at which the diagnosis was frozen (64b0843), so that nobody chose it; a changed diagnosis takes
+# another one.
 CONCEALED := $(RESULTS)/concealed
 SEALED := 6598788
-# What the real NAO of results-diagnosed-gait lacks against its model.
+# Hidden physics of the real NAO in results-diagnosed-gait, which its model lacks.
 SLOW_KNEES := speed_limit@LKneePitch:speed=2.5 speed_limit@RKneePitch:speed=2.5
-# Recordings of real robots, which are not part of the repository: docs/diagnosis.md says
-# where they come from. Another folder: make results-diagnosis DATA=FOLDER.
+# Folder of recordings of real robots, which are not part of the repository: docs/diagnosis.md
+# names their sources. To use another folder: make results-diagnosis DATA=FOLDER.
 DATA := data
 REAL := so101 emps go2
 
@@ -48,7 +49,8 @@ lint: $(READY)
 	$(VENV)/bin/mypy
 	$(VENV)/bin/lint-imports --no-logo
 
-# Writes every number and picture of docs/results from new runs, or those of one of them.
+# `results` writes every number and picture of docs/results from new runs; each `results-NAME`
+# writes one part of them.
 results: results-walk results-pictures results-nao $(STUDIES:%=results-%) results-terrain-stress \
 	results-humanoids results-diagnosed-gait results-diagnosis results-concealed
 
@@ -58,7 +60,7 @@ results-walk: $(READY)
 	mkdir -p docs/results/walk
 	cp $(addprefix $(RESULTS)/walk/,result.md result.json walk.png search.png) docs/results/walk
 
-# The pictures of the README: the gait of docs/results/walk, filmed on a first course.
+# The pictures of the README: one walk with the gait of docs/results/walk.
 results-pictures: $(READY)
 	rm -rf $(RESULTS)/pictures $(RESULTS)/gait
 	mkdir -p $(RESULTS)/gait docs/results/pictures
@@ -79,7 +81,7 @@ $(STUDIES:%=results-%): results-%: $(READY)
 	cp $(RESULTS)/$*/result.json docs/results/transfer_$(subst -,_,$*).json
 	find $(RESULTS)/$* -maxdepth 1 -name 'transfer_*.png' -exec cp {} docs/results ';'
 
-# Two hours; what was begun is finished.
+# It takes two hours; if it was interrupted, the next call continues it.
 results-nao: $(READY)
 	$(VENV)/bin/groundwalk transfer nao --seed 1 \
 		$(if $(wildcard $(RESULTS)/nao/config.json),--resume,--out) $(RESULTS)/nao
@@ -88,9 +90,9 @@ results-nao: $(READY)
 	cp $(RESULTS)/nao/result.json docs/results/nao.json
 	cp $(RESULTS)/nao/transfer_nao.png docs/results
 
-# Half an hour: recordings of a NAO with slow knees, their diagnosis, and the gaits that the
-# diagnosed sim tunes. The real world of the study has its latency anyway; its ground is flat,
-# so that what differs is the physics.
+# It takes half an hour: recordings of a NAO with slow knees, their diagnosis, and gaits tuned
+# in the diagnosed sim. The study's real world always has a latency, so that the recordings have
+# it, too; its ground is flat, so that only the physics differs.
 results-diagnosed-gait: $(READY)
 	rm -rf $(RESULTS)/slow-knees $(RESULTS)/diagnosed-gait
 	mkdir -p $(RESULTS)/slow-knees docs/results
@@ -108,7 +110,7 @@ results-diagnosed-gait: $(READY)
 	cp $(RESULTS)/diagnosed-gait/result.json docs/results/diagnosed_gait.json
 	cp $(RESULTS)/diagnosed-gait/transfer_nao.png docs/results/diagnosed_gait.png
 
-# What was begun is finished.
+# If it was interrupted, the next call continues it.
 results-terrain-stress: $(READY)
 	$(VENV)/bin/groundwalk terrain-stress start docs/results/walk/result.json --seed 1 \
 		$(if $(wildcard $(RESULTS)/terrain-stress/config.json),--resume,--out) \
@@ -118,7 +120,7 @@ results-terrain-stress: $(READY)
 	cp $(RESULTS)/terrain-stress/result.json docs/results/terrain_stress.json
 	cp $(RESULTS)/terrain-stress/terrain_stress*.png docs/results
 
-# What was begun is finished.
+# If it was interrupted, the next call continues it.
 results-humanoids: $(READY)
 	$(VENV)/bin/groundwalk humanoids --seed 1 \
 		$(if $(wildcard $(RESULTS)/humanoids/config.json),--resume,--out) \
@@ -141,7 +143,8 @@ else
 	@echo "skipped: there are no recordings of real robots in $(DATA)"
 endif
 
-# Two hours and more; what was begun is finished. A set of one's own tells more than this one.
+# It takes more than two hours; if it was interrupted, the next call continues it. A set of
+# cases with a seed of your own tells more than this one.
 results-concealed: $(READY)
 	$(if $(wildcard $(CONCEALED)/cases),,$(VENV)/bin/groundwalk concealed make $(CONCEALED) \
 		--cases 200 --seed $(SEALED))
@@ -158,8 +161,8 @@ results-concealed: $(READY)
 bench: $(READY)
 	$(VENV)/bin/python -m benchmarks
 
-# A stamp: installs again only when what is to be installed may have changed.
-# Without ensurepip (Debian keeps it in a package of its own) the Python's pip helps out.
+# $(READY) is an empty file; its date shows whether pyproject.toml or constraints.txt changed
+# since the last installation. Without ensurepip (Debian packs it apart), pip installs pip.
 $(READY): pyproject.toml constraints.txt
 	@sh .ci/check-python $(PYTHON)
 	@if $(PYTHON) -c "import ensurepip" 2>/dev/null; then \
