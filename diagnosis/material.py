@@ -82,11 +82,7 @@ class Material:
 def _prepared(
     plant: Plant, traces: Sequence[Trace], drive: DriveBy
 ) -> tuple[tuple[Trace, ...], tuple[Pulse, ...]]:
-    """Remove stalls and pulses, and choose what drives the joints in replays.
-
-    Returns:
-      The prepared recordings, and the pulses of all of them.
-    """
+    """Remove stalls and pulses, and choose what drives the joints in replays."""
     ready = [steady(trace) for trace in traces]
     pulses = [pulses_of(plant, trace) for trace in ready]
     ready = [

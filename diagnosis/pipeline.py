@@ -83,7 +83,7 @@ class Diagnosis:
     given: Model = ()
 
     def held_out(self) -> list[HeldOutSeries]:
-        """Each held-out recording as measured and as simulated without and with fit."""
+        """Held-out recordings as measured, and simulated without and with `model`."""
         return held_out_series(self.nominal, self.test, self.model)
 
 
@@ -256,11 +256,7 @@ def _verdict(
 ) -> Verdict:
     """The verdict; its kind becomes "unknown" where held-out data contradict it.
 
-    Args:
-      material: the recordings.
-      learned: the search and its data.
-      tested: the effects found and their test.
-      others: other sets of effects that explain the recordings about as well.
+    `others` are sets of effects that explain the recordings about as well.
     """
     data, result, kind = learned.data, tested.result, tested.kind
     both, judge = tested.both, learned.search.judge

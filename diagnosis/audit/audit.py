@@ -81,14 +81,7 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
 def _suspicions(
     trace: Trace, plant: Plant, measured: TraceAudit, smoothed: list[Smoothed]
 ) -> list[Finding]:
-    """Findings on contradictions within a recording, or between it and the model.
-
-    Args:
-      trace: a recording of the plant.
-      plant: the nominal robot model.
-      measured: measurements of the trace.
-      smoothed: the trace's smoothed positions, joint by joint.
-    """
+    """Findings on contradictions within a recording, or between it and the model."""
     moves = [joint.moves for joint in measured.joints]
     return [
         *range_findings(trace, plant),

@@ -48,10 +48,6 @@ def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
     """All channels of a trace by the recording's column names, (T,) each.
 
     Quantities that were never recorded at a joint are left out.
-
-    Args:
-      trace: a recording of the plant.
-      plant: the robot model; it gives the joints' names.
     """
     channels: dict[str, FloatArray] = {}
     for quantity, field in _OF_JOINTS.items():
@@ -152,13 +148,9 @@ def repeated_findings(trace: Trace, share: float) -> list[Finding]:
 def _clipped_share(name: str, values: FloatArray, step: float) -> float:
     """Share of rows in which a channel is clipped: stays at an extreme value.
 
-    It must have reached that value at speed: a signal that slows down has come to rest.
-    The smallest foot force does not count, since a foot without load rests at zero.
-
-    Args:
-      name: name of the channel.
-      values: (T,) its values.
-      step: difference of successive values that noise alone can make.
+    It must have reached that value at speed (noise alone can make a `step`): a signal
+    that slows down has come to rest. The smallest foot force does not count, since a
+    foot without load rests at zero.
     """
     stays = []
     ends = (np.nanmax(values), np.nanmin(values))

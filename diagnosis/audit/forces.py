@@ -19,12 +19,7 @@ _FASTEST_RAD_S = 35.0
 
 
 def torque_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Find measured and commanded torques far above the servos' limits.
-
-    Args:
-      trace: a recording of the plant.
-      plant: the robot model; it gives the joints' names.
-    """
+    """Find measured and commanded torques far above the servos' limits."""
     found = []
     for quantity, values in (
         ("torque", trace.torque_nm),

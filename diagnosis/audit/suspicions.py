@@ -34,12 +34,7 @@ _RATE_SLACK = 2.0
 
 
 def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Find positions and commands beyond the joint ranges of the robot model.
-
-    Args:
-      trace: a recording of the plant.
-      plant: the robot model.
-    """
+    """Find positions and commands beyond the joint ranges of the robot model."""
     found = []
     for column, joint in enumerate(plant.joints):
         number = plant.model.joint(joint).id
@@ -67,12 +62,7 @@ def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
 
 
 def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Find joints that follow another joint's command, or their own with a wrong sign.
-
-    Args:
-      trace: a recording of the plant.
-      plant: the robot model.
-    """
+    """Find joints that follow another joint's command, or their own with wrong sign."""
     if trace.command_rad is None:
         return []
     follow = following(trace)
@@ -132,12 +122,7 @@ def velocity_findings(
 
 
 def drive_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Find what a trace lacks to be replayed: a base's pose, commands or servo gains.
-
-    Args:
-      trace: a recording of the plant.
-      plant: the robot model.
-    """
+    """Find what a trace lacks for a replay: a base's pose, commands or servo gains."""
     found = []
     if plant.base == "floating" and (
         trace.base_position_m is None or trace.base_orientation is None

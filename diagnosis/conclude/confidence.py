@@ -24,12 +24,7 @@ lacks can look like one of them."""
 
 
 def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects that could replace one of the winning model and explain the data as well.
-
-    Args:
-      found: the result of a search.
-      placed: the effect of the winning model.
-    """
+    """Effects that could replace `placed` in the winning model and explain as much."""
     winner = found.winner
     assert winner is not None
     rest = winner.keys - {placed.key}

@@ -81,14 +81,7 @@ class _Lift:
 
 
 def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
-    """(features,) coefficients of a ridge regression whose penalty fits best.
-
-    They are 0 if there are too few rows to learn from.
-
-    Args:
-      features: (rows, features).
-      wanted: (rows,) values to predict.
-    """
+    """(features,) coefficients of the best ridge regression; 0 with too few rows."""
     if len(wanted) < FEWEST:
         return np.zeros(features.shape[1])
     held = np.arange(len(wanted)) // 50 % 4 == 3

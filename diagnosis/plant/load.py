@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _SUFFIXES = (".xml", ".urdf")
 _HELD_AT_M = 1.0
-"""Height [m] of the base of a robot that `robots` describes."""
+"""Height [m] at which the base of a robot from `robots` is placed in the model."""
 
 
 def load_plant(

@@ -119,11 +119,9 @@ def _exact(whole: Predictor, model: Model = ()) -> Predictor:
 
 
 def affordable(plant: Plant, parts: Split) -> Split:
-    """The parts of recordings, shortened so that a search can simulate them often.
+    """The parts, shortened so that a search can simulate them often.
 
-    Args:
-      plant: nominal robot model; with a floating base the limits are lower.
-      parts: parts of any length.
+    The limits are lower for a floating base.
     """
     floats = plant.base == "floating"
     longest_s = FLOATING_S if floats else (FIT_S, SELECT_S, TEST_S)

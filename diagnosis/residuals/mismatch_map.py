@@ -66,17 +66,7 @@ def _cell(
 def _regimes(
     predictor: Predictor, index: int, own: FloatArray, scored: BoolArray
 ) -> Mapping[str, float]:
-    """Rms error of a joint's position by kind of motion, such as "fast".
-
-    Args:
-      predictor: the predictor that computed the residual.
-      index: index of the channel; others than joint positions have no kinds of motion.
-      own: (rows,) residual of this channel, in units of noise.
-      scored: (rows,) whether each row counts.
-
-    Returns:
-      Errors in units of noise.
-    """
+    """Rms error [noise] by kind of motion, such as "fast"; {} unless a position."""
     if index >= len(predictor.plant.joints):
         return {}
     flags: dict[str, list[BoolArray]] = {}

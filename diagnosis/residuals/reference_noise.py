@@ -68,12 +68,7 @@ def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
 
 
 def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
-    """(rows, waves) Legendre polynomials in a block, orthonormal over scored rows.
-
-    Args:
-      within: (rows,) times in the block, from 0 to 1.
-      scored: (rows,) whether errors in the row count.
-    """
+    """(rows, waves) Legendre polynomials over [0, 1), orthonormal on scored rows."""
     if scored.sum() < FEWEST_ROWS:
         return np.zeros((len(within), 0))
     values = np.polynomial.legendre.legvander(2 * within - 1, WAVES - 1)
@@ -107,12 +102,7 @@ class ReferenceNoise:
 
     @classmethod
     def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":
-        """Effects that count as part of the nominal model, without further errors.
-
-        Args:
-          model: the effects.
-          channels: number of channels.
-        """
+        """Effects that count as part of the nominal model, without further errors."""
         none = np.zeros((WAVES * channels, 0))
         return cls(model, np.ones(channels), np.zeros(0), none, 1.0)
 

@@ -63,7 +63,7 @@ class StartUncertainty:
         ]
 
     def part(self, first: int, last: int) -> "StartUncertainty":
-        """The signatures of windows `first` to `last - 1`."""
+        """The same for the windows `first` to `last - 1` only."""
         some = object.__new__(StartUncertainty)
         some._runs = self._runs[first:last]
         return some
@@ -92,7 +92,7 @@ class _RunUncertainty:
 
     @classmethod
     def of(cls, own: FloatArray) -> Self:
-        """Prepare the projection for (2, rows, c) signatures."""
+        """Prepare a projection that removes (2, rows, c) signatures of wrong starts."""
         # 1 on the diagonal is the prior: a standard normal error of the start
         gram = np.einsum("krc,lrc->ckl", own, own) + np.eye(len(own))
         return cls(own, np.linalg.inv(gram))

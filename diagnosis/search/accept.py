@@ -33,12 +33,7 @@ exceed its gain on recordings of the healthy robot."""
 
 
 def accepted(judge: Judge, result: SearchResult) -> SearchResult:
-    """The result of a search without effects and values that fail a closer test.
-
-    Args:
-      judge: the judge of the search that has run.
-      result: the result of the search.
-    """
+    """The result of a search without effects and values that fail a closer test."""
     judge.hooks.stage("comparison", REPLAYS_EACH * judge.rules.compared)
     result = compared_exactly(judge, result)
     result = without_idle_effects(judge, without_idle_values(judge, result))
@@ -52,10 +47,6 @@ def compared_exactly(judge: Judge, result: SearchResult) -> SearchResult:
     at that time, which distorts the values of the others. Models that come close may
     each contain a part of the answer. Therefore their effects are also tried in place
     of those of the best model.
-
-    Args:
-      judge: the judge of the search that has run.
-      result: the result of the search.
     """
     if result.winner is None:
         return result
@@ -128,10 +119,6 @@ def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
     Dry friction with a Stribeck peak, for example, always fits a little better than dry
     friction alone, since the peak can take any shape. It is kept only if it improves
     the fit as much as one more effect must.
-
-    Args:
-      judge: the judge of the search that has run.
-      result: the result of the search.
     """
     winner = result.winner
     if winner is None:
@@ -152,10 +139,6 @@ def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
 
     While models grow, an effect may compensate for an error in another one. It becomes
     superfluous once the other one has its right place and size.
-
-    Args:
-      judge: the judge of the search that has run.
-      result: the result of the search.
     """
     while result.winner is not None and result.chosen > 1:
         winner = result.winner

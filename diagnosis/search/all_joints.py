@@ -46,17 +46,12 @@ PATIENCE = 2
 effects at all joints."""
 
 MUCH_BETTER = 0.25
-"""Share of the energy above the noise left by the best model of up to three effects
-that a model with effects at all joints must remove to be preferred."""
+"""A model with effects at all joints is preferred to one of up to three effects if it
+removes this share of the energy above the noise that the latter leaves."""
 
 
 def all_joints(judge: Judge, result: SearchResult) -> SearchResult:
-    """The model with effects at all joints if it fits much better, else `result`.
-
-    Args:
-      judge: the judge of the search that has run.
-      result: the result of that search, with up to three effects.
-    """
+    """The model with effects at all joints if it fits much better, else `result`."""
     best = _grown(judge, result)
     if best is not None:
         best = _without_idle(judge, best)
@@ -190,10 +185,6 @@ def joint_wise(predictor: Predictor, model: Model) -> Nudges:
     joint's own channels are taken as its column of the Jacobian (columns without a
     common row need one difference only: Curtis, Powell and Reid 1974). The ignored
     coupling between joints only slows convergence; the result is unaffected.
-
-    Args:
-      predictor: predictor of the data to fit.
-      model: the same effects at many joints.
     """
     return Nudges(_groups(model), _rows(predictor, model))
 

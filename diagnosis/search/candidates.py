@@ -15,7 +15,7 @@ from groundwalk.arrays import FloatArray
 
 FEW_JOINTS = 6
 """For robots with at most this many joints every kind of effect is fitted at its best
-place."""
+guessed place; for others only the kinds that are likely to explain most."""
 
 
 class Candidates:

@@ -38,7 +38,7 @@ class FittedModel:
       model: the effects with the values found.
       residual: (N,) residual of the model, in units of noise.
       jacobian: (N, p) derivative of the residual by the scaled coordinates.
-      coordinates: conversion between the p values and scaled coordinates.
+      coordinates: conversion between the p values and coordinates of order one.
     """
 
     model: Model
@@ -143,12 +143,7 @@ class Nudges:
 
     @classmethod
     def apart(cls, predictor: Predictor, model: Model) -> "Nudges":
-        """Nudges that change each value of a model by itself.
-
-        Args:
-          predictor: not used; `fit_all` passes it to any function of this kind.
-          model: the effects whose values are changed.
-        """
+        """Nudges that change each value of a model by itself."""
         count = sum(len(placed.values) for placed in model)
         return cls([[i] for i in range(count)])
 

@@ -25,11 +25,7 @@ class Progress(Protocol):
     """
 
     def cost(self, seconds: float) -> None:
-        """Called once, before the first long stage.
-
-        Args:
-          seconds: estimated duration of the whole diagnosis.
-        """
+        """Called once, before the first long stage, with the expected duration [s]."""
 
     def stage(self, name: str, steps: int) -> None:
         """Called when a stage of the diagnosis begins.
@@ -40,11 +36,7 @@ class Progress(Protocol):
         """
 
     def advance(self, steps: int) -> None:
-        """Called after each batch of simulations.
-
-        Args:
-          steps: number of simulations of the recordings in the batch.
-        """
+        """Called after each batch with its number of simulations of the recordings."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -119,7 +119,7 @@ class Judge:
         Args:
           best: the model.
           energy: energy of the best smaller model on the selection data [nats].
-          fitted: its energy on the fitting data [nats].
+          fitted: energy of that smaller model on the fitting data [nats].
         """
         gains = fitted - best.fit.energy, energy - best.selected
         if self.shows(*gains) and self.matters(energy, best.selected, self.nothing):
@@ -199,7 +199,7 @@ class Judge:
         return distinct(self.ranked(self.judge([*fits, *rough[count:]])))
 
     def replays_of(self, starts: Sequence[Model]) -> int:
-        """Rough number of replays that `judged` needs for some starts."""
+        """Rough number of simulations needed to fit and judge models from starts."""
         values = sum(len(placed.values) for start in starts for placed in start)
         first = values + self.rules.first_steps * len(starts)
         return first + MOST_STEPS * min(len(starts), self.rules.finished)

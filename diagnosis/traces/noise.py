@@ -105,13 +105,7 @@ def quantum_of(values: FloatArray) -> float | None:
 
 
 def _refined(levels: FloatArray, gaps: FloatArray, step: float) -> float:
-    """Refine a rounding step by the median gap, then by a line through the levels.
-
-    Args:
-      levels: (n,) distinct values, increasing.
-      gaps: (n - 1,) their differences.
-      step: rough step.
-    """
+    """Refine a rounding step by the levels' median gap, then by a line through them."""
     counts = np.maximum(np.round(gaps / step), 1.0)
     on_grid = np.abs(gaps / step - counts) < 2 * _ON_GRID
     if not on_grid.any():

@@ -57,10 +57,6 @@ _QUARTILES = 1.349
 def pulses_of(plant: Plant, trace: Trace) -> tuple[Pulse, ...]:
     """Find the torques, constant for a while, that no servo of a recording asked for.
 
-    Args:
-      plant: the nominal robot model.
-      trace: a whole recording.
-
     Returns:
       The pulses in the order of time; none without servos or measured torques, or with
       a floating base.
@@ -105,14 +101,7 @@ def without_pulses(plant: Plant, trace: Trace, pulses: Sequence[Pulse]) -> Trace
 def _of_joint(
     plant: Plant, trace: Trace, column: int, added: FloatArray
 ) -> list[Pulse]:
-    """The pulses of the joint with index `column`.
-
-    Args:
-      plant: the nominal robot model.
-      trace: a whole recording.
-      column: index of the joint.
-      added: (T,) measured torque less the torque that the servo asked for [N m].
-    """
+    """The pulses of joint `column`, from (T,) measured less asked torques [N m]."""
     where = _flat_stretches(trace.time_s, added)
     if not where:
         return []
@@ -144,14 +133,10 @@ def _of_joint(
 
 
 def _flat_stretches(time_s: FloatArray, added: FloatArray) -> list[Stretch]:
-    """Rows of each pulse: `added` is constant in it, and small outside of all.
+    """Rows of each pulse, from (T,) measured less asked torques [N m].
 
-    A wrong gain or a late command changes the torque in proportion to the servo's own,
-    which is neither.
-
-    Args:
-      time_s: (T,) times.
-      added: (T,) measured torque less the torque that the servo asked for [N m].
+    The difference is constant in a pulse and small outside of all. A wrong gain or a
+    late command changes the torque in proportion to the servo's own, which is neither.
     """
     tick_s = float(np.median(np.diff(time_s)))
     width = 2 * round(FILTER_S / tick_s / 2) + 1

@@ -11,10 +11,12 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 
 _LEAST_WHOLE, _LEAST_WHOLE_IF_LONG = 3, 6
-_LONG_S = 8.0
 """Number of recordings from which on whole ones are set aside for selection and test:
 usually the first, but the second if all last 8 s or more. Fewer recordings are each cut
 into parts, since each may show a motion of its own."""
+_LONG_S = 8.0
+"""Duration [s] from which on recordings are long: only six or more of them are divided
+without being cut."""
 _SHARE = 0.25
 """Share of the recordings' time that is set aside for selection; as much again is set
 aside for the test."""
@@ -150,12 +152,7 @@ def _choices(left: list[int]) -> list[tuple[int, ...]]:
 
 
 def _covered(taken: FloatArray, rest: FloatArray) -> float:
-    """Smallest ratio, over the joints that move in `taken`, of motion in `rest` to it.
-
-    Args:
-      taken: (traces, k) ranges or speeds in the traces that are set aside.
-      rest: (other traces, k) the same in the other traces.
-    """
+    """Smallest ratio, over the joints, of the motion in `rest` to that in `taken`."""
     most = np.maximum(taken.max(axis=0), rest.max(axis=0))
     moves = taken.max(axis=0) > 0.1 * most
     if not moves.any():
@@ -203,7 +200,8 @@ def _rotated(order: tuple[int, ...], by: int) -> tuple[int, ...]:
 
 def _parts(trace: Trace, order: tuple[int, ...]) -> list[tuple[Trace, int]]:
     """Cut a trace into contiguous parts of equal length, each with its use."""
-    # there and back, or a motion that repeats itself would always be used alike
+    # the uses go there and back, since equal parts of a periodic motion would
+    # otherwise always have the same use
     uses = order + order[::-1] if trace.duration_s >= _TWICE_S else order
     length_s = (trace.duration_s + _GAP_S) / len(uses)
     parts = []

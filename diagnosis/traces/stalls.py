@@ -127,13 +127,7 @@ def _lags(trace: Trace) -> tuple[FloatArray, FloatArray]:
 
 
 def _lag(position: FloatArray, command: FloatArray, most: int) -> float:
-    """Lag [ticks] of a position behind its command; NaN if it does not follow.
-
-    Args:
-      position: (rows,) positions in a window.
-      command: (most + rows,) commands from `most` rows before the window on.
-      most: lag that is too long to be believed.
-    """
+    """Lag [ticks] behind a command that begins `most` rows earlier; NaN if unclear."""
     late = np.lib.stride_tricks.sliding_window_view(command, len(position))[::-1]
     late = late - late.mean(axis=1, keepdims=True)
     own = position - position.mean()

@@ -129,11 +129,7 @@ def _bases(trace: Trace) -> FloatArray:
 def _with_measured(
     trace: Trace, rates: FloatArray, measured: FloatArray | None
 ) -> FloatArray:
-    """(T, 3) mean of rates derived from positions and measured ones, if there are any.
-
-    Both are rates of change of a floating base. The mean is better than either one,
-    since their errors are independent.
-    """
+    """(T, 3) mean of derived and measured rates, whose errors are independent."""
     if measured is None or not np.isfinite(measured).all():
         return rates
     return np.asarray((rates + _smoothed(trace.time_s, measured)[0]) / 2)
@@ -147,12 +143,7 @@ def continuous(quaternion: FloatArray) -> FloatArray:
 
 
 def _body_rates(quaternion: FloatArray, rate: FloatArray) -> FloatArray:
-    """(T, 3) angular velocity in the body frame [rad/s]: the vector part of 2 q* q'.
-
-    Args:
-      quaternion: (T, 4) unit quaternions q (w, x, y, z), base to world.
-      rate: (T, 4) their derivatives q' [1/s].
-    """
+    """(T, 3) angular velocity [rad/s] in the body frame: vector part of 2 q* q'."""
     w, v = quaternion[:, :1], quaternion[:, 1:]
     dw, dv = rate[:, :1], rate[:, 1:]
     return np.asarray(2 * (w * dv - dw * v - np.cross(v, dv)))

@@ -166,7 +166,7 @@ class MismatchCell:
     """The error of the nominal sim in one channel of the recordings.
 
     Attributes:
-      channel: such as "position.LKneePitch" or "gyroscope.x".
+      channel: name of the channel, such as "position.LKneePitch".
       unit: unit of the two errors.
       share: this channel's share, 0 to 1, of the squared error of all channels that
         noise does not explain, with each channel in units of its noise.
