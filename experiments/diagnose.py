@@ -141,7 +141,7 @@ def main(config: Diagnose) -> None:
 
 
 def print_audit(config: Diagnose) -> None:
-    """Check the recordings as a diagnosis does first, in seconds instead of minutes.
+    """Print the check of the recordings with which a diagnosis begins (some seconds).
 
     Raises:
       BadRecordingError: a recording cannot be used.

@@ -22,14 +22,14 @@ class DoctorConfig:
 
 
 def print_findings(findings: Sequence[Finding]) -> None:
-    """Print the findings as a table, one line each; coloured on a terminal."""
+    """Print the findings as a table, one line each; in colours on a terminal."""
     rows = [(one.state, one.name, one.found, one.advice) for one in findings]
     colours = [COLOURS[one.state] for one in findings]
     print_table(("", "what", "found", "what to do"), rows, colours)
 
 
 def main(config: DoctorConfig) -> int:
-    """Report what is installed.
+    """Run all checks of this machine, and print their findings.
 
     Returns:
       The exit status: 0 if everything that is required works, else 1.

@@ -39,7 +39,7 @@ class Evaluate(RunOptions):
       terrain: the ground, such as "lumps:amplitude_m=0.008"; by default that of each
         world.
       robot: name of a robot (`groundwalk list robots`), or a .urdf or .toml file.
-      trials: trials of each gait in each world, each on its own ground.
+      trials: number of trials of each gait in each world, each on its own ground.
       threads: processor threads; 0 for all.
     """
 

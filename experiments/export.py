@@ -1,4 +1,4 @@
-"""`groundwalk export`: a robot as a file for MuJoCo or PyBullet."""
+"""`groundwalk export`: write a robot's model as a file for MuJoCo or PyBullet."""
 
 import sys
 from dataclasses import dataclass

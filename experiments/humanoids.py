@@ -68,11 +68,11 @@ class Humanoids(RunOptions):
 
     Attributes:
       robots: names (`groundwalk list robots`), or .urdf or .toml files.
-      population: gaits tried in each generation.
+      population: number of gaits tried in each generation.
       generations: number of generations of each search.
       sigma: spread of the first generation, as a share of each parameter's range.
-      trials: walks in the sim that are counted, each from its own start pose.
-      real_trials: walks in the real world, each on its own lumps.
+      trials: number of walks in the sim that are counted, each from its own start pose.
+      real_trials: number of walks in the real world, each on its own lumpy ground.
       threads: processor threads; 0 for all.
     """
 

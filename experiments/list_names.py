@@ -115,7 +115,7 @@ def main(config: List) -> None:
 
 
 def _bounds(field: "dataclasses.Field[Parameter]") -> list[str]:
-    """Name, unit, default and bounds of a terrain parameter, as text."""
+    """Name, unit, default and bounds of a terrain parameter, as texts."""
     unit = next((UNITS[end] for end in UNITS if field.name.endswith(end)), "1")
     default = field.default if isinstance(field.default, tuple) else (field.default,)
     texts = [":".join(f"{value:g}" for value in default)]

@@ -42,10 +42,10 @@ class OptimizeGait(RunOptions):
       terrain: ground of the search in the sim, for example "lumps:amplitude_m=0.005".
       real_terrain: ground of the evaluation in the real world.
       sim: run folder of a diagnosis; its effects are added to the sim.
-      population: gaits tried in each generation.
+      population: number of gaits tried in each generation.
       generations: number of generations of the search.
       sigma: spread of the first generation, as a share of each parameter's range.
-      trials: trials of each gait in each world, on a course of 3 m.
+      trials: number of trials of each gait in each world, on a course of 3 m.
       threads: processor threads; 0 for all.
 
     Example:
@@ -130,7 +130,7 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
 
 
 def _evaluate(config: OptimizeGait, folder: RunFolder, tuned: Gait) -> dict[str, Any]:
-    """Scores of the start and the tuned gait in both worlds, on a course of 3 m."""
+    """Evaluate start gait and tuned gait in both worlds, on a course of 3 m."""
     description = robots.get(config.robot)
     both = {"start": load_gait(config.start), "tuned": tuned}
     *_, of_trials = config.plan().seeds()

@@ -73,7 +73,7 @@ class RealRobots:
 
 
 def main(config: RealRobots) -> None:
-    """Diagnose, write the page, and print the verdict."""
+    """Diagnose the robot, write the report page, and print the verdict."""
     folder, verdict = run_diagnosis(config.diagnose())
     report, diagnosis = folder.path / REPORT, folder.path / DIAGNOSIS
     if report.exists():

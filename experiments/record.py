@@ -46,7 +46,7 @@ Motion = Literal[
 
 @dataclass(frozen=True)
 class Record:
-    """Make a recording of a moving robot, in the engine of the sim or the real world.
+    """Make a recording of a moving robot, in the sim or in the real world.
 
     The base of the robot is fixed in the air for chirp, multisine, steps and ramps. For
     squats, sway and walks the robot stands on its feet.

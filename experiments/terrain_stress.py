@@ -45,7 +45,7 @@ class TerrainStress(RunOptions):
         is always tried.
       rungs: number of severities of a family, from mild to hard, each the same factor
         from the one before.
-      trials: trials of each gait at each severity, each on its own ground.
+      trials: number of trials of each gait at each severity, each on its own ground.
       worst: number of falls, of each gait and world, that are kept as Rerun files.
       threads: processor threads; 0 for all.
     """

@@ -178,7 +178,7 @@ class _Maker:
         return _Made(number, run, effects)
 
     def write(self, folder: Path) -> None:
-        """Write the nominal model and the recordings into a folder."""
+        """Write the model without hidden effects, and the recordings, into a folder."""
         plant = self._motion.plant
         robot = plant.name
         if plant.file is not None:

@@ -171,7 +171,7 @@ def consult_all(
 def _consult(
     folder: Path, case: TrueCase, found: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """Fit the true effects of a case, and store the result for a resumed run."""
+    """Fit the true effects of a case, and store the result at once."""
     oracle = consult(folder / CASES / case.name, case, found)
     write_text(_path(folder, case.name), oracle.to_json())
     return oracle

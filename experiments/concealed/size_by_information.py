@@ -48,7 +48,7 @@ _INNER = 0.1
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
-    """Draw nats per recording: a level by its share, then evenly in the logarithm."""
+    """Draw the nats per recording: a level by its share, then log-uniform within it."""
     ends = [MOST_NATS, *LEVELS.values()]
     level = int(rng.choice(len(LEVELS), p=[SHARES[name] for name in LEVELS]))
     high, low = ends[level], ends[level + 1]
@@ -56,7 +56,7 @@ def drawn_nats(rng: np.random.Generator) -> float:
 
 
 def level_of(nats_per_recording: float) -> str:
-    """The easiest level whose least nats are reached; otherwise the last level."""
+    """The easiest level whose least nats per recording are reached; else "L4"."""
     *_, last = LEVELS
     reached = (name for name, least in LEVELS.items() if nats_per_recording >= least)
     return next(reached, last)

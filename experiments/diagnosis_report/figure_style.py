@@ -20,11 +20,7 @@ CONTROL, FAINT, GRID, NOISE = "#a6acb5", "#6a737d", "#e6e8eb", "#eceff2"
 
 
 def new_figure(height_in: float) -> "Figure":
-    """An empty figure as wide as the page's column of text.
-
-    Args:
-      height_in: height of the figure [inch].
-    """
+    """An empty figure of this height [inch], as wide as the page's column of text."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(WIDTH_IN, height_in), layout="constrained")

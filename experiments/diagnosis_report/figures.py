@@ -152,11 +152,7 @@ def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
 
 
 def unexplained_figure(rest: Unexplained) -> "Figure":
-    """Draw the mean unexplained error over another quantity, with two standard errors.
-
-    Args:
-      rest: the shape of the error that no effect explains.
-    """
+    """Draw the mean unexplained error over another quantity, +- two standard errors."""
     at, mean, spread = (np.array(part) for part in (rest.at, rest.mean, rest.spread))
     largest = float(np.abs(mean).max(initial=0.0))
     factor, unit = error_unit(rest.unit, largest)

@@ -58,11 +58,7 @@ def told_together(effects: Sequence[Found]) -> list[list[Found]]:
 
 
 def at_many(alike: Sequence[Found]) -> str:
-    """A clause on an effect at many places: the range of its first parameter's values.
-
-    Args:
-      alike: the effects of one name, at different places.
-    """
+    """A clause on the same effect at many places: range of its first parameter."""
     name = next(iter(alike[0].parameters))
     order = sorted(alike, key=lambda one: one.parameters[name].value)
 

@@ -35,11 +35,7 @@ _DARK = 0.6
 
 
 def worst_cells(cells: Sequence[MismatchCell]) -> list[MismatchCell]:
-    """Choose the channels that the map shows, the worst first.
-
-    Args:
-      cells: all channels of a verdict's mismatch map.
-    """
+    """Choose the channels that the mismatch map shows, the worst first."""
     ranked = sorted(cells, key=lambda cell: -cell.share)[:_MOST_ROWS]
     return [
         cell

@@ -74,7 +74,7 @@ def percent(part: float) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """A unit as it is printed: "" for a plain number, and raised powers."""
+    """A unit as it is printed: "" for the unit "1", and "m²" for "m^2"."""
     return {"1": ""}.get(unit, unit.replace("^2", "²").replace("^3", "³"))
 
 

@@ -96,11 +96,7 @@ class Headline(NamedTuple):
 
 
 def headline(fit: Fit | None) -> Headline | None:
-    """The errors of the worst channel; None if no data were held out.
-
-    Args:
-      fit: the held-out errors of a verdict.
-    """
+    """The errors of the worst channel in `fit`; None if no data were held out."""
     if fit is None or not fit.channels:
         return None
     name, worst = max(fit.channels.items(), key=lambda item: item[1].excess)
@@ -182,11 +178,7 @@ def _open(verdict: Verdict, changed: bool) -> list[str]:
 
 
 def doubts(verdict: Verdict) -> list[str]:
-    """Sentences on how sure each effect is, and on other answers that fit as well.
-
-    Args:
-      verdict: the verdict of the diagnosis.
-    """
+    """Sentences on how sure each effect is, and on other answers that fit as well."""
     lines = []
     for effect in verdict.effects:
         sure = f"{at_words(effect)}: {percent(effect.probability)} sure"
@@ -203,11 +195,7 @@ def doubts(verdict: Verdict) -> list[str]:
 
 
 def next_step(verdict: Verdict) -> str:
-    """The experiment that would answer most open questions; "" if none is open.
-
-    Args:
-      verdict: the verdict of the diagnosis.
-    """
+    """The experiment that would answer most open questions; "" if none is open."""
     step = verdict.next_experiment
     if step is None:
         return ""

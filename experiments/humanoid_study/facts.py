@@ -1,4 +1,4 @@
-"""Measures what limits a robot in a gait: joint ranges, motors, size of the soles."""
+"""Measures of what limits a robot in a gait: joint ranges, motors, size of soles."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Page and picture of `groundwalk humanoids`: which robots walk, why others fall."""
+"""Page and picture of `groundwalk humanoids`: which robots walk, and why some fall."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -55,12 +55,7 @@ Result = Mapping[str, Mapping[str, Any]]
 
 
 def write_humanoids_page(folder: RunFolder, result: Result) -> None:
-    """Write the report page of `groundwalk humanoids`.
-
-    Args:
-      folder: the run's folder, with a subfolder for each robot.
-      result: measures of each robot, by its name.
-    """
+    """Write the report page of a run of `groundwalk humanoids` into its folder."""
     columns, rows = robot_rows(result)
     body = [*markdown_table(columns, rows), ""]
     for note in NOTES:
@@ -70,12 +65,7 @@ def write_humanoids_page(folder: RunFolder, result: Result) -> None:
 
 
 def draw_humanoids(recordings: Mapping[str, Recording], path: Path) -> None:
-    """Draw a walk of each robot into a PNG file, three side by side.
-
-    Args:
-      recordings: recordings by the name of the robot.
-      path: the file.
-    """
+    """Draw one recorded walk of each robot into a PNG file, three side by side."""
     strips = [walk_strip(scene) for scene in make_scenes(recordings)]
     places = [divmod(i, PANELS_IN_A_ROW) for i in range(len(strips))]
     placed = {

@@ -1,4 +1,4 @@
-"""Joint commands that excite the physics of a standing robot: squat, sway, walk."""
+"""Joint commands that excite the physics of a robot on its feet: squat, sway, walk."""
 
 from collections.abc import Callable
 

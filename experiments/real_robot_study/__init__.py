@@ -1,4 +1,4 @@
-"""Study of `groundwalk real-robots`: diagnoses of real robots against known values."""
+"""Study of `groundwalk real-robots`: diagnoses compared with published values."""
 
 from experiments.real_robot_study.cases import ROBOTS, RealRobot
 from experiments.real_robot_study.claims import claims_of

@@ -1,4 +1,4 @@
-"""Claims about the diagnosis of a real robot, and whether they hold."""
+"""Claims on the report page about the diagnosis of a real robot; whether they hold."""
 
 from collections.abc import Iterator
 

@@ -27,13 +27,7 @@ real robot.
 
 
 def write_real_page(folder: RunFolder, robot: RealRobot, verdict: Verdict) -> None:
-    """Write `result.md` and `report.html` into the run's folder.
-
-    Args:
-      folder: the run's folder.
-      robot: the robot that was diagnosed.
-      verdict: the verdict of its diagnosis.
-    """
+    """Write a diagnosis' page, `result.md` and `report.html`, into the run's folder."""
     body = [" ".join(robot.about.split()), "", f"## Verdict: {badge(verdict)}"]
     body += ["", *_effects(robot, verdict.effects), "", *_doubts(verdict)]
     body += ["", "## Errors of the sim on held-out recordings", "", *_fit(verdict)]

@@ -46,11 +46,7 @@ class Report:
         return "\n".join([*lines, *self.origin.to_markdown()]) + "\n"
 
     def to_html(self, folder: Path) -> str:
-        """The page as HTML that contains its pictures and loads nothing else.
-
-        Args:
-          folder: folder of the pictures.
-        """
+        """The page as HTML that contains the pictures, read from `folder`."""
         return render(
             TEMPLATE,
             title=self.question,

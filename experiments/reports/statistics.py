@@ -22,14 +22,14 @@ from groundwalk.errors import BadValueError
 
 NORMAL_95 = 1.959963984540054
 """97.5 % quantile of the normal distribution: half the width of a 95 % interval in
-standard deviations. A literal, because importing scipy.stats takes half a second."""
+standard deviations. A constant, because importing scipy.stats takes half a second."""
 
 CHI_SQUARED_95 = 3.841458820694124
 """95 % quantile of the chi-squared distribution with one degree of freedom."""
 
 WIDTHS = np.geomspace(0.017, 1.0, 16)
-"""Candidate widths w of the logistic curve, in ladder lengths. The share of falls rises
-from 5 to 95 % over 5.9 widths, so the smallest is a tenth of the ladder."""
+"""Candidate widths w of the logistic curve, in lengths of the ladder of severities. The
+share of falls rises from 5 to 95 % over 5.9 w, at least a tenth of the ladder."""
 
 MIDDLES = np.linspace(-1.0, 2.0, 601)
 """Candidate middles m of the logistic curve, in ladder lengths from the mildest rung:
@@ -126,7 +126,7 @@ def half_fall(
 
 
 def _is_ordered(ladder: FloatArray) -> bool:
-    """Whether all numbers rise, or all fall."""
+    """Whether the numbers (n,) strictly rise, or strictly fall."""
     steps = np.diff(ladder)
     return bool((steps > 0).all() or (steps < 0).all())
 

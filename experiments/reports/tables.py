@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 Scores = Mapping[str, Mapping[str, Mapping[str, Any]]]
-"""The fields of a `Score` by world ("sim", "real") and by the name of the gait."""
+"""Speed and falls (the fields of a `Score`) by world, "sim" or "real", and gait."""
 
 SCORE_HEADINGS = ("world", "gait", "speed [cm/s]", "falls")
 """Headings of the table of scores, whose rows `score_rows` makes."""

@@ -1,4 +1,4 @@
-"""Stores the results of a diagnosis' long stages as files of its run folder."""
+"""Stores results of a diagnosis' stages in its run folder, so that it can resume."""
 
 import io
 import json

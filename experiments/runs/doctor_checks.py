@@ -62,7 +62,7 @@ class Finding:
 
 
 def check_python(version: tuple[int, int]) -> Finding:
-    """Check the major and minor version of the running Python."""
+    """Check whether groundwalk supports this major and minor version of Python."""
     found = ".".join(map(str, version))
     if version == TESTED_PYTHON:
         return Finding("Python", State.OK, found)
@@ -73,8 +73,8 @@ def check_python(version: tuple[int, int]) -> Finding:
 def import_problem(module: str) -> str:
     """Import a module, and return the last line of the error; "" if it works.
 
-    The import runs in a process of its own, because a physics engine may print from C,
-    or crash.
+    The import runs in another process, because a physics engine may print from C, or
+    crash.
     """
     done = subprocess.run(
         [sys.executable, "-c", f"import {module}"],
@@ -136,11 +136,7 @@ def check_packages() -> list[Finding]:
 
 
 def check_robot_files(files: Sequence[Path]) -> Finding:
-    """Check that the URDFs and meshes of example-robot-data are on the disk.
-
-    Args:
-      files: all files that the package lists.
-    """
+    """Check that `files`, all that the package example-robot-data lists, exist."""
     install = "pip install --force-reinstall --no-deps example-robot-data"
     urdfs = [file for file in files if file.suffix == ".urdf"]
     meshes = [file for file in files if file.suffix.lower() in {".dae", ".obj", ".stl"}]
@@ -152,11 +148,7 @@ def check_robot_files(files: Sequence[Path]) -> Finding:
 
 
 def check_viewer(path: str) -> Finding:
-    """Check that the Rerun viewer is installed.
-
-    Args:
-      path: the folders to search, as in the variable PATH.
-    """
+    """Check that Rerun's viewer is in a folder of `path` (as the variable PATH)."""
     viewer = shutil.which("rerun", path=path)
     if viewer is None:
         advice = "to open recordings here: pip install rerun-sdk"

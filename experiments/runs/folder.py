@@ -1,4 +1,4 @@
-"""The folder of a run: configuration, state and results; never overwritten."""
+"""The folder of a run with configuration, state and results; never overwritten."""
 
 import dataclasses
 import datetime

@@ -12,7 +12,7 @@ REPEATABLE = "; the same command continues where this one stopped"
 
 
 class DefaultInt(int):
-    """Default of an option, distinguishable from the same number given by the user."""
+    """Default of an option, distinguishable from the same number given by a user."""
 
 
 @dataclass(frozen=True, kw_only=True)

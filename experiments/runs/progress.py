@@ -17,7 +17,7 @@ LONG_S = 60.0
 
 
 class Task(Protocol):
-    """A piece of work whose progress is shown."""
+    """A task whose progress is shown."""
 
     def advance(self, note: str = "", steps: int = 1) -> None:
         """Report that steps are done.

@@ -25,7 +25,7 @@ WIDTH = 0.6
 
 
 def draw_search(history: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Draw a search into a PNG file; see `search_figure`."""
+    """Draw rewards and falls of a search into a PNG file; see `search_figure`."""
     write_figure(search_figure(history), path)
 
 

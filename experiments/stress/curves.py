@@ -21,10 +21,9 @@ whose list `rungs` has an entry for each severity."""
 
 
 def curves_of(cells: Sequence[Cell]) -> list[dict[str, Any]]:
-    """Make a curve for every robot, world, family and gait, in the cells' order.
+    """Make a curve for every robot, world, family of ground and gait.
 
-    Args:
-      cells: all cells; those of a family of ground are in order from mild to hard.
+    The cells of a family of ground must be in order from mild to hard.
     """
     keys = dict.fromkeys(
         (cell["robot"], cell["world"], cell["family"], trial["gait"])
@@ -65,12 +64,12 @@ _COUNTS = ("severity", "falls", "trials")
 
 
 def trials_of(cell: Cell, gait: str) -> list[Trial]:
-    """The trials of one gait in a cell."""
+    """The trials of one gait in a cell (a robot, world, family of ground, severity)."""
     return [Trial(**trial) for trial in cell["trials"] if trial["gait"] == gait]
 
 
 def _rung(severity: float, trials: Sequence[Trial]) -> dict[str, Any]:
-    """Summarize the trials of one gait at one severity."""
+    """Summarize a gait's trials at one severity: speed, falls and their causes."""
     speeds = [100 * trial.distance_m / trial.time_s for trial in trials]
     fallen = [trial for trial in trials if trial.fell]
     distances = [trial.distance_m for trial in fallen]

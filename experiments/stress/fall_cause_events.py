@@ -78,7 +78,7 @@ def slip(signals: Signals, ticks: range) -> int | None:
 
 
 def trip(signals: Signals, ticks: range) -> int | None:
-    """Detect that the swing foot hits a rise of the ground and stops too early."""
+    """Detect that the swing foot hits rising ground and stops before its target."""
     step = signals.ticks_in(_SHORT_S)
     was_in_air = _all_of_last(signals.load < IN_THE_AIR, 3)
     for tick in ticks:

@@ -86,7 +86,7 @@ class Place:
         return f"{self.family}-{self.severity:.3g}" if self.severity else self.family
 
     def ground(self, leg_m: float, begin: float, seed: int) -> TerrainSpec:
-        """The ground of one trial.
+        """The ground of one trial at this place.
 
         Args:
           leg_m: length of the robot's leg [m].

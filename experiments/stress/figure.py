@@ -35,18 +35,14 @@ def draw_comparison(curves: Sequence[Curve], folder: Path) -> None:
 
 
 def draw_heat_maps(curves: Sequence[Curve], folder: Path) -> None:
-    """Write a PNG file for each gait; see `heat_map_figure`."""
+    """Write a PNG file with the falls of each gait; see `heat_map_figure`."""
     for gait in _each(curves, "gait"):
         own = [curve for curve in curves if curve["gait"] == gait]
         write_figure(heat_map_figure(own), folder / heat_map_name(gait))
 
 
 def heat_map_figure(curves: Sequence[Curve]) -> "Figure":
-    """Draw one gait's falls: a panel for each robot and world, a row for each family.
-
-    Args:
-      curves: the curves of one gait; each has a family of ground.
-    """
+    """Draw a gait's falls: a panel for each robot and world, a row for each family."""
     from matplotlib.figure import Figure
 
     settings = _settings(curves)

@@ -87,12 +87,7 @@ def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 
 def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
-    """Write the report page, `result.md` and `report.html`, of a run with its pictures.
-
-    Args:
-      folder: the run's folder.
-      curves: results as `curves_of` makes them.
-    """
+    """Write a run's report page, `result.md` and `report.html`, beside its pictures."""
     causes = ("robot", "world", "gait", "family", "falls", *Cause)
     body = [
         *markdown_table(HALF_HEADINGS, half_rows(curves)),

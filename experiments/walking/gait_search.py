@@ -1,4 +1,4 @@
-"""The search of `groundwalk optimize-gait`: tunes a gait for one terrain in the sim."""
+"""The search of `groundwalk optimize-gait`: tunes a gait for a terrain in the sim."""
 
 import contextlib
 import dataclasses

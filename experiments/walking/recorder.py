@@ -74,7 +74,7 @@ class Recorder:
         return Recording(columns, metadata)
 
     def _names(self) -> list[str]:
-        """Names of the columns, in the order in which `tick` notes their values."""
+        """Names of the columns, in the order in which `tick` adds their values."""
         joints = self._description.joints
         return [
             "time",

@@ -1,4 +1,4 @@
-"""CMA-ES over the 16 gait parameters, each scaled to [0, 1]."""
+"""CMA-ES (evolution strategy) over the 16 gait parameters, scaled to [0, 1]."""
 
 import pickle
 from typing import Any, Self
@@ -87,7 +87,7 @@ class GaitSearch:
         return from_unit(np.array(self._asked))
 
     def tell(self, rewards: FloatArray) -> None:
-        """Learn from the rewards (population,) of the gaits that `ask` has returned."""
+        """Update the search with the rewards (population,) of the gaits from `ask`."""
         self._strategy.tell(self._asked, (-rewards).tolist())
 
     @property

@@ -81,7 +81,7 @@ class Trials:
     ended: tuple[End, ...]
 
     def part(self, start: int, stop: int) -> "Trials":
-        """Trials `start` to `stop - 1`."""
+        """The trials with index `start` to `stop - 1`."""
         rows = slice(start, stop)
         return Trials(self.distance_m[rows], self.time_s[rows], self.ended[rows])
 

@@ -14,17 +14,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
-"""Colours of the methods, the diagnosis first; colour-blind people can distinguish them
-(Okabe and Ito)."""
+"""Colours of the methods, the diagnosis first: a palette (Okabe and Ito) that
+colour-blind people can distinguish."""
 
 
 def draw_score(score: Mapping[str, Any], path: Path) -> None:
-    """Write the figure of a score as a PNG file.
-
-    Args:
-      score: the contents of score.json.
-      path: the PNG file to write.
-    """
+    """Write the figure of a score (the contents of score.json) as a PNG file."""
     write_figure(score_figure(score), path)
 
 

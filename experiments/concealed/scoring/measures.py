@@ -64,11 +64,7 @@ def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
 
 
 def share(right: Iterable[bool]) -> Figure:
-    """Share of true values among all, as a figure with Wilson's interval.
-
-    Args:
-      right: whether each thing counted is right.
-    """
+    """Share of true values in `right`, as a figure with Wilson's 95 % interval."""
     values = list(right)
     if not values:
         return {"value": None, "n": 0, "low": None, "high": None}

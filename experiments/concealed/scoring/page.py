@@ -134,12 +134,7 @@ def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
 
 
 def score_report(score: Mapping[str, Any], figure: str) -> Report:
-    """Make the report page of a score.
-
-    Args:
-      score: the contents of score.json.
-      figure: file name of the picture.
-    """
+    """Make the report page of a score.json; `figure` is its picture's file name."""
     body = markdown_table(*score_rows(score))
     body += ["", f"![Accuracy by level, and calibration]({figure})", "", NOTES.strip()]
     body += ["", "Verdicts by kind of case:", "", *_verdict_table(score["verdicts"])]
