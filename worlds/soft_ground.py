@@ -57,10 +57,10 @@ def soften_mujoco(
 ) -> None:
     """Give the soles of a compiled MuJoCo model soft contacts; changes the model.
 
-    A contact with solref (-k, -b) and constant impedance d solves
-    a + b r' / d + k r / d + R f = 0, with R = A (1 - d) / d and A the foot's inverse
-    mass in the reference pose (MuJoCo's documentation, "Constraint model"). At rest
-    f = k r / (A (1 - d)), so that k = K A (1 - d) / n for a foot of n points.
+    A MuJoCo contact with solref (-k, -b), constant impedance d, depth r, acceleration a
+    and force f solves a + b r' / d + k r / d + R f = 0, with R = A (1 - d) / d and the
+    foot's inverse mass A in the reference pose (MuJoCo's "Constraint model"). At rest
+    f = k r / (A (1 - d)): stiffness K of a foot of n points needs k = K A (1 - d) / n.
     """
     import mujoco
 

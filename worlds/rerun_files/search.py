@@ -180,7 +180,7 @@ def _layout(history: SearchHistory) -> "rrb.Blueprint":
 def _reward_views(
     history: SearchHistory, abreast: bool
 ) -> "rrb.Horizontal | rrb.Vertical":
-    """Views of rewards, their histogram and falls: in a row, or the first on top."""
+    """Views of rewards, their histogram and falls, in a row if `abreast`."""
     import rerun.blueprint as rrb
 
     unit = history.units.get("reward", "")

@@ -49,4 +49,4 @@ class SearchHistory(NamedTuple):
     walks: Sequence[SearchWalk] = ()
     """Walk of the best gait of each generation; empty if there are none."""
     no_walks: str = ""
-    """Text for the viewer: why there are no walks though best gaits are known."""
+    """Reason, shown in the viewer, why the known best gaits have no walks."""

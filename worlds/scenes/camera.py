@@ -41,7 +41,7 @@ _GROUND_STEPS = 3
 """Iterations to find where a ray meets uneven ground; more change nothing visibly."""
 
 _SEEN_THROUGH = 1e-3
-"""Factor on the distance of glowing marks, so that no other shape hides them."""
+"""Factor on the distance to glowing marks: as the nearest shapes, they stay visible."""
 
 _PER_PIXEL = 2
 """Rays along each side of a pixel, 2 x 2 in all: their mean makes edges smooth."""

@@ -13,7 +13,7 @@ from worlds.scenes.scene import SIDES, Scene
 _IMU = ("gyroscope", "accelerometer")
 MEASURED_SUPPORT = "contact/support"
 SIDEWAYS = "balance/sideways"
-"""Path of the curves of y, sideways, of centre of mass, centre of pressure and ZMP."""
+"""Path of the curves of y of centre of mass, centre of pressure and ZMP."""
 _ABREAST = 4
 """Largest number of joint plots in one row."""
 _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}

@@ -63,7 +63,7 @@ class Scene:
 
     @property
     def arrow_m_per_n(self) -> float:
-        """Arrow length per force [m/N]: the robot's weight is as long as its legs."""
+        """Arrow length per force [m/N]: a robot's weight looks as long as its legs."""
         scale = self.description.scale
         return _NAO_ARROW_M_PER_N * scale.length / scale.weight
 
