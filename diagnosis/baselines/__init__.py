@@ -1,7 +1,7 @@
 """Baselines: established methods that answer the same question as a diagnosis.
 
-Each one is a function `answer(plant, traces)` of the nominal robot model and the
-recordings that a diagnosis would fit. Its verdict can be scored like a diagnosis'.
+Each is a function `answer(plant, traces)` of the nominal robot model and the recordings
+that a diagnosis would fit. Its verdict can be scored like that of a diagnosis.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +18,7 @@ BASELINES: Mapping[str, Callable[[Plant, Sequence[Trace]], Verdict]] = {
     "bic": bic.answer,
     "sparse": sparse.answer,
 }
-"""The baselines by name; concealed sets keep their answers in folders of these names.
+"""The baselines by name. Sets of test cases keep answers in folders of these names.
 
 Example:
   See docs/concealed.md.

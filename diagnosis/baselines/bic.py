@@ -17,17 +17,20 @@ from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray
 
 CANDIDATES = 8
-"""Number of effects at places that are fitted: those with the best first guesses."""
+"""Number of candidates (effects at places) that are fitted, those with the best first
+guesses; each fit takes many simulations."""
 
 CONFUSABLE = 10.0
-"""Differences of BIC below this are no very strong evidence (Kass and Raftery 1995)."""
+"""Difference of BIC to the best effect below which another effect counts as possible,
+too; larger ones are "very strong" evidence (Kass and Raftery 1995)."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
-    """Name the effect with the least BIC = 2 energy + p ln n, or none.
+    """Name the effect with the least BIC = 2 energy + p ln n, or no effect.
 
-    Source: Schwarz 1978, "Estimating the dimension of a model". n counts samples, as
-    is usual; nothing is held out.
+    Here energy is half the sum of squared residuals in units of noise, p the number of
+    parameters and n the number of samples. Source: Schwarz 1978, "Estimating the
+    dimension of a model".
 
     Args:
       plant: the nominal robot model.
@@ -57,7 +60,8 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         for fit, value in zip(fits, criteria[1:], strict=True)
         if fit is not fits[best] and value < criteria[best + 1] + CONFUSABLE
     ]
-    (fit,) = fit_all(predictor, [fits[best].model])  # with a Jacobian of its own
+    # fit the best one again, for a Jacobian computed at its own values
+    (fit,) = fit_all(predictor, [fits[best].model])
     placed, spans = fit.model[0], intervals(fit)
     named = found_effect(plant, placed, spans, weights[best + 1], close)
     spent_s = time.monotonic() - begun_s
@@ -65,12 +69,12 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 
 
 def criterion(fit: FittedModel, samples: int) -> float:
-    """BIC of a fit, up to a constant that all fits share."""
+    """BIC (Bayesian information criterion) of a fit, up to a constant of all fits."""
     return 2 * fit.energy + float(fit.jacobian.shape[1] * np.log(samples))
 
 
 def intervals(fit: FittedModel) -> list[tuple[float, float]]:
-    """80 % intervals (low, high) of a model's values, as if the residual were white."""
+    """80 % intervals (low, high) of the values of a fit, for white residual noise."""
     information = fit.jacobian.T @ fit.jacobian
     variance = np.diag(np.linalg.pinv(information))
     x = fit.coordinates.of(fit.model)

@@ -1,4 +1,4 @@
-"""Turns fitted numbers into the effects of a verdict."""
+"""Makes the effects of a verdict from fitted values and intervals."""
 
 from collections.abc import Sequence
 
@@ -11,10 +11,10 @@ from diagnosis.plant.plant import Plant
 from diagnosis.verdict.verdict import Estimate, Found
 
 NORMAL_80 = float(norm.ppf(0.9))
-"""Half width of an 80 % interval in standard deviations."""
+"""Half width of an 80 % interval of a normal distribution, in standard deviations."""
 
 _LARGEST = 1e12
-"""Size of the numbers that stand for infinite bounds in a verdict."""
+"""Finite number that stands for infinite bounds in a verdict."""
 
 
 def found_effect(

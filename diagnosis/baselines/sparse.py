@@ -1,4 +1,4 @@
-"""Baseline: sparse regression of the torque that the nominal model does not explain."""
+"""Baseline: sparse regression of the joint torque that the nominal model lacks."""
 
 import time
 from collections.abc import Sequence
@@ -16,29 +16,30 @@ from diagnosis.verdict.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray, IntArray
 
 THRESHOLD = 0.1
-"""Smallest length of a column times its size, relative to the missing torque's."""
+"""Smallest part of the missing torque that a column must explain to be kept: the norm
+of the column times its coefficient, divided by the norm of the missing torque."""
 
 MOST_EFFECTS = 3
-"""Most effects in an answer."""
+"""Largest number of effects in an answer."""
 
 _ROUNDS = 20
-"""Rounds of thresholding; it settles after a few."""
+"""Number of rounds of thresholding; results no longer change after a few."""
 
 _RIDGE = 0.05
-"""Ridge penalty on columns of length one, PySINDy's default. It makes sizes slightly
-too small; without it they diverge, since the equation of motion itself is a sum of
-columns."""
+"""Ridge penalty for columns of norm one, PySINDy's default. It makes coefficients
+slightly too small; without it they diverge, since the equation of motion itself is a
+sum of columns."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
-    """Name the effects whose columns sequential thresholding leaves, or none.
+    """Name the effects whose columns remain after sequential thresholding, or none.
 
     Source: Brunton, Proctor and Kutz 2016, "Discovering governing equations from data
     by sparse identification of nonlinear dynamical systems".
 
     Args:
-      plant: the nominal robot model; its base must be fixed, since contact forces are
-        not known.
+      plant: the nominal robot model, with a fixed base: contact forces of a floating
+        one are not known.
       traces: recordings; all of them are fitted.
     """
     begun_s = time.monotonic()
@@ -77,11 +78,12 @@ def sequential_threshold(
     Args:
       columns: (N, k) candidate terms.
       target: (N,) values to be explained.
-      threshold: smallest length of a column times its size, relative to the target's.
+      threshold: columns are dropped if the norm of column times coefficient is below
+        this share of the target's norm.
 
     Returns:
-      Indices of the columns that remain, their sizes, and the sizes' standard errors as
-      if the residual were white.
+      Indices of the columns that remain, their coefficients, and the coefficients'
+      standard errors for white residual noise.
     """
     length = np.linalg.norm(columns, axis=0)
     whole = float(np.linalg.norm(target))
@@ -112,10 +114,10 @@ def _placed(
     size: FloatArray,
     error: FloatArray,
 ) -> list[tuple[PlacedEffect, list[tuple[float, float]], float]]:
-    """Effects with values, intervals and the share they explain, the largest first.
+    """Effects with values, 80 % intervals and norms of their torques, largest first.
 
-    Each column of an effect is one of its parameters. Sizes with the wrong sign belong
-    to no effect, except a negative viscous friction, which is a weaker servo damping.
+    Each column is one parameter of an effect. Coefficients out of a parameter's bounds
+    belong to no effect, except negative viscous friction: a weaker servo damping.
     """
     groups: dict[tuple[str, str], dict[int, tuple[float, float, float]]] = {}
     for index, value, spread in zip(kept, size, error, strict=True):

@@ -1,4 +1,4 @@
-"""Regression columns: the torque that each effect adds, linear in its size."""
+"""Regression columns: joint torques of effects that are linear in a parameter."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     import mujoco
 
 NUDGE_RAD = 1e-4
-"""Change of an angle [rad] that inverse dynamics is differentiated by."""
+"""Step of an angle [rad] for finite differences of inverse dynamics."""
 
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """One column of the regression.
+    """One column of the regression: torque of an effect for a parameter value of 1.
 
     Attributes:
-      effect: that it stands for; empty for what no effect does alone.
-      place: of the effect.
-      parameter: which of the effect's parameters its size is.
-      values: (N,) weighted torque for a size of one.
-      damping_nm_s_rad: damping of the servo and back-EMF at the joint.
+      effect: name of the effect; empty for a constant torque, which is no effect alone.
+      place: place of the effect.
+      parameter: index of the effect's parameter.
+      values: (N,) weighted torque for a coefficient of 1.
+      damping_nm_s_rad: damping of the servo plus back-EMF at the joint.
     """
 
     effect: str
@@ -43,7 +43,7 @@ class Column:
     damping_nm_s_rad: float = 1.0
 
     def named(self, size: float, error: float) -> tuple[str, float, float]:
-        """Name of the effect, value and standard error of its parameter, for a size."""
+        """Effect name, parameter value and standard error for a fitted coefficient."""
         if not self.effect:
             return "", size, error
         return effect(self.effect).from_column(size, error, self.damping_nm_s_rad)
@@ -52,12 +52,12 @@ class Column:
 def torque_columns(
     plant: Plant, traces: Sequence[Trace], torques: Torques
 ) -> list[Column]:
-    """Columns of all effects that are linear, or nearly so, in their size.
+    """Columns of all effects that are linear, or nearly so, in a parameter.
 
     Args:
-      plant: nominal.
-      traces: recordings that the torques are of.
-      torques: the missing torques that are to be explained.
+      plant: the nominal robot model.
+      traces: recordings that the torques were computed from.
+      torques: motion, and the missing torque that is to be explained.
     """
     columns = [
         column
@@ -74,12 +74,12 @@ def torque_columns(
 
 
 def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Column]:
-    """Columns of effects that act at one joint alone, and a constant torque there."""
+    """Columns of effects at one joint alone, and of a constant torque there."""
     motion, place = _motion_of(torques, joint), plant.joints[joint]
     damping = float(np.median(torques.motion.damping_nm_s_rad[:, joint]))
 
     def column(name: str, parameter: int, values: FloatArray) -> Column:
-        """The column of a torque that acts at this joint only."""
+        """The column of an effect whose torque (rows,) acts at this joint only."""
         whole = np.zeros_like(torques.motion.position_rad)
         whole[:, joint] = values
         return Column(name, place, parameter, _weighted(torques, whole), damping)
@@ -92,7 +92,7 @@ def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Colum
 
 
 def _signal_columns(plant: Plant, torques: Torques, kind: Effect) -> Iterator[Column]:
-    """The column of an effect on the commands of all joints, if it is linear."""
+    """The column of an effect on the commands of all joints, if it has one."""
     every = [
         kind.torque_column(_motion_of(torques, joint))
         for joint in range(len(plant.joints))
@@ -105,7 +105,7 @@ def _signal_columns(plant: Plant, torques: Torques, kind: Effect) -> Iterator[Co
 
 
 def _motion_of(torques: Torques, joint: int) -> JointMotion:
-    """The motion of one joint, arrays (rows,)."""
+    """The motion of one joint, taken from arrays of all joints."""
     motion = torques.motion
     return JointMotion(
         since_s=motion.since_s[:, 0],
@@ -122,7 +122,10 @@ def _motion_of(torques: Torques, joint: int) -> JointMotion:
 def _changed_columns(
     plant: Plant, torques: Torques, kind: Effect, place: str
 ) -> Iterator[Column]:
-    """Columns of an effect that changes the model or the pose, by inverse dynamics."""
+    """Columns of an effect that changes model or pose, by finite differences.
+
+    Each is the change of inverse dynamics' torque for a small value of one parameter.
+    """
     motion = torques.motion
     parameters = kind.parameters(plant, place)
     for number, parameter in enumerate(parameters):
@@ -138,7 +141,7 @@ def _changed_columns(
 
 
 def _model_of(plant: Plant, variants: Variants) -> "mujoco.MjModel":
-    """The plant's model with the fields of the first variant."""
+    """A compiled model of the robot with the changes of the first variant."""
     import mujoco
 
     if not variants.fields:

@@ -1,4 +1,4 @@
-"""Servo torques and inverse dynamics of smoothed recordings, and their difference."""
+"""Missing torque: servo torque minus inverse dynamics, from smoothed recordings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -16,25 +16,26 @@ if TYPE_CHECKING:
     import mujoco
 
 MOST_ROWS = 1500
-"""Most rows of all traces together that enter the regression."""
+"""Largest number of rows, of all recordings together, that regression uses."""
 _EDGE_S = 0.2
-"""Time at both ends [s] that is left out, as smoothed accelerations are poor there."""
+"""Time at both ends of a recording that is left out, because smoothed accelerations are
+poor there [s]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """R rows of all traces together, with their smoothed motion and servo torques.
+    """Smoothed motion and servo torques in R rows of all recordings together.
 
     Attributes:
-      since_s: (R, 1) time since the trace's start.
-      position_rad: (R, j) smoothed positions.
-      velocity_rad_s: (R, j) rate of the smoothed positions.
+      since_s: (R, 1) time since the start of the row's recording.
+      position_rad: (R, j) smoothed joint positions.
+      velocity_rad_s: (R, j) first derivative of the smoothed positions.
       acceleration_rad_s2: (R, j) second derivative of the smoothed positions.
       command_rad: (R, j) position targets.
-      command_rate_rad_s: (R, j) rate of the position targets.
+      command_rate_rad_s: (R, j) derivative of the position targets.
       kp_nm_rad: (R, j) stiffness of the servos.
-      damping_nm_s_rad: (R, j) damping and back-EMF of the servos.
-      servo_nm: (R, j) torque that the servos ask for, without back-EMF.
+      damping_nm_s_rad: (R, j) damping plus back-EMF of the servos.
+      servo_nm: (R, j) torque by the servos' law, without back-EMF.
     """
 
     since_s: FloatArray
@@ -49,7 +50,7 @@ class Motion:
 
     @classmethod
     def of(cls, traces: Sequence[Trace]) -> "Motion":
-        """Take at most `MOST_ROWS` of all rows, evenly spaced."""
+        """Take evenly spaced rows of all recordings, at most `MOST_ROWS` together."""
         every = max(1, -(-sum(trace.ticks for trace in traces) // MOST_ROWS))
         parts = [_motion(trace, every) for trace in traces]
         return cls(
@@ -87,11 +88,11 @@ class Torques:
     """The torque that the nominal model does not explain.
 
     Attributes:
-      motion: the motion in R rows.
-      nominal_nm: (R, j) torque that the motion needs by the nominal model.
-      weight_rad_nm: (j,) weights, one over the stiffness. They turn torques into
-        position errors, which are about equally large at all joints.
-      missing: (R j,) weighted servo torque less the torque that the motion needs.
+      motion: smoothed motion and servo torques in R rows.
+      nominal_nm: (R, j) torque for the motion by the nominal model's inverse dynamics.
+      weight_rad_nm: (j,) weights 1 / kp. They turn torques into position errors, which
+        are about equally large at all joints.
+      missing: (R j,) weighted difference of servo torque and `nominal_nm`.
     """
 
     motion: Motion
@@ -101,7 +102,7 @@ class Torques:
 
     @classmethod
     def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Torques":
-        """Compute servo torque less inverse dynamics for all traces of a plant."""
+        """Compute servo torque minus inverse dynamics for recordings of a robot."""
         motion = Motion.of(traces)
         # the model has the nominal servo's back-EMF as damping
         emf = traces[0].servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
@@ -115,11 +116,11 @@ class Torques:
 def inverse_nm(
     plant: Plant, model: "mujoco.MjModel", position_rad: FloatArray, motion: Motion
 ) -> FloatArray:
-    """Torques (R, j) [N m] that a motion needs, at positions other than its own.
+    """Torques (R, j) [N m] by inverse dynamics, for a motion at given positions.
 
     Args:
       plant: the nominal robot model.
-      model: the compiled model to use: the plant's, or a copy with other numbers.
+      model: the compiled model to use: the nominal one, or a copy that effects changed.
       position_rad: (R, j) positions, used instead of the motion's own.
       motion: gives velocities and accelerations.
     """

@@ -1,8 +1,8 @@
 """Baseline: fits all parameters with mujoco.sysid, and names the largest change.
 
-The free parameters are those that its users usually free: rotor inertia, viscous and
-dry friction, stiffness and damping of the servo at every joint, and the mass of every
-body. Each is counted in units of its typical size, so that changes can be compared.
+The fitted parameters are the usual ones: rotor inertia, viscous and dry friction, servo
+stiffness and damping at every joint, and the mass of every body. Each is measured in
+units of its typical size, so that changes can be compared.
 """
 
 import io
@@ -34,38 +34,44 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 SECONDS, FLOATING_SECONDS = 8.0, 2.0
-"""Motion that is fitted, all recordings together [s]; contacts are slow to simulate."""
+"""Length of motion that is fitted, all recordings together, for a fixed and a floating
+base; shorter for the latter, since contacts are slow to simulate."""
 
 SHORT, LONG = 6, 20
-"""Iterations of the optimiser: `SHORT` with more than `MANY` parameters."""
+"""Number of iterations of the optimiser: `SHORT` if there are more than `MANY`
+parameters, to limit the time, else `LONG`."""
 
 MANY = 60
-"""Number of parameters above which fewer iterations are made."""
+"""Number of parameters above which the optimiser makes fewer iterations."""
 
 NUDGE = 0.01
-"""Step of the finite differences, as a share of a typical size."""
+"""Step of the optimiser's finite differences, as a share of the typical size."""
 
 START = 0.002
-"""Distance from a bound, as a share of the range, at which parameters start."""
+"""Least distance of start values from a parameter's bounds, as a share of its range."""
 
 PRIOR = 3.0
-"""Standard deviation of a weak prior, in typical sizes. It is needed since the data do
-not distinguish some parameters, such as viscous friction and a servo's damping."""
+"""Standard deviation of a weak prior for each parameter, in typical sizes. It is needed
+since data cannot distinguish some parameters, such as viscous friction and servo
+damping."""
 
 LEAST_CHANGE = 0.1
-"""Smallest change, in typical sizes, that counts as a missing effect."""
+"""Smallest change of a parameter, in typical sizes, that counts as a missing effect."""
 
 _NORMAL_95 = float(norm.ppf(0.975))
 _WORST = 1e3
-"""Largest residual [standard deviations]; larger ones and NaN are replaced by it."""
+"""Largest residual, in standard deviations of the noise; it replaces larger ones, and
+those of simulations that diverge."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
-    """Name the parameter that changed most, of those whose interval excludes no change.
+    """Fit all parameters and name the one that changed most, or no effect.
+
+    Parameters do not count if their 95 % interval contains the nominal value.
 
     Args:
       plant: the nominal robot model.
-      traces: recordings; their beginnings are fitted.
+      traces: recordings, whose first seconds are fitted.
 
     Raises:
       GroundwalkError: mujoco.sysid is not installed.
@@ -94,11 +100,13 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 def fitted(
     plant: Plant, traces: Sequence[Trace], free: Sequence[FreeParameter]
 ) -> tuple[FloatArray, FloatArray]:
-    """Fit all p parameters: their changes (p,), and half widths of 95 % intervals (p,).
+    """Changes (p,) of p fitted parameters, and half widths (p,) of 95 % intervals.
+
+    Both are in units of the parameters' typical sizes.
 
     Args:
       plant: the nominal robot model.
-      traces: recordings that are fitted as a whole.
+      traces: recordings, fitted in full length.
       free: the p parameters.
     """
     sysid = _package()
@@ -124,20 +132,20 @@ def fitted(
         max_iters=SHORT if len(free) > MANY else LONG,
         x_scale="jac",
         eps=NUDGE,
-        output=io.StringIO(),  # what it prints otherwise
+        output=io.StringIO(),  # else it prints its progress
     )
     left, _, _ = residual(best.as_vector(), best)
-    with np.errstate(all="ignore"):  # directions that nothing depends on
+    with np.errstate(all="ignore"):  # parameters may have no influence
         _, half = sysid.calculate_intervals(left, np.asarray(result.jac))
     return best.as_vector(), np.nan_to_num(half, nan=np.inf)
 
 
 class _Residual:
-    """Measured less predicted positions, in units of noise, and the prior's part."""
+    """Residuals: measured minus predicted positions in units of noise, and a prior."""
 
     def __init__(self, plant: Plant, traces: Sequence[Trace]) -> None:
         self._traces = len(traces)
-        self._columns = [1 + column for column in plant.qpos]  # time comes first
+        self._columns = [1 + column for column in plant.qpos]  # column 0 is the time
         self._noise = shared_channels(plant, traces).noise[: len(plant.joints)]
 
     def __call__(
@@ -151,7 +159,7 @@ class _Residual:
         state: FloatArray,
         **_: Any,
     ) -> tuple[FloatArray, Any, Any]:
-        """As mujoco.sysid asks for it."""
+        """Residual vector, and measured data twice, as mujoco.sysid requires."""
         rows = measured.times >= WARM_UP_S
         times, path = measured.times[rows], state[:, self._columns]
         at = np.stack([np.interp(times, state[:, 0], one) for one in path.T], axis=1)
@@ -163,7 +171,10 @@ class _Residual:
 
 
 def _beginnings(plant: Plant, traces: Sequence[Trace]) -> list[Trace]:
-    """The beginning of each trace, all together as long as `SECONDS` allows."""
+    """The first seconds of each recording, equally long, 8 s or 2 s together.
+
+    The latter is for a floating base.
+    """
     seconds = SECONDS if plant.base == "fixed" else FLOATING_SECONDS
     some = traces[: int(seconds)]
     each_s = seconds / len(some)

@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     import mujoco
 
 STEP_S = 0.002
-"""Time step of the simulations [s]."""
+"""Time step of the physics in simulations by mujoco.sysid."""
 
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """The one parameter of an effect at a place, counted in typical sizes from neutral.
+    """A parameter to be fitted: that of an effect at a place, in typical sizes.
 
     Attributes:
       placed: effect and place, without values.
-      neutral: value of the parameter that changes nothing.
-      size: change of the parameter that counts as one.
-      low: smallest count.
+      neutral: parameter value at which the effect is absent.
+      size: typical change of the value, the unit of counts.
+      low: smallest count: change from neutral in typical sizes.
       high: largest count.
     """
 
@@ -45,19 +45,19 @@ class FreeParameter:
     high: float
 
     def value(self, count: float) -> float:
-        """The parameter in its own unit, for a count of sizes."""
+        """Parameter value in its own unit, `count` typical sizes from neutral."""
         return self.neutral + self.size * float(count)
 
 
 def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter]:
-    """All parameters that are free: those that users of mujoco.sysid free.
+    """All parameters to be fitted: those that users of mujoco.sysid usually fit.
 
-    These are the effects that MuJoCo has, that are one number of a joint or body, and
-    that act at any size: inertia, friction, stiffness, damping and mass. Sizes are
-    those of a plant with the servos of the first trace.
+    They belong to effects that MuJoCo can simulate, with one parameter of a joint or
+    body, and without threshold: inertia, friction, stiffness, damping and mass.
+    Typical sizes are those for the servos of the first recording.
 
     Args:
-      plant: nominal.
+      plant: the nominal robot model.
       traces: recordings to be fitted.
     """
     plant = replace(plant, servo=traces[0].servo)
@@ -84,12 +84,12 @@ def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter
 
 
 class SysidModels:
-    """Writes parameters into compiled models, since compiling each time is too slow."""
+    """Makes models with given parameters by changing compiled ones, which is fast."""
 
     def __init__(
         self, plant: Plant, traces: Sequence[Trace], free: Sequence[FreeParameter]
     ) -> None:
-        """Prepare one model for each trace, as each has its own servos."""
+        """Compile one model for each recording, since each has its own servos."""
         self._plant, self._free = plant, free
         self._nominal = {
             _label(number): (self._with_servo(trace.servo), trace.servo)
@@ -97,11 +97,11 @@ class SysidModels:
         }
 
     def build(self, parameters: Any, spec: "mujoco.MjSpec") -> "mujoco.MjModel":
-        """Make the model of the trace that a specification belongs to, with parameters.
+        """Make the model of one recording with parameters from mujoco.sysid.
 
         Args:
           parameters: mujoco.sysid's `ParameterDict`.
-          spec: one made by `sequence_of`; its name says which trace it belongs to.
+          spec: one made by `sequence_of`; its name says which recording it belongs to.
         """
         import mujoco
 
@@ -137,7 +137,7 @@ class SysidModels:
     def _change(
         self, model: "mujoco.MjModel", servo: Servo, variants: Variants
     ) -> None:
-        """Write the only row of `variants` into a model that has a trace's servos."""
+        """Write the only variant's effects into a model with a recording's servos."""
         plant, joints = self._plant, variants.joints
         for name, values in variants.fields.items():
             getattr(model, name)[...] += values[0] - getattr(plant.model, name)
@@ -151,16 +151,16 @@ class SysidModels:
 
 
 def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> Any:
-    """Convert a trace to mujoco.sysid's `ModelSequences`.
+    """Convert a recording to mujoco.sysid's `ModelSequences`.
 
-    The specification's name says which trace it belongs to. Positions are compared as
-    part of the state, since position sensors of a rollout are one step late.
+    The name of its `MjSpec` is made from `number`. Positions are compared as part of
+    the state, since position sensors in MuJoCo's rollout are one step late.
 
     Args:
       sysid: the package mujoco.sysid.
       plant: the nominal robot model.
       trace: the recording.
-      number: of the trace among all of them.
+      number: index of the recording.
     """
     import mujoco
 
@@ -192,7 +192,10 @@ def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> A
 
 
 def _control(plant: Plant, trace: Trace, size: int, since_s: FloatArray) -> FloatArray:
-    """Commands (steps, size), held from row to row; without any, measured positions."""
+    """Position targets (steps, size) [rad] at each step, held from row to row.
+
+    Without commands these are the measured positions.
+    """
     asked = trace.position_rad if trace.command_rad is None else trace.command_rad
     held = Held.of(trace.time_s, asked)
     control = np.zeros((len(since_s), size))

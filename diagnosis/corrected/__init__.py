@@ -1,7 +1,7 @@
-"""Simulations with the effects that a diagnosis has found.
+"""Simulations with the effects (missing physics) that a diagnosis has found.
 
-`corrected_mjcf` writes them into an MJCF file, `Correction` and `load_correction` carry
-them as JSON, and `CorrectedSim` is the sim world with all of them.
+`corrected_mjcf` writes the effects into an MJCF file, `Correction` and
+`load_correction` store and read them as JSON, and `CorrectedSim` simulates all of them.
 """
 
 from diagnosis.corrected.effects_json import Correction, load_correction

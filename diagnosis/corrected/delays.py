@@ -7,39 +7,39 @@ from groundwalk.arrays import FloatArray
 
 
 class LateCommands:
-    """Delays commands; two in one step are averaged by their durations."""
+    """Delays commands; a physics step in which two act gets their weighted mean."""
 
     def __init__(self, delay_s: float, step_s: float) -> None:
-        """Prepare; `begin` fills it.
+        """Make room for the commands under way; call `begin` before `step`.
 
         Args:
-          delay_s: time between a command and its effect [s].
-          step_s: time step of the physics [s].
+          delay_s: time between a command and its effect.
+          step_s: time step of the physics.
         """
         steps, self._share = divmod(delay_s / step_s, 1)
         self._commands: deque[FloatArray] = deque(maxlen=int(steps) + 2)
 
     def begin(self, command_rad: FloatArray) -> None:
-        """Start as if this (n, j) command had always been given."""
+        """Start as if these (n, j) position targets had always been commanded."""
         for _ in range(self._commands.maxlen or 0):
             self._commands.append(command_rad)
 
     def step(self, command_rad: FloatArray) -> FloatArray:
-        """Give one step's (n, j) command; returns the mean one that acts in it."""
+        """Take a step's (n, j) command; return the delayed one that acts in it."""
         self._commands.append(command_rad)
         older, newer = self._commands[0], self._commands[1]
         return (1 - self._share) * newer + self._share * older
 
 
 class LateEncoders:
-    """Delays measured positions and velocities."""
+    """Delays measured joint positions and velocities, interpolating between steps."""
 
     def __init__(self, delay_s: float, step_s: float) -> None:
-        """Prepare; `begin` fills it.
+        """Make room for past measurements; call `begin` before `note` and `seen`.
 
         Args:
-          delay_s: age of the measurements [s].
-          step_s: time step of the physics [s].
+          delay_s: age of the measurements.
+          step_s: time step of the physics.
         """
         steps, self._share = divmod(delay_s / step_s, 1)
         self._step_s = step_s
@@ -48,15 +48,15 @@ class LateEncoders:
         )
 
     def begin(self, position_rad: FloatArray, velocity_rad_s: FloatArray) -> None:
-        """Start as if positions and velocities (n, j) had always been these."""
+        """Start as if joint positions and velocities (n, j) had always been these."""
         for _ in range(self._states.maxlen or 0):
             self.note(position_rad, velocity_rad_s)
 
     def note(self, position_rad: FloatArray, velocity_rad_s: FloatArray) -> None:
-        """Store the true positions and velocities (n, j) after a step."""
+        """Store the true joint positions and velocities (n, j) after a physics step."""
         self._states.append((position_rad.copy(), velocity_rad_s.copy()))
 
     def seen(self) -> tuple[FloatArray, FloatArray]:
-        """Positions and velocities (n, j) that the encoders report now."""
+        """Late joint positions and velocities (n, j) that the encoders report now."""
         older, newer = self._states[0], self._states[1]
         return hermite(older, newer, self._step_s, 1 - self._share)

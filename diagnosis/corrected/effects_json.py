@@ -1,4 +1,4 @@
-"""The effects that a diagnosis found, as a file for simulations: `corrected.json`."""
+"""Reads and writes `corrected.json`: effects that a diagnosis found, for simulation."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Entry:
-    """An effect as the file has it: values by parameter name, in SI units."""
+    """An effect in `corrected.json`: name, place, and values by name in SI units."""
 
     name: str
     place: str
@@ -33,9 +33,9 @@ class Correction:
 
     Attributes:
       robot: name of the robot model.
-      base: how the base was held in the recordings.
-      native: effects that MuJoCo can simulate; `corrected.xml` contains them.
-      per_tick: effects that must be computed beside MuJoCo at every step.
+      base: "fixed" or "floating", as it was in the recordings.
+      native: effects that MuJoCo can simulate, which `corrected.xml` contains.
+      per_tick: other effects, which a simulation has to compute at every step.
 
     Example:
       See docs/python.md.
@@ -48,7 +48,7 @@ class Correction:
 
     @classmethod
     def of(cls, plant: Plant, model: Model) -> "Correction":
-        """The correction with the effects and values of a fitted model."""
+        """The correction with the effects and values of a fitted model of a robot."""
         parts = [
             Entry(
                 placed.name,
@@ -66,7 +66,7 @@ class Correction:
         Args:
           verdict: the answer of a diagnosis.
           robot: name of the robot model, which a verdict does not hold.
-          base: how the base was held, which a verdict does not hold either.
+          base: "fixed" or "floating", which a verdict does not hold either.
         """
         parts = [
             Entry(
@@ -79,17 +79,17 @@ class Correction:
         return cls(robot, base, *_sorted(parts))
 
     def to_json(self) -> str:
-        """The correction as JSON; the same correction gives the same text."""
+        """The correction as JSON text; equal corrections give equal text."""
         plain = {"format": FORMAT, **to_plain(self)}
         return json.dumps(plain, indent=1, allow_nan=False) + "\n"
 
     def model(self, plant: Plant) -> Model:
-        """The effects as a model for a plant of the same robot.
+        """The effects with places and values, checked against a model of the robot.
 
         Raises:
           BadModelError: the effects belong to another robot, have other parameters, or
-            cannot act on this plant.
-          UnknownNameError: the plant lacks a place, or an effect does not exist.
+            cannot act on this robot model.
+          UnknownNameError: the robot lacks a place, or an effect does not exist.
         """
         if self.robot != plant.name:
             raise BadModelError(
@@ -123,8 +123,8 @@ def load_correction(source: str | Path, plant: Plant) -> Model:
       plant: the robot model of the sim.
 
     Raises:
-      BadModelError: the file is no diagnosis, or one of another robot.
-      UnknownNameError: it names an effect or a place that does not exist.
+      BadModelError: the file is not from a diagnosis, or belongs to another robot.
+      UnknownNameError: the file names an effect or a place that does not exist.
 
     Example:
       See docs/python.md.

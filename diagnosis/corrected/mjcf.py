@@ -1,4 +1,4 @@
-"""Writes `corrected.xml`: a robot model with the effects found, as MuJoCo has them."""
+"""Writes `corrected.xml`: a robot's MJCF with the effects that MuJoCo can simulate."""
 
 import ctypes
 from collections.abc import Iterator
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 CORRECTED_XML = "corrected.xml"
 _LINEAR = 1
-"""MuJoCo's number for linear interpolation between two delayed controls."""
+"""MuJoCo's code for linear interpolation between two delayed controls."""
 
 _CONTACTS = " and all contacts switched off"
 _DIGITS = 17
-"""Digits with which every float is read back unchanged."""
+"""Number of decimal digits with which every 64-bit float is read back unchanged."""
 
 
 def corrected_mjcf(
@@ -38,17 +38,16 @@ def corrected_mjcf(
 ) -> str:
     """MJCF of a robot model with those effects in it that MuJoCo can simulate.
 
-    Time step, integrator, contact flags and the solver parameters of joints without a
-    new friction are those of the file that the model came from. A comment in the MJCF
-    lists what differs from it. Controls are position targets of the plant's joints. A
-    late command is an actuator's `delay`; before the first one is due the target is 0.
+    Time step, integrator, contact flags and solver parameters are those of the model's
+    own file, except at joints with new friction. An XML comment lists the differences.
+    Controls are position targets of the joints. Late commands become the actuators'
+    `delay`; until the first command is due the target is 0.
 
     Args:
       plant: the robot model without the effects.
       model: the effects; those that MuJoCo cannot simulate are left out.
-      servo: of the recordings; the plant's own where None.
-      step_s: time step [s]; the model file's own where None, or where that has none
-        the one of replays.
+      servo: servo gains of the recordings; None for the robot model's own.
+      step_s: time step; None for the model file's own, or 2 ms if it has none.
 
     Example:
       >>> plant = load_plant("so101", "fixed")
@@ -77,7 +76,7 @@ def corrected_mjcf(
 
 
 def _comment(variants: Variants, native: Model, model: Model) -> str:
-    """An XML comment: how the corrected MJCF differs from the nominal robot model."""
+    """XML comment on how the corrected MJCF differs from the nominal robot model."""
     plant = variants.plant
     others = [placed.key for placed in model if placed not in native]
     rub = [plant.joints[i] for i in np.flatnonzero(variants.joints.coulomb_nm[0])]
@@ -100,20 +99,20 @@ def _comment(variants: Variants, native: Model, model: Model) -> str:
 
 
 class _OneModel:
-    """A compiled model with the interface of a batch of one, to write its fields."""
+    """Lets code for a `mujoco.batch.Batch` write the fields of one compiled model."""
 
     def __init__(self, model: "mujoco.MjModel") -> None:
         self._model = model
 
     def expand(self, name: str) -> FloatArray:
-        """The values (1, ...) of a field; writing to them changes the model."""
+        """View (1, ...) of a field of the model; writing to it changes the model."""
         return np.asarray(getattr(self._model, name))[None]
 
 
 def _write_fields(
     compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
 ) -> None:
-    """Write the only row of `variants` into a compiled model."""
+    """Write servo gains and the only variant's effects into a compiled model."""
     import mujoco
 
     for name, values in variants.fields.items():
@@ -138,7 +137,7 @@ def _write_fields(
 
 
 def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:
-    """Delay all actuators; delays that are no whole steps interpolate two controls."""
+    """Delay all actuators' controls, interpolating if the delay is not whole steps."""
     if delay_s == 0:
         return
     for actuator in spec.actuators:
@@ -149,7 +148,7 @@ def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> Non
 
 @contextmanager
 def _all_digits() -> Iterator[None]:
-    """Let MuJoCo write XML with all digits; it writes six by default."""
+    """Let MuJoCo write XML with 17 digits in this block; it writes six by default."""
     import mujoco
 
     folder = Path(mujoco.__file__).parent

@@ -1,4 +1,4 @@
-"""The sim world with the effects that a diagnosis has found."""
+"""The sim (MuJoCo) world with effects that a diagnosis has found."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -30,12 +30,13 @@ def sim_plant(
     options: WorldOptions,
     grounds: Sequence[Heightfield] = (),
 ) -> Plant:
-    """Make the plant of the sim world's own model, with all grounds in it.
+    """Make the robot model that the sim world simulates, for use by a diagnosis.
 
     Args:
-      description: the robot.
-      options: time step, friction, fixed base.
-      grounds: heightfields; a plane if there are none, and unused for a fixed base.
+      description: the robot as data: links, joints, motors, feet and sensors.
+      options: time step, friction and whether the base is fixed.
+      grounds: heightfields, all put into the model; a plane if empty. A fixed base has
+        no ground.
 
     Example:
       See docs/python.md.
@@ -46,14 +47,13 @@ def sim_plant(
 
 
 def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
-    """Make n equal variants of a plant with a model's effects, for rollouts.
+    """Make n equal copies of a robot model with the effects, for rollouts.
 
-    A slope turns gravity instead of the ground, so that the robot stays on its
-    heightfield.
+    A slope rotates gravity instead of the ground, so that heightfields stay in place.
 
     Args:
-      plant: the sim's plant.
-      model: the effects.
+      plant: the sim world's robot model.
+      model: the effects with places and values.
       n: number of robots.
 
     Raises:
@@ -68,10 +68,10 @@ def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
 
 
 class CorrectedSim(SimWorld):
-    """The sim world with found effects, the same ones for all robots.
+    """The sim world with effects that a diagnosis found, the same for all robots.
 
-    Without effects it computes exactly the same as `SimWorld`. Effects with a time,
-    such as pushes, count it from the start of the rollout.
+    Without effects it computes exactly the same as `SimWorld`. Effects that depend on
+    time, such as pushes, count it from the start of the rollout.
 
     Example:
       See docs/python.md.
@@ -88,11 +88,11 @@ class CorrectedSim(SimWorld):
         """Make the world.
 
         Args:
-          description: the robot.
+          description: the robot as data: links, joints, motors, feet and sensors.
           grounds: one per robot; give one object n times to share it.
           seeds: one per robot, for its sensor noise.
-          options: as for `SimWorld`; a latency of the model is added to theirs.
-          model: the effects.
+          options: as for `SimWorld`; a latency among the effects is added to theirs.
+          model: the effects with places and values.
 
         Raises:
           BadModelError: a sim cannot have one of the effects.
@@ -102,7 +102,7 @@ class CorrectedSim(SimWorld):
         super().__init__(description, grounds, seeds, options)
 
     def _made_batch(self) -> "Batch":
-        """Make the batch; its model has all grounds, each robot touches its own."""
+        """Make the batch of simulations, in which each robot touches its own ground."""
         if not self._model:
             return super()._made_batch()
         from mujoco.batch import Batch
@@ -148,7 +148,7 @@ class CorrectedSim(SimWorld):
                 self._encoders.note(self._laws.encoder_rad(), velocity)
 
     def _read(self) -> tuple[Truth, Observation]:
-        """Read truth and observation, the latter with the effects on the sensors."""
+        """Read truth and observation; sensor effects act on the observation only."""
         truth, observation = super()._read()
         if self._laws is None:
             return truth, observation

@@ -1,8 +1,8 @@
-"""Replays: predicted measurements of variants of a robot model, for recorded commands.
+"""Replays: recorded commands simulated with variants of a robot model.
 
-`replay` runs all variants through all recordings in one batch of MuJoCo simulations.
-What effects do beyond MuJoCo's own physics is computed at every step: `servos`, `gaps`,
-`elastic`, `friction`, `outside_forces`, joined in `laws`.
+`replay` runs all variants through all recordings in one batch of MuJoCo simulations and
+returns predicted measurements. Effects that MuJoCo lacks are computed at every step by
+`servos`, `gaps`, `elastic`, `friction` and `outside_forces`, which `laws` combines.
 """
 
 from diagnosis.replay.replay import STEP_S, replay

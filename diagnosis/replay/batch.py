@@ -15,14 +15,14 @@ from groundwalk.arrays import FloatArray
 
 
 class ReplayBatch:
-    """Simulations of n variants in R runs, variant by variant.
+    """Simulations of all variants of a robot model in all runs, sorted by variant.
 
     Attributes:
-      laws: servos, friction and forces of the simulations.
-      n: number of simulations, n R.
-      count: number of runs R.
-      qpos: live (n R, nq) positions, as MuJoCo has them.
-      qvel: live (n R, nv) velocities.
+      laws: applies servos, friction and forces.
+      n: number of simulations, variants times runs.
+      count: number of runs.
+      qpos: (n, nq) MuJoCo's positions, which change as the simulations step.
+      qvel: (n, nv) MuJoCo's velocities, which change as the simulations step.
     """
 
     def __init__(
@@ -35,10 +35,10 @@ class ReplayBatch:
         """Put every simulation into the state that its run starts from.
 
         Args:
-          runs: R parts of recordings.
-          variants: n variants of the robot.
+          runs: recordings or parts of them, with start states.
+          variants: variants of the robot model.
           step_s: time step of the physics.
-          threads: threads of the batch.
+          threads: number of threads of the batch.
         """
         from mujoco.batch import Batch
 
@@ -63,15 +63,15 @@ class ReplayBatch:
             self.qpos[error.ids] = np.nan
 
     def bind(self, name: str) -> FloatArray:
-        """A live view of a field of the simulations."""
+        """View of a field of `MjData` of all simulations; it changes as they step."""
         return np.asarray(self._batch.bind(name))
 
     def _start(self, runs: Sequence[Run], variants: Variants) -> None:
-        """Set positions and velocities, and the ground that the soles stand on."""
+        """Set start positions and velocities, and ground bumps under the soles."""
         n, plant = self.n // self.count, self.plant
         measured = np.tile([run.position_rad for run in runs], (n, 1))
         velocity = np.tile([run.velocity_rad_s for run in runs], (n, 1))
-        # late sensors show where the joints were, so they are further on by now
+        # late sensors show where the joints were; by now they have moved on
         late_s = np.repeat(variants.signals.sensor_delay_s, self.count)[:, None]
         start = measured + late_s * velocity - self.laws.joints["offset_rad"]
         self.qpos[:, plant.qpos], self.qvel[:, plant.dofs] = start, velocity
@@ -87,7 +87,7 @@ class ReplayBatch:
 
 
 def _servo(trace: Trace) -> Servo:
-    """A trace's servo; only its motor's back-EMF where torques drive the joints."""
+    """A recording's servo; only its back-EMF if torque commands drive the joints."""
     if trace.command_rad is not None:
         return trace.servo
     none = np.zeros_like(trace.servo.kp_nm_rad)

@@ -1,10 +1,9 @@
-"""Uneven ground for replays: it is where recorded soles stood on it.
+"""Uneven ground for replays, inferred from where recorded soles stood at their start.
 
-The height of bumps does not say where they are, but a robot that stands has felt them.
-The recorded base and joints say where each point of a loaded sole is when a window
-begins. Where that is off the model's plane by more than the start state is uncertain,
-the ground is taken to be there, as far as its height allows. Where a foot steps later
-is not known in advance; there the ground is flat.
+The effect uneven ground states how high bumps are, not where. But recorded base and
+joints say where each point of a loaded sole is when a replay begins. Where that is off
+the model's plane by more than measurement errors, the ground is taken to be there, at
+most as high or low as the bumps. Where a foot steps later, the ground is flat.
 """
 
 from collections.abc import Sequence
@@ -22,29 +21,29 @@ if TYPE_CHECKING:
     from diagnosis.plant.plant import Plant
 
 DOUBT_M = 6e-4
-"""Distance [m] from the plane below which a sole counts as standing on it: three times
-the uncertainty from motion capture and encoders."""
+"""Distance [m] from the plane below which a sole counts as standing on the plane: three
+times the uncertainty from motion capture and encoders."""
 
 LOADED = 0.05
-"""Smallest share of the force on both feet with which a foot counts as standing."""
+"""Share of the force on all feet above which a foot counts as standing."""
 
 ABOVE_M = 0.005
-"""Height [m] above the lower foot up to which a foot counts as standing, where foot
+"""Height [m] above the lowest foot up to which a foot counts as standing, where foot
 forces are not recorded."""
 
 
 def conform(
     batch: Any, plant: "Plant", runs: Sequence[Run], height_m: FloatArray
 ) -> None:
-    """Raise or lower the ground under loaded soles to where these are.
+    """Raise or lower the ground under loaded soles to where the soles are.
 
-    The ground stays one plane; the points of the soles are moved instead.
+    The ground stays a plane: the geoms of the soles are moved instead.
 
     Args:
       batch: N simulations, in the states that their runs start from.
       plant: robot model with a plane as ground.
       runs: the run of each simulation.
-      height_m: (N,) largest distance of the ground from the plane.
+      height_m: (N,) largest height of bumps above or below the plane.
     """
     import mujoco
 
@@ -54,7 +53,7 @@ def conform(
     turns = np.asarray(batch.bind("geom_xmat")).reshape(n, model.ngeom, 3, 3)
     bodies = np.asarray(batch.bind("xmat")).reshape(n, model.nbody, 3, 3)
     at = np.asarray(batch.bind("geom_xpos")).reshape(n, model.ngeom, 3)
-    batch.forward()  # fills what has just been bound
+    batch.forward()  # computes the positions that have just been bound
     normal = turns[:, floor, :, 2]
     feet = [foot_geoms(plant, foot) for foot in plant.feet]
     above = [_above(model, geoms, floor, at, turns) for geoms in feet]
@@ -80,11 +79,11 @@ def _above(
     """(N, geoms) height of each geom's lowest point above the plane [m].
 
     Args:
-      model: of the simulations.
-      geoms: of a foot.
-      floor: number of the plane's geom.
+      model: the robot model.
+      geoms: ids of a foot's geoms.
+      floor: id of the plane's geom.
       at: (N, ngeom, 3) positions of all geoms.
-      turns: (N, ngeom, 3, 3) their orientations.
+      turns: (N, ngeom, 3, 3) orientations of all geoms.
     """
     import mujoco
 
@@ -98,11 +97,11 @@ def _above(
 
 
 def _stands(runs: Sequence[Run], lowest: FloatArray) -> BoolArray:
-    """(N, feet) flags of the feet that carry the robot as its run begins.
+    """(N, feet) whether a foot carries the robot as its run begins.
 
     Args:
       runs: the run of each simulation.
-      lowest: (N, feet) height of each foot's lowest point.
+      lowest: (N, feet) height of each foot's lowest point above the plane [m].
     """
     forces = [run.trace.foot_force_n for run in runs]
     found = lowest - lowest.min(axis=1, keepdims=True) <= ABOVE_M

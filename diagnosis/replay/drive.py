@@ -1,4 +1,4 @@
-"""Commands and torques of recordings, at the steps of a replay."""
+"""Recorded commands and torques, resampled to the physics steps of a replay."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ from groundwalk.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """Values that each hold from one row of a trace to the next.
+    """Values that each hold from one row of a recording to the next.
 
-    A step of a replay uses the mean over its duration. So a command may change within a
+    A physics step uses the mean over its duration. So a command may change within a
     step, and a delay need not be a whole number of steps.
 
     Attributes:
       time_s: (T,) times of the rows.
-      values: (T, j) values from each row on.
-      integral: (T, j) integral of the values from the first row to each row.
+      values: (T, j) values that hold from each row on.
+      integral: (T, j) time integral of the values from the first row to each row.
     """
 
     time_s: FloatArray
@@ -29,48 +29,48 @@ class Held:
 
     @classmethod
     def of(cls, time_s: FloatArray, values: FloatArray) -> "Held":
-        """Hold (T, j) values from (T,) times on; the one before fills a missing one."""
+        """Hold (T, j) values from (T,) times on; NaN becomes the value before it."""
         values = filled(values)
         steps = np.diff(time_s)[:, None] * values[:-1]
         integral = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
         return cls(time_s, values, integral)
 
     def mean(self, start_s: FloatArray, step_s: float) -> FloatArray:
-        """(..., j) means from `start_s` to `start_s + step_s`.
+        """(..., j) mean values from `start_s` to `start_s + step_s`.
 
         The first value also holds before the first row, the last one for ever.
 
         Args:
           start_s: (...) times.
-          step_s: duration.
+          step_s: length of the interval.
         """
         end_s = start_s + step_s
         return (self._at(end_s) - self._at(start_s)) / step_s
 
     def at(self, time_s: FloatArray) -> FloatArray:
-        """(..., j) values at (...) times."""
+        """(..., j) values that hold at (...) times."""
         return np.asarray(self.values[self._row(time_s)])
 
     def _at(self, time_s: FloatArray) -> FloatArray:
-        """(..., j) integral from the first row to (...) times."""
+        """(..., j) time integral of the values from the first row to (...) times."""
         row = self._row(time_s)
         since = (time_s - self.time_s[row])[..., None]
         return np.asarray(self.integral[row] + since * self.values[row])
 
     def _row(self, time_s: FloatArray) -> IntArray:
-        """(...) numbers of the rows whose values hold at (...) times."""
+        """(...) indices of the rows whose values hold at (...) times."""
         row = np.searchsorted(self.time_s, time_s, side="right") - 1
         return np.clip(row, 0, len(self.time_s) - 1)
 
 
 class Drive:
-    """Commands and torques for n variants times R runs, variant by variant."""
+    """Commands and torques for n R simulations: n variants in R runs, variant first."""
 
     def __init__(self, runs: Sequence[Run], delay_s: FloatArray, step_s: float) -> None:
         """Collect the commands and torques of all runs.
 
         Args:
-          runs: R runs, either all with position targets or all with torques.
+          runs: R recordings, either all with position targets or all with torques.
           delay_s: (n,) time until a command takes effect.
           step_s: time step of the replay.
         """
@@ -84,14 +84,14 @@ class Drive:
         self._variants, self._joints = len(delay_s), traces[0].position_rad.shape[1]
 
     def at(self, now_s: FloatArray) -> tuple[FloatArray | None, FloatArray | None]:
-        """(B, n R, j) mean targets and torques of B steps; None where there are none.
+        """(B, n R, j) mean targets [rad] and torques [N m] of B steps, or None each.
 
         Args:
           now_s: (B, R) times at which the steps begin.
         """
 
         def mean(held: Held, late_s: FloatArray) -> FloatArray:
-            """Means over the steps that begin at these times."""
+            """Means of held values over the physics steps that begin at these times."""
             return held.mean(late_s, self._step_s)
 
         return (
@@ -100,7 +100,7 @@ class Drive:
         )
 
     def ends(self, now_s: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """(B, n R, j) first and last targets of B steps; None where there are none.
+        """(B, n R, j) targets [rad] as B steps begin and end; None if there are none.
 
         Args:
           now_s: (B, R) times at which the steps begin.
@@ -110,7 +110,7 @@ class Drive:
         return None if before is None or after is None else (before, after)
 
     def added(self, now_s: FloatArray) -> FloatArray | None:
-        """(B, n R, j) known torques beside the servos' in B steps; None if none.
+        """(B, n R, j) recorded torques [N m] to be added to the servos'; None if none.
 
         Args:
           now_s: (B, R) times at which the steps begin.
@@ -130,7 +130,7 @@ class Drive:
         now_s: FloatArray,
         take: Callable[[Held, FloatArray], FloatArray],
     ) -> FloatArray | None:
-        """(B, n R, j) values taken at (B, R) times, late as each variant has it."""
+        """(B, n R, j) values at (B, R) times, minus each variant's command delay."""
         late_s = now_s[None] - self._delays_s[:, None, None]
         columns = [
             take(one, late_s[:, :, k]) for k, one in enumerate(held) if one is not None
@@ -143,19 +143,19 @@ class Drive:
 
 
 def _held(trace: Trace, values: FloatArray | None) -> Held | None:
-    """Values (T, j) of a trace as they hold; None without values."""
+    """Values (T, j) of a recording, each held to the next row; None for None."""
     return None if values is None else Held.of(trace.time_s, values)
 
 
 def _command_rad(trace: Trace) -> FloatArray | None:
-    """(T, j) position targets; None where servos do not hold the joints."""
+    """(T, j) position targets [rad] of a recording; None if servos hold no joints."""
     return None if trace.unheld else trace.command_rad
 
 
 def _torque_nm(trace: Trace) -> FloatArray | None:
-    """(T, j) torques on joints that no servo holds; None where servos hold them.
+    """(T, j) torques [N m] on joints that no servo holds; None if servos hold them.
 
-    The torque targets if there are any, else the measured torques.
+    They are the recording's torque targets, or without any the measured torques.
     """
     if not trace.unheld:
         return None

@@ -1,4 +1,4 @@
-"""Joints with a spring between motor and link."""
+"""Simulates motors that drive their links through springs, in a batch."""
 
 from collections.abc import Mapping
 from typing import Self
@@ -9,14 +9,15 @@ from groundwalk.arrays import BoolArray, FloatArray
 
 
 class ElasticJoints:
-    """Motors that drive their links through springs, arrays (rows, j).
+    """Motors that drive their links through springs: arrays (rows, j).
 
-    Motor: J w' = servo(command, angle) - (kd + emf) w - K (angle - q) - D (w - q')
-    (Spong 1987), stepped implicitly, as it may be light and its spring stiff. MuJoCo
-    simulates the link; the spring is its actuator.
+    A motor with inertia J, angle m and speed w follows (Spong 1987)
+      J w' = servo(command, m) - (kd + emf) w - K (m - q) - D (w - q'),
+    with q the link's angle, stepped implicitly, since J may be small and K large.
+    MuJoCo simulates the link, driven by an actuator that acts as the spring.
 
     Attributes:
-      soft: flags of the joints that have a spring.
+      soft: whether a joint has a spring.
       stiffness: K [N m/rad]; 1 where there is no spring.
       damping: D [N m s/rad].
     """
@@ -29,7 +30,10 @@ class ElasticJoints:
         servo: Mapping[str, FloatArray],
         inertia: FloatArray,
     ) -> None:
-        """Take the springs and motors; see `of`. Motors start where their links are."""
+        """Take arguments as `of`; `soft` flags joints with springs of K and D.
+
+        All are (rows, j). Motors start at the angles of their links.
+        """
         self.soft, self.stiffness, self.damping = soft, stiffness, damping
         self._servo, self._inertia = servo, inertia
         self._angle: FloatArray | None = None
@@ -42,12 +46,12 @@ class ElasticJoints:
         servo: Mapping[str, FloatArray],
         inertia: FloatArray,
     ) -> Self | None:
-        """Motors of all joints that have a spring in some simulation; None without any.
+        """Motors for the joints that have a spring in some simulation; None if none.
 
         Args:
-          joints: arrays of `Joints`, with a row for each simulation.
-          servo: numbers of the servos, see `BatchServos`.
-          inertia: (rows, j) of the rotors [kg m^2].
+          joints: arrays of `Joints` by name, with a row for each simulation.
+          servo: gains and limits of the servos, `BatchServos.law`.
+          inertia: (rows, j) inertias of the rotors [kg m^2].
         """
         soft = np.isfinite(joints["spring_nm_rad"])
         if not soft.any():
@@ -63,17 +67,17 @@ class ElasticJoints:
         step_s: float,
         torque_nm: FloatArray | float = 0.0,
     ) -> FloatArray:
-        """(rows, j) targets of the springs, after one step of the motors.
+        """Step the motors once; (rows, j) targets for the actuators that are springs.
 
-        The servo acts on the motor's angle before the step, as MuJoCo's servos do, and
-        the spring on the speeds of both ends after it, extrapolated from the last two
-        steps. So a stiff spring has the same integration error as a rigid joint.
+        The servo sees the motor's angle before the step, as MuJoCo's servos do. The
+        spring sees the speeds of both ends after it; the link's is extrapolated from
+        the last two steps. So a stiff spring has a rigid joint's integration error.
 
         Args:
           asked_rad: (rows, j) position targets of the servos.
-          position_rad: (rows, j) of the links.
-          velocity_rad_s: (rows, j) of the links.
-          step_s: time step.
+          position_rad: (rows, j) angles of the links.
+          velocity_rad_s: (rows, j) speeds of the links.
+          step_s: time step of the physics.
           torque_nm: (rows, j) further torque on the motors.
         """
         if self._angle is None:
@@ -95,7 +99,7 @@ class ElasticJoints:
     def _stepped(
         self, asked_rad: FloatArray, momentum: FloatArray, h: float
     ) -> FloatArray:
-        """(rows, j) speeds of the motors after a step, if need be at their limits."""
+        """(rows, j) speeds of the motors after a step `h`, with torque limits."""
         servo = self._servo
         kp, kd, limit = servo["kp"], servo["kd"], servo["limit"]
         inner = servo["emf"] + self.damping
@@ -109,10 +113,10 @@ class ElasticJoints:
         return np.asarray(np.where(np.abs(wanted) > limit, bound, free))
 
     def seen(self, position_rad: FloatArray) -> FloatArray:
-        """(rows, j) angles on the motors' side, where the encoders sit.
+        """(rows, j) angles [rad] that encoders measure: motor angles at elastic joints.
 
         Args:
-          position_rad: (rows, j) of the links.
+          position_rad: (rows, j) angles of the links.
         """
         if self._angle is None:
             return position_rad

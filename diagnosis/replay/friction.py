@@ -1,4 +1,4 @@
-"""Dry friction of the joints in a batch of simulations."""
+"""Applies dry friction to joints in a batch of simulations."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,15 +10,16 @@ from diagnosis.replay.servos import columns
 from groundwalk.arrays import FloatArray
 
 SOLIMP_FRICTION = (0.999, 0.9999, 0.001, 0.5, 2.0)
-"""MuJoCo impedance of dry friction. It is close to 1, so that a joint at rest stays
-there; with MuJoCo's default a tenth of dry friction behaves as viscous friction."""
+"""MuJoCo's `solimp` (impedance) of dry friction, close to 1 so that joints at rest stay
+there; by MuJoCo's default a tenth of dry friction behaves as viscous friction."""
 
 
 class BatchFriction:
-    """MuJoCo's friction loss; it follows speed and load where a variant says so.
+    """Sets MuJoCo's dry friction (`frictionloss`) of all joints in all simulations.
 
     Attributes:
-      varies: whether any friction depends on speed or load, so that `follow` is needed.
+      varies: whether some friction depends on speed or load; if so, call `follow` at
+        every step.
     """
 
     def __init__(
@@ -32,9 +33,9 @@ class BatchFriction:
         """Set the friction torques that do not change.
 
         Args:
-          batch: a `mujoco.batch.Batch`.
-          plant: the simulated robot.
-          joints: arrays of `Joints`, with a row for each simulation.
+          batch: a `mujoco.batch.Batch` with a row for each simulation.
+          plant: the robot model.
+          joints: arrays of `Joints` by name, with a row for each simulation.
           damping_nm_s_rad: (rows, j) all damping that is integrated implicitly.
           step_s: time step of the physics.
         """
@@ -51,10 +52,10 @@ class BatchFriction:
         np.asarray(batch.expand("dof_solref"))[:] = solref
 
     def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
-        """Set the friction of one step.
+        """Set the friction that depends on speed and load, for one physics step.
 
         Args:
-          velocity_rad_s: (rows, j) of the joints.
+          velocity_rad_s: (rows, j) speeds of the joints.
           driven_nm: (rows, j) torques that pass through the gears.
         """
         joints = self._joints
@@ -70,15 +71,15 @@ def stops_in_a_step(
     """(..., 2) MuJoCo's `solref` for friction that can stop a joint within one step.
 
     MuJoCo's friction asks for the acceleration -rate * velocity as if there were no
-    damping; the integrator that follows has damping implicitly, and gives only
-    I / (I + step * damping) of it. With the usual rate, 1 / step, a light joint with a
-    strong servo creeps on for seconds. (MuJoCo documentation, "Computation": implicit
-    integrators, and "Modeling", solref: two negative numbers are a stiffness, which
-    friction has none of, and a damping.)
+    damping. Its integrator, where damping is implicit, gives only the share
+    I / (I + step * damping) of that. With the usual rate, 1 / step, a light joint with
+    a strong servo creeps on for seconds. (MuJoCo documentation, "Computation": implicit
+    integrators, and "Modeling", solref: two negative numbers mean stiffness, which
+    friction does not have, and damping.)
 
     Args:
       damping_nm_s_rad: (...) all damping at the joints.
-      inertia_kg_m2: (...) of the joints with the links they carry.
+      inertia_kg_m2: (...) inertia I at the joints with the links beyond them.
       step_s: time step of the physics.
     """
     rate_1_s = 1 / step_s + damping_nm_s_rad / inertia_kg_m2

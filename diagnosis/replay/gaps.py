@@ -1,4 +1,4 @@
-"""Gaps (backlash) between motors and joints in a batch of simulations."""
+"""Simulates gaps (backlash) between motors and joints in a batch of simulations."""
 
 from collections.abc import Mapping
 
@@ -7,17 +7,16 @@ import numpy as np
 from groundwalk.arrays import BoolArray, FloatArray
 
 LEAST_DRAG = 1e-9
-"""Smallest damping [N m s/rad] that is divided by. A motor without stiffness and
-damping does not move."""
+"""Smallest damping [N m s/rad] used as a divisor, to avoid division by zero; a motor
+without stiffness and damping then does not move."""
 
 
 class BatchGaps:
     """Motors that turn freely within their gaps until they touch the joint.
 
-    A motor has no mass here, since its inertia is part of the joint's. While it is free
-    it follows its command by its own servo, m' = kp (command - m) / (kd + back-EMF),
-    and no torque reaches the joint. It touches at half the gap from the joint's
-    position.
+    A motor has no inertia here, since its inertia is part of the joint's. While it is
+    free, its servo moves its angle m by m' = kp (command - m) / (kd + back-EMF), and no
+    torque reaches the joint. It touches the joint at half the gap from its position.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model, with a motor whose damping outweighs its inertia.
@@ -29,11 +28,11 @@ class BatchGaps:
         law: Mapping[str, FloatArray],
         step_s: float,
     ) -> None:
-        """Take the gaps of all simulations.
+        """Prepare the gaps of all simulations.
 
         Args:
-          joints: arrays of `Joints`, with a row for each simulation.
-          law: numbers of the servos, see `BatchServos`; changed as servos fade.
+          joints: arrays of `Joints` by name, with a row for each simulation.
+          law: `BatchServos.law`, gains and limits, which change as servos fade.
           step_s: time step of the physics.
         """
         self._half = joints["gap_rad"] / 2
@@ -41,17 +40,20 @@ class BatchGaps:
         self._motor_rad: FloatArray | None = None
 
     def begin(self) -> None:
-        """Forget the motors' angles; they start as near their targets as they can."""
+        """Forget the motors' angles; they start as near their targets as gaps allow."""
         self._motor_rad = None
 
     def through(
         self, asked_rad: FloatArray, position: FloatArray
     ) -> tuple[FloatArray, BoolArray]:
-        """Targets (rows, j) with the torque that reaches the joints; flags where none.
+        """Step the motors once; targets for rigid servos, and flags of free motors.
+
+        With these targets (rows, j) [rad] a servo without gap gives the torque that
+        gets through the gap. Flags (rows, j) are true where no torque does.
 
         Args:
           asked_rad: (rows, j) position targets.
-          position: (rows, j) of the joints [rad].
+          position: (rows, j) angles of the joints [rad].
         """
         half = self._half
         low, high = position - half, position + half
@@ -64,19 +66,19 @@ class BatchGaps:
         return position + arrives, apart
 
     def drag_nm(self, velocity: FloatArray) -> FloatArray:
-        """(rows, j) torque by which the servos brake joints that they touch.
+        """(rows, j) torque [N m] of servo damping on joints that their motors touch.
 
-        A joint that is apart from its motor lacks this torque.
+        Joints whose motors are free in the gap do not get this torque.
 
         Args:
-          velocity: (rows, j) of the joints [rad/s].
+          velocity: (rows, j) speeds of the joints [rad/s].
         """
         law = self._law
         servo_nm = np.clip(law["kd"] * velocity, -law["limit"], law["limit"])
         return np.asarray(servo_nm + law["emf"] * velocity)
 
     def _followed(self, asked_rad: FloatArray, motor_rad: FloatArray) -> FloatArray:
-        """(rows, j) angles of free motors after one implicit step of limited torque."""
+        """(rows, j) angles of free motors after one implicit step, torque limited."""
         law = self._law
         drag = np.maximum(law["kd"] + law["emf"], LEAST_DRAG) / self._step_s
         moved = law["kp"] * (asked_rad - motor_rad) / (law["kp"] + drag)

@@ -1,4 +1,4 @@
-"""Servos, gears, friction and forces of a batch: laws of effects that MuJoCo lacks."""
+"""Applies servos and all effects that MuJoCo lacks to a batch of simulations."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,25 +15,26 @@ from diagnosis.replay.servos import BatchServos, Ends, columns, first_share
 from groundwalk.arrays import FloatArray
 
 FAST = 1e9
-"""Speed [rad/s] at which a set-point reaches its target at once."""
+"""Speed [rad/s] that stands for no speed limit of a set-point."""
 
 
 class BatchLaws:
-    """Torques and forces at every step of n variants times R runs, variant by variant.
+    """Torques and forces at every step of n R simulations: n variants in R runs.
 
     Attributes:
-      joints: arrays (n R, j) of `Joints`, with a row for each simulation.
+      joints: arrays (n R, j) of `Joints` by name, a row for each simulation, sorted by
+        variant, then by run.
     """
 
     def __init__(
         self, batch: Any, variants: Variants, servos: Sequence[Servo], step_s: float
     ) -> None:
-        """Set the constants of all simulations; `begin` follows once they have states.
+        """Set the constants of all simulations; call `begin` once they have states.
 
         Args:
-          batch: a `mujoco.batch.Batch` of the variants' plant, variant by variant.
-          variants: n variants.
-          servos: of the R runs.
+          batch: a `mujoco.batch.Batch` of n R simulations, sorted by variant.
+          variants: n variants of the robot model.
+          servos: servos of the R runs.
           step_s: time step of the physics.
         """
         plant, runs = variants.plant, len(servos)
@@ -52,7 +53,7 @@ class BatchLaws:
         self._servos = BatchServos(batch, plant, servos, joints, step_s)
         damping = self._servos.damping_nm_s_rad
         self._friction = BatchFriction(batch, plant, joints, damping, step_s)
-        # most variants have none of these laws, which then cost nothing
+        # most variants have none of these effects, so computing them is skipped
         self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
         loose = bool(joints["gap_rad"].any())
         self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
@@ -71,7 +72,7 @@ class BatchLaws:
         """Begin, or begin again, in the state that the simulations are in.
 
         Args:
-          asked_rad: (n R, j) position targets so far; the first targets where None.
+          asked_rad: (n R, j) position targets so far; None for those of the first step.
         """
         self._setpoint = None
         if asked_rad is not None:
@@ -88,12 +89,12 @@ class BatchLaws:
     def servo(
         self, asked_rad: FloatArray, time_s: FloatArray, ends: Ends | None = None
     ) -> None:
-        """Set the controls of one step.
+        """Set the controls of the servos, and dry friction, for one physics step.
 
         Args:
           asked_rad: (n R, j) mean position targets of the step, in measured angles.
           time_s: (R,) times at which the step begins.
-          ends: first and last targets of the step, if they jump within it.
+          ends: targets as the step begins and ends, if any jumps within it.
         """
         asked_rad = asked_rad - self.joints["offset_rad"]
         if ends is not None:
@@ -124,10 +125,11 @@ class BatchLaws:
         self._ctrl[:, self._actuators] = asked_rad
 
     def jumps(self, ends: Ends | None) -> list[Ends | None]:
-        """For each of B steps its first and last targets; None where none jumps.
+        """For each of B steps the targets as it begins and ends; None if none jumps.
 
         Args:
-          ends: (B, n R, j) first and last targets of the steps; None without targets.
+          ends: (B, n R, j) targets as the steps begin and as they end; None if there
+            are no targets.
         """
         if ends is None:
             return []
@@ -138,10 +140,10 @@ class BatchLaws:
         ]
 
     def push_joints(self, torque_nm: FloatArray, time_s: FloatArray) -> None:
-        """Apply torques where no servo drives.
+        """Apply motor torques, and dry friction, to joints that no servo holds.
 
         Args:
-          torque_nm: (n R, j) of the motors.
+          torque_nm: (n R, j) torques of the motors.
           time_s: (R,) times at which the step begins.
         """
         position, velocity = self.joint_state()
@@ -157,7 +159,7 @@ class BatchLaws:
         self._applied[:, self._dofs] = torque_nm
 
     def add_to_joints(self, torque_nm: FloatArray) -> None:
-        """Add (n R, j) torques to those of the servos, after `servo`."""
+        """Add (n R, j) torques [N m] to those of the servos; call `servo` before."""
         set_before = self._gaps is not None or bool(self._torques)
         already = self._applied[:, self._dofs] if set_before else 0.0
         self._applied[:, self._dofs] = already + torque_nm
@@ -167,21 +169,24 @@ class BatchLaws:
         self._outside.apply(time_s)
 
     def joint_state(self) -> tuple[FloatArray, FloatArray]:
-        """Live (n R, j) positions [rad] and velocities [rad/s]."""
+        """Joint positions [rad] and velocities [rad/s], (n R, j) views of the batch."""
         return self._qpos[:, self._columns], self._qvel[:, self._dofs]
 
     def encoder_rad(self) -> FloatArray:
-        """(n R, j) positions [rad] where the encoders sit, without their offsets."""
+        """(n R, j) angles [rad] that encoders measure, before any encoder offset.
+
+        Those are joint angles, or motor angles at elastic joints.
+        """
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
-        """Set dry friction by speed, and by the torque that passes through the gear.
+        """Set dry friction by joint speed and by the torque through the gear.
 
-        That torque is the motor's, less its back-EMF; in an elastic joint the spring's.
+        That torque is the motor's minus its back-EMF; in an elastic joint the spring's.
 
         Args:
-          velocity: (n R, j) of the joints.
+          velocity: (n R, j) speeds of the joints [rad/s].
           added_nm: (n R, j) torques of motors without a servo.
         """
         driven_nm = self._force[:, self._actuators] + added_nm
@@ -192,7 +197,7 @@ class BatchLaws:
     def _own_nm(
         self, position: FloatArray, velocity: FloatArray, time_s: FloatArray
     ) -> FloatArray:
-        """(n R, j) torques of the effects that compute them themselves."""
+        """(n R, j) sum of the torques [N m] that each `TorqueEffect` computes."""
         times_s = np.tile(time_s, len(position) // len(time_s))[:, None]
         torques = [
             effect.torque_nm(values, position, velocity, times_s)
@@ -201,20 +206,20 @@ class BatchLaws:
         return np.asarray(sum(torques, np.zeros_like(velocity)))
 
     def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
-        """(n R, j) targets with the mean torque of targets that jump in a step."""
+        """(n R, j) constant targets with the same mean torque as targets that jump."""
         velocity = self._qvel[:, self._dofs]
         return self._servos.equal(asked_rad, ends, self.encoder_rad(), velocity)
 
     def _bind(self, name: str) -> FloatArray:
-        """A live view of a field of the simulations."""
+        """View of a field of `MjData` of all simulations; it changes as they step."""
         return np.asarray(self._batch.bind(name))
 
     def _expand(self, name: str) -> FloatArray:
-        """A live view of a field of the models, one for each simulation."""
+        """View of a field of `MjModel` with a row per simulation, to be changed."""
         return np.asarray(self._batch.expand(name))
 
     def _slewed(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
-        """(n R, j) mean set-points of a step, as they move towards its targets."""
+        """(n R, j) mean set-points of a step that follow targets at limited speed."""
         if self._setpoint is None:
             self._setpoint = ends[0].copy()
         most = np.minimum(self.joints["setpoint_speed_rad_s"], FAST) * self._step_s
@@ -228,10 +233,10 @@ class BatchLaws:
         return mean
 
     def _rotors(self) -> FloatArray:
-        """(n R, j) rotor inertias; those of elastic joints are removed from the links.
+        """Rotor inertias (n R, j); moves those of elastic joints out of the links.
 
-        This must happen before `set_const`, from which the mass matrix of bodies with
-        one simple joint follows.
+        Call it before MuJoCo's `set_const`, which computes constants of the mass matrix
+        from them.
         """
         armature = self._expand("dof_armature")
         inertia = armature[:, self._dofs].copy()

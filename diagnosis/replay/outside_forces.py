@@ -1,4 +1,4 @@
-"""Pushes and drag on the bodies in a batch of simulations."""
+"""Applies pushes and drag to bodies in a batch of simulations."""
 
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class OutsideForces:
-    """Forces that effects apply to bodies, at their centres of mass."""
+    """Pushes and drag at the centres of mass of bodies in all simulations."""
 
     def __init__(
         self, batch: "Batch", variants: Variants, runs: int, step_s: float
@@ -20,9 +20,9 @@ class OutsideForces:
         """Find the simulations and bodies that forces act on.
 
         Args:
-          batch: the simulations, variant by variant, run by run.
-          variants: say which forces there are.
-          runs: number of runs R.
+          batch: the simulations, sorted by variant, then by run.
+          variants: variants of the robot model, which state pushes and drag.
+          runs: number R of runs.
           step_s: time step of the physics.
         """
         model = variants.plant.model
@@ -45,20 +45,20 @@ class OutsideForces:
         self.begin()
 
     def begin(self) -> None:
-        """Forget the forces of earlier steps."""
+        """Forget the forces of earlier steps, as the simulations start again."""
         self._share = np.zeros((len(self._row), self._runs))
         self._pushed_n = np.zeros((*self._drag.shape, 3))
         self._last_m: FloatArray | None = None
 
     def apply(self, time_s: FloatArray) -> None:
-        """Set the forces of the step that begins at (R,) times [s]."""
+        """Set the forces of the step that begins at (R,) times [s], one for a run."""
         if len(self._row):
             self._push(time_s)
         if self._dragged.size:
             self._resist()
 
     def _push(self, time_s: FloatArray) -> None:
-        """Scale each push by the share of the step that it acts; write only changes."""
+        """Apply each push, scaled by the share of the step in which it acts."""
         begin = np.maximum(time_s, self._start_s[:, None])
         end = np.minimum(time_s + self._step_s, self._end_s[:, None])
         share = np.maximum(end - begin, 0.0) / self._step_s
@@ -73,7 +73,7 @@ class OutsideForces:
         self._force[pushed, bodies, :3] = self._pushed_n[pushed, bodies]
 
     def _resist(self) -> None:
-        """Apply the drag of the bodies' mean velocities over the last step."""
+        """Apply drag, computed from the bodies' mean velocities over the last step."""
         rows, bodies = self._dragged
         centres = self._centres.reshape(*self._drag.shape, 3)[rows, bodies]
         if self._last_m is not None:

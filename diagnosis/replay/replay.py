@@ -11,26 +11,27 @@ from diagnosis.replay.tape import Replayed, Tape
 from diagnosis.traces.windows import Run
 
 STEP_S = 0.002
-"""Time step of the physics, unless another one is asked for.
+"""Default time step of the physics in replays.
 
 Example:
   >>> predicted = replay(runs, variants, step_s=STEP_S / 2)
 """
 
 BLOCK = 256
-"""Number of steps whose commands are computed at once; insensitive."""
+"""Number of physics steps whose commands are computed at once, for speed; any value of
+this order does."""
 
 
 def replay(
     runs: Sequence[Run], variants: Variants, step_s: float = STEP_S, threads: int = 1
 ) -> list[Replayed]:
-    """Drive every variant through every run, all in one batch.
+    """Simulate every variant of a robot model under the commands of every recording.
 
     Args:
-      runs: R runs; each starts from its own state and follows its own trace.
+      runs: R recordings or parts of them, each with its own start state.
       variants: n variants of the robot model.
       step_s: time step of the physics.
-      threads: threads of the batch.
+      threads: number of threads of the batch of simulations.
 
     Returns:
       For each run the predicted measurements of all variants.

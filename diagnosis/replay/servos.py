@@ -1,4 +1,4 @@
-"""Servos of the joints in a batch of simulations, as MuJoCo's affine actuators."""
+"""Joint servos in a batch of simulations, as affine actuators of MuJoCo."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,31 +11,27 @@ from diagnosis.replay.elastic import ElasticJoints
 from groundwalk.arrays import FloatArray
 
 SERVO = ("kp_nm_rad", "kd_nm_s_rad", "max_torque_nm", "back_emf_nm_s_rad")
-"""The fields of a `Servo` that a servo's law is made of."""
+"""Names of the fields of a `Servo` that its law consists of."""
 
 UNLIMITED_NM = 1e9
-"""Torque range [N m] that stands for none, since MuJoCo wants finite numbers."""
+"""Torque limit [N m] that stands for no limit, since MuJoCo needs a finite number."""
 
 LEAST_KP = 1e-9
-"""Smallest stiffness [N m/rad] that is divided by."""
+"""Smallest stiffness [N m/rad] used as a divisor, to avoid division by zero."""
 
 JUMP = 0.3
-"""A change of the target within one step counts as a jump if it exceeds this share of
-the error that takes the servo to its limit. Smaller ones do not saturate a servo."""
+"""Share of the servo error at the torque limit: a target that changes by more in one
+physics step counts as a jump. Smaller changes rarely saturate a servo."""
 
 Columns = slice | list[int]
-"""Where the joints are in the arrays of a simulation."""
+"""Index of the joints' columns in an array of MuJoCo."""
 
 Ends = tuple[FloatArray, FloatArray]
-"""Targets (rows, j) [rad] as a step begins, and as it ends."""
+"""Position targets (rows, j) [rad] as a physics step begins, and as it ends."""
 
 
 def columns(numbers: Sequence[int]) -> Columns:
-    """Index of the joints' columns: a slice if possible, as views cost no copy.
-
-    Args:
-      numbers: column of each joint, in the order of the joints.
-    """
+    """Index of these columns: a slice if possible, since that avoids copies."""
     first, count = numbers[0], len(numbers)
     if list(numbers) == list(range(first, first + count)):
         return slice(first, first + count)
@@ -43,11 +39,13 @@ def columns(numbers: Sequence[int]) -> Columns:
 
 
 class BatchServos:
-    """MuJoCo's affine actuators, each with the law of its own run and variant.
+    """Servos of all simulations in a batch, as affine actuators of MuJoCo.
+
+    There is a row for each simulation: one variant of the robot model in one run.
 
     Attributes:
-      law: the servos' numbers as they are now, arrays (rows, j): `kp` [N m/rad], `kd`
-        [N m s/rad], `limit` [N m] and `emf`, the back-EMF [N m s/rad].
+      law: present gains and limits of the servos, arrays (rows, j): `kp` [N m/rad],
+        `kd` [N m s/rad], `limit` [N m] and `emf`, the back-EMF [N m s/rad].
       fades: whether any servo becomes weaker with time.
     """
 
@@ -62,10 +60,10 @@ class BatchServos:
         """Give every simulation the servos of its run, changed as its variant says.
 
         Args:
-          batch: a `mujoco.batch.Batch`, variant by variant, run by run.
-          plant: the simulated robot.
-          servos: of the R runs.
-          joints: arrays of `Joints`, with a row for each simulation.
+          batch: a `mujoco.batch.Batch`, sorted by variant, then by run.
+          plant: the robot model.
+          servos: servos of the R runs.
+          joints: arrays of `Joints` by name, with a row for each simulation.
           step_s: time step of the physics.
         """
         self._joints, self._actuators = joints, columns(plant.actuators)
@@ -92,9 +90,9 @@ class BatchServos:
         self._damping[:, self._dofs] += self.law["emf"] - plant.servo.back_emf_nm_s_rad
         inertia = np.asarray(batch.expand("dof_M0"))[:, self._dofs]
         inertia = inertia + step_s * self._damping[:, self._dofs]
-        # below this torque the servo leaves saturation within the step
+        # a servo whose torque is below this leaves saturation within the step
         self._held_from = self._limit * (1 + step_s * self.law["kd"] / inertia)
-        self._relaxed = False  # whether some range is wider than its limit now
+        self._relaxed = False  # whether some actuator's range exceeds the limit
 
     @property
     def least_jump_rad(self) -> FloatArray:
@@ -104,22 +102,22 @@ class BatchServos:
 
     @property
     def damping_nm_s_rad(self) -> FloatArray:
-        """(rows, j) damping of servos, motors and joints together."""
+        """(rows, j) sum of servo damping, back-EMF and the joint's own damping."""
         return np.asarray(self.law["kd"] + self._damping[:, self._dofs])
 
     def equal(
         self, mean_rad: FloatArray, ends: Ends, angle: FloatArray, velocity: FloatArray
     ) -> FloatArray:
-        """(rows, j) constant targets with the mean torque of targets that jump.
+        """(rows, j) constant targets with the same mean torque as targets that jump.
 
-        A target that jumps within a step may saturate the servo for a part of the step
-        only. With the mean target MuJoCo would saturate it for the whole step.
+        A target that jumps within a physics step may saturate the servo for a part of
+        the step only. With the mean target MuJoCo would saturate it for all of it.
 
         Args:
           mean_rad: (rows, j) mean target of the step.
-          ends: first and last target of the step.
-          angle: (rows, j) of the servos [rad].
-          velocity: (rows, j) of the servos [rad/s].
+          ends: targets as the step begins and as it ends.
+          angle: (rows, j) angles that the servos control [rad].
+          velocity: (rows, j) rates of these angles [rad/s].
         """
         kp, kd, limit = (self.law[name] for name in ("kp", "kd", "limit"))
         share = first_share(mean_rad, ends)
@@ -129,7 +127,7 @@ class BatchServos:
         torque = share * first + (1 - share) * last
         target = angle + (torque + kd * velocity) / np.maximum(kp, LEAST_KP)
         jumps = np.abs(ends[1] - ends[0]) > self.least_jump_rad
-        # where the servo saturates all the time, the mean target is right as well
+        # where the servo saturates in the whole step, the mean target is right, too
         within = (share > 0) & (share < 1) & (np.abs(torque) < limit) & (kp > 0)
         return np.where(jumps & within, target, mean_rad)
 
@@ -138,15 +136,15 @@ class BatchServos:
     ) -> None:
         """Saturate only the servos that are still saturated when the step ends.
 
-        MuJoCo decides as a step begins, and then leaves out the servo's damping. Within
-        one step a light joint may become so fast that damping takes the torque below
-        the limit: of the torque I / (I + step * kd) is left, with I the joint's
-        inertia. Without this check, speeds would jump at the limit.
+        MuJoCo decides as a step begins, and leaves out the damping kd of servos that
+        saturate. But a light joint may become so fast within the step that damping
+        takes the torque below the limit: only I / (I + step * kd) of it is left, with I
+        the joint's inertia. Without this check, speeds would jump at the limit.
 
         Args:
           asked_rad: (rows, j) targets of the step.
-          angle: (rows, j) of the servos [rad].
-          velocity: (rows, j) of the servos [rad/s].
+          angle: (rows, j) angles that the servos control [rad].
+          velocity: (rows, j) rates of these angles [rad/s].
         """
         kp, kd = self.law["kp"], self.law["kd"]
         unlimited = np.asarray(np.inf)
@@ -158,12 +156,12 @@ class BatchServos:
         self._relaxed = relaxed
 
     def _set_range(self, limit: FloatArray) -> None:
-        """Set the torque ranges (rows, j) of all actuators."""
+        """Set torque limits (rows, j) [N m] of all actuators."""
         self._range[:, self._actuators, 0] = -limit
         self._range[:, self._actuators, 1] = limit
 
     def fade(self, time_s: FloatArray) -> None:
-        """Set the stiffness at (R,) times [s] of fading servos."""
+        """Set the stiffness of fading servos at (R,) times [s], one for each run."""
         time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
         left = np.clip(1 - self._joints["fade_1_s"] * time_s, 0, None)
         self.law["kp"] = kp = self._full_kp * left  # also for motors of elastic joints
@@ -173,7 +171,7 @@ class BatchServos:
             field[:, self._actuators, column] = np.where(stiff, value, old)
 
     def soften(self, elastic: ElasticJoints, step_s: float) -> None:
-        """Let the actuators of elastic joints be their springs.
+        """Turn the actuators of elastic joints into the springs that drive the links.
 
         The motors of these joints are simulated by `ElasticJoints`.
         """
@@ -191,11 +189,13 @@ class BatchServos:
 
 
 def first_share(mean_rad: FloatArray, ends: Ends) -> FloatArray:
-    """(rows, j) share of a step in which its first target holds; 0 without a change.
+    """(rows, j) share of a physics step in which its first target holds.
+
+    It is 0 where the target does not change.
 
     Args:
       mean_rad: (rows, j) mean target of the step.
-      ends: first and last target of the step.
+      ends: targets as the step begins and as it ends.
     """
     before, after = ends
     jump = after - before
@@ -206,7 +206,7 @@ def first_share(mean_rad: FloatArray, ends: Ends) -> FloatArray:
 def _laws(
     servos: Sequence[Servo], joints: Mapping[str, FloatArray]
 ) -> dict[str, FloatArray]:
-    """The servos' numbers (rows, j), changed as the variants say."""
+    """Gains and limits (rows, j) of the runs' servos, changed as the variants say."""
     n = len(joints["kp_factor"]) // len(servos)
     kp, kd, limit, emf = (
         np.tile([getattr(servo, name) for servo in servos], (n, 1)) for name in SERVO

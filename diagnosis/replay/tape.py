@@ -1,4 +1,4 @@
-"""Notes the states of a batch of simulations, and what would have been measured."""
+"""Stores states of a batch of simulations, and predicts measurements from them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,14 +14,15 @@ from groundwalk.arrays import FloatArray, IntArray
 
 @dataclass(frozen=True, eq=False)
 class Replayed:
-    """Predicted measurements of n variants in one run, at the T rows of its trace.
+    """Predicted measurements of n variants in one run, at the T rows of its recording.
 
     Attributes:
       position_rad: (n, T, j) measured joint positions.
       velocity_rad_s: (n, T, j) measured joint velocities.
       servo_nm: (n, T, j) torques of the servos, without back-EMF.
-      base: (n, T, 13) as `Run.base`; None for a fixed base.
-      gyroscope_rad_s: (n, T, 3).
+      base: (n, T, 13) position (3), orientation w, x, y, z, linear velocity (3, world
+        frame) and angular velocity (3, body frame) of the base; None if it is fixed.
+      gyroscope_rad_s: (n, T, 3) gyroscope, base frame; only the bias if base is fixed.
 
     Example:
       >>> position_rad = replay(runs, variants)[0].position_rad
@@ -35,14 +36,14 @@ class Replayed:
 
 
 class Tape:
-    """States of the joints and of a floating base after every step."""
+    """Stored states of the joints and of a floating base after every physics step."""
 
     def __init__(self, batch: ReplayBatch, steps: int) -> None:
-        """Make room, and note the start.
+        """Make room for all states, and store the start.
 
         Args:
-          batch: the simulations, in the state that they start from.
-          steps: number of steps that they will take.
+          batch: the simulations, in the states that they start from.
+          steps: number of physics steps that they will take.
         """
         self._batch, j = batch, len(batch.plant.joints)
         self._position = np.empty((steps + 1, batch.n, j))
@@ -57,7 +58,7 @@ class Tape:
         self._torque[0] = 0.0  # no step has been taken
 
     def note(self, step: int) -> None:
-        """Note the state after `step` steps."""
+        """Store the simulations' present state, the one after `step` physics steps."""
         batch = self._batch
         _, self._velocity[step] = batch.laws.joint_state()
         self._position[step] = batch.laws.encoder_rad()
@@ -67,16 +68,16 @@ class Tape:
             self._base[step, :, 7:] = batch.qvel[:, :6]
 
     def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
-        """Measurements of each run, at the rows of its trace, as its sensors show them.
+        """Predicted measurements for each run, at the rows of its recording.
 
         Args:
-          runs: that were replayed.
-          variants: say what is wrong with the sensors.
+          runs: the runs that were replayed.
+          variants: variants of the robot model, which state delays and sensor errors.
         """
         return [self._read(k, run, variants) for k, run in enumerate(runs)]
 
     def _read(self, k: int, run: Run, variants: Variants) -> Replayed:
-        """Measurements of run number k."""
+        """Predicted measurements for run number k."""
         rows = np.arange(variants.n) * self._batch.count + k
         since_s = run.trace.time_s - run.trace.time_s[0]
         now_s = np.tile(since_s, (variants.n, 1))
@@ -95,10 +96,10 @@ class Tape:
         return Replayed(position, velocity, torque, base, gyroscope)
 
     def _torque_at(self, rows: IntArray, since_s: FloatArray) -> FloatArray:
-        """(n, T, j) mean torque from the row before to the row after.
+        """(n, T, j) servo torque [N m], averaged from the row before to the row after.
 
-        With a command that jumps, the torque of a stiff servo jumps as well. A real
-        controller computes once in a tick and holds that torque: the mean.
+        A stiff servo's simulated torque jumps with its command. A real controller's
+        does not: it computes once in a control tick and then holds the torque.
         """
         total = np.cumsum(self._torque[:, rows], axis=0) * self._batch.step_s
         low, t = self._between(since_s)
@@ -111,13 +112,13 @@ class Tape:
     def _joints_at(
         self, rows: IntArray, time_s: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Positions and velocities (n, T, j) between the steps.
+        """Joint positions and velocities (n, T, j), interpolated between physics steps.
 
-        Before the start the joints are taken to have moved at their first velocities.
+        Before the start, joints are assumed to have moved at their first velocities.
 
         Args:
-          rows: (n,) numbers of simulations.
-          time_s: (n, T) since the start.
+          rows: (n,) indices of simulations.
+          time_s: (n, T) times since the start.
         """
         low, t = self._between(time_s)
         row = rows[:, None]
@@ -132,13 +133,13 @@ class Tape:
     def _linear(
         self, values: FloatArray, rows: IntArray, time_s: FloatArray
     ) -> FloatArray:
-        """(n, T, ...) values between the steps, by linear interpolation."""
+        """(n, T, ...) values at (n, T) times, interpolated linearly between steps."""
         low, t = self._between(time_s)
         row = rows[:, None]
         return np.asarray((1 - t) * values[low, row] + t * values[low + 1, row])
 
     def _between(self, time_s: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Number of the step before each time, and the share of a step since then."""
+        """Index of the physics step before each time, and the share of a step since."""
         last = len(self._position) - 1
         at = np.clip(time_s / self._batch.step_s, 0, last - 1e-9)
         low = at.astype(int)
@@ -153,13 +154,13 @@ def hermite(
 ) -> tuple[FloatArray, FloatArray]:
     """Positions by cubic Hermite interpolation, velocities by linear interpolation.
 
-    SciPy's `CubicHermiteSpline` is not used: it wants the same times for all rows.
+    SciPy's `CubicHermiteSpline` is not used, since it needs the same times in all rows.
 
     Args:
-      before: positions and velocities at one step, of one shape.
-      after: those at the next step.
-      step_s: time between the two.
-      share: of the step that has passed, 0 to 1.
+      before: positions and velocities at one step, arrays of the same shape.
+      after: positions and velocities at the next step.
+      step_s: time between the two steps.
+      share: share of the step that has passed, 0 to 1.
     """
     h, t = step_s, share
     (q0, v0), (q1, v1) = before, after
