@@ -21,7 +21,7 @@ class Scale:
 
     Attributes:
       length: ratio of the hips' heights above the sole, legs straight.
-      time: square root of the ratio of the centres' of mass heights above the soles.
+      time: square root of the ratio of the heights of the centre of mass.
       weight: ratio of the weights.
     """
 

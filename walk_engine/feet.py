@@ -1,4 +1,4 @@
-"""Positions of the feet relative to the hips during a step; equations of Walk2014.
+"""Positions of the feet relative to the hips in a step, as in rUNSWift's Walk2014.
 
 Let f, l and u be the planned distance forward, distance to the left and turn of a cycle
 of two steps. Let s and w rise from 0 to 1 over the step, s at constant speed and w with

@@ -8,8 +8,8 @@ vector from hip to ankle, p = R_yaw^T (ankle - hip). The knee angle follows from
 (law of cosines), the roll is the angle of p in the y-z plane, the pitch is its angle in
 the plane of the leg. In the frame of the shin the sole's normal must be
 v = R_leg^T normal = (cos r sin a, -sin r, cos r cos a), from which follow the ankle's
-roll r = -asin(v_y) and pitch a = atan2(v_x, v_z). Walk2014 finds the same pose with
-three damped least-squares steps.
+roll r = -asin(v_y) and pitch a = atan2(v_x, v_z). rUNSWift's Walk2014 finds the same
+pose with three damped least-squares steps.
 """
 
 import math

@@ -39,7 +39,7 @@ class Limits:
         return np.clip(target_rad, self.low_rad, self.high_rad)
 
     def towards(self, before_rad: FloatArray, target_rad: FloatArray) -> FloatArray:
-        """Move from the last commands towards targets, as far as one tick allows.
+        """Move from the last commands towards targets as fast as the motors allow.
 
         Args:
           before_rad: (joints, n) the last commands [rad].

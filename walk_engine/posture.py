@@ -14,7 +14,7 @@ class Posture:
     """Computes the joint angles of n equal robots from positions of their feet."""
 
     def __init__(self, biped: Biped, gait: GaitColumns, config: EngineConfig) -> None:
-        """Prepare the inverse kinematics and the pose of joints that do not walk.
+        """Prepare the inverse kinematics and the resting angles of the other joints.
 
         Args:
           biped: the robots' legs and joints.

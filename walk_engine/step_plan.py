@@ -32,7 +32,8 @@ class Speeds(NamedTuple):
 class StepPlan(NamedTuple):
     """The planned step of each robot; all arrays are (n,).
 
-    Distances and angles are those of a whole cycle of two steps, as in Walk2014.
+    Distances and angles are those of a whole cycle of two steps, as in rUNSWift's
+    Walk2014.
 
     Attributes:
       period_s: duration of the step [s].
@@ -73,7 +74,7 @@ def plan_step(
     The first step only rocks the robot: it lifts a foot, less high than a later step,
     and covers no distance. The turn of the hip yaw joints follows without slip: the
     foot turns by the z component of the joint's axis, and each degree is used twice in
-    a cycle. (Walk2014 multiplies turns by 1.43 to make up for slipping feet.)
+    a cycle. (rUNSWift's Walk2014 multiplies turns by 1.43, as feet slip.)
 
     Args:
       speeds: the robots' speeds within their limits.

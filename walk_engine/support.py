@@ -1,7 +1,7 @@
 """Detects with the foot force sensors when the weight has moved to the other foot.
 
-A step of Walk2014 does not end at a fixed time but when the centre of pressure crosses
-the robot's middle. In this way the walk adapts to pushes and to uneven ground.
+A step of rUNSWift's Walk2014 does not end at a fixed time but when the centre of
+pressure crosses the robot's middle. In this way it adapts to pushes and uneven ground.
 """
 
 from typing import NamedTuple
@@ -42,8 +42,8 @@ def sense(
 ) -> Sensing:
     """Update the state of the force sensing with one reading of the sensors.
 
-    While no foot carries weight, the last side is kept. (Walk2014 assumes the middle
-    then, and misses a crossing in such a tick.)
+    While no foot carries weight, the last side is kept. (rUNSWift's Walk2014 assumes
+    the middle then, and misses a crossing in such a tick.)
 
     Args:
       before: the state before this reading.

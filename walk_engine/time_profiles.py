@@ -2,8 +2,8 @@
 
 Time and period are arrays of one shape, or numbers. All profiles are clamped: they are
 0 before the movement and keep their final value after it. A step that lasts longer than
-its period therefore waits in its final pose. (Walk2014 jumps to the final value half a
-tick earlier.)
+its period therefore waits in its final pose. (rUNSWift's Walk2014 jumps to the final
+value half a tick earlier.)
 """
 
 import numpy as np

@@ -26,7 +26,7 @@ SIDES = ("left", "right")
 
 
 def quiet_mujoco() -> None:
-    """Switch off MuJoCo's log on the console and in the file MUJOCO_LOG.TXT.
+    """Switch off MuJoCo's log, on the console and as a file in the working folder.
 
     The log stays off for the whole process. It is not needed: worlds themselves report
     unstable physics, and users cannot change the deprecated attributes in Gymnasium's

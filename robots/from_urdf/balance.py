@@ -7,9 +7,9 @@ from robots.description import Foot
 from robots.from_urdf.posed_tree import PosedTree
 
 SOLE_PART, HIP_PART, HIPS_AHEAD_M = 0.43, 0.927, 0.010
-"""Posture of the NAO in Walk2014's gait: position of the centre of mass over the sole,
-as a share of the distance from heel to toe; height of the hips, as a share of that with
-straight legs; and distance of the hips ahead of the ankles [m]."""
+"""Posture of the NAO in the gait Walk2014 of the team rUNSWift: place of the centre of
+mass over the sole, as a share of the distance from heel to toe; height of the hips, as
+a share of that with straight legs; distance of the hips ahead of the ankles [m]."""
 
 
 def crouch_rad(thigh_m: float, tibia_m: float, hip_m: float) -> tuple[float, float]:
@@ -31,8 +31,9 @@ def ankles_ahead_m(
 ) -> float:
     """Distance of the ankles ahead of the hips [m] for a gait's `com_offset` of zero.
 
-    The distance is chosen so that with Walk2014's `com_offset` of 10 mm, scaled to the
-    robot, the weight is over the same part of the sole as on the NAO.
+    The distance is chosen so that with the `com_offset` of 10 mm of the gait Walk2014
+    (rUNSWift), scaled to the robot, the weight is over the same part of the sole as on
+    the NAO.
 
     Args:
       posed: the robot.

@@ -105,7 +105,7 @@ class PosedTree:
         ]
 
     def hanging(self, joint: str) -> Inertial:
-        """Inertial, in the root frame, of all links below a joint ("": the robot)."""
+        """Inertial, in the root frame, of all links below a joint (for "" of all)."""
         return combined(self._bodies(self.below(joint)))
 
     def _bodies(self, joints: Sequence[str]) -> list[Inertial]:
