@@ -64,8 +64,8 @@ class Diagnosis:
       verdict: the answer: effects with places and intervals, `none` or `unknown`.
       model: the effects that the search accepted, with their fitted values.
       plant: the nominal robot model.
-      test: simulates the held-out recordings; its weights are set for `model`.
-      nominal: the same with weights set for the nominal model.
+      test: simulates the held-out recordings, less the integration error at `model`.
+      nominal: the same, less the integration error of the nominal model.
       audit: what the audit of the recordings found.
       given: effects that recordings of the healthy robot show; empty without such.
 
@@ -213,8 +213,8 @@ class _Tested:
       kind: kind of the verdict before the test.
       refitted: the effects fitted to all data but the held-out ones; None if there
         are no effects.
-      both: simulates the data of `refitted`, with weights set for these effects.
-      test: simulates the held-out data, with weights set for these effects.
+      both: simulates the data of `refitted`, less the integration error at its effects.
+      test: simulates the held-out data, less the same integration error.
       fit: errors on the held-out data.
     """
 

@@ -33,10 +33,6 @@ def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
     A delay between commands and positions is no finding: it is physics that a diagnosis
     looks for.
 
-    Args:
-      traces: recordings of the plant.
-      plant: the nominal robot model.
-
     Example:
       See docs/python.md.
     """

@@ -21,13 +21,7 @@ torque."""
 
 
 def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointAudit:
-    """Measure range, speed and reversals of one joint.
-
-    Args:
-      joint: name of the joint.
-      channel: audit of the joint's position channel.
-      smoothed: the joint's smoothed position.
-    """
+    """Measure range, speed and reversals of one joint from its smoothed position."""
     low, high = float(np.min(smoothed.value)), float(np.max(smoothed.value))
     noise = channel.noise
     least = max(
@@ -47,13 +41,7 @@ def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointA
 def stuck_findings(
     trace: Trace, joints: Sequence[str], channels: dict[str, ChannelAudit]
 ) -> list[Finding]:
-    """Find channels that never change although the robot moves.
-
-    Args:
-      trace: the recording.
-      joints: names of the robot model's joints.
-      channels: audits of the trace's channels by name.
-    """
+    """Find channels that never change although the robot moves."""
     found, dead = [], []
     commanded = []
     for joint in joints:

@@ -50,13 +50,7 @@ def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
 
 
 def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
-    """The kind of verdict: "effects", "none", "unknown" or "not_identifiable".
-
-    Args:
-      searched: the result of the search.
-      plant: nominal robot model.
-      audited: audit of the recordings, which says which joints moved.
-    """
+    """The kind of verdict: "effects", "none", "unknown" or "not_identifiable"."""
     selected, fitted = searched.nothing, searched.nothing_fit
     if searched.winner:
         selected, fitted = searched.winner.selected, searched.winner.fit.energy

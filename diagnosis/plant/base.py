@@ -52,11 +52,7 @@ def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
     """Remove all joints but those in `free`, as if they were locked at position 0.
 
     A body whose joint is removed becomes part of the body that carries it. Equalities,
-    tendons and sensors that refer to a removed joint are removed, too.
-
-    Args:
-      spec: the robot model, which is changed.
-      free: names of the joints that stay.
+    tendons and sensors of the model that refer to a removed joint are removed, too.
     """
     import mujoco
 

@@ -39,10 +39,6 @@ def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
     Stiffness and damping are those of position actuators (fixed gain, affine bias)
     times their gear squared. The torque limit is the tightest of the actuators' limits
     and the joint's own (`actuatorfrcrange`, which is a URDF's effort).
-
-    Args:
-      model: the compiled model.
-      joints: names of the joints whose servos are read.
     """
     servo = Servo.ideal(len(joints))
     kp, kd = servo.kp_nm_rad, servo.kd_nm_s_rad.copy()
@@ -109,15 +105,10 @@ def remove_actuators(spec: "mujoco.MjSpec") -> None:
 
 
 def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> None:
-    """Add one affine actuator for each joint, named as the joint.
+    """Add one affine actuator for each joint to a model, named as the joint.
 
     Its force is clip(kp (control - q) - kd v, +-max_torque) at joint position q and
     velocity v; the back-EMF becomes damping of the joint.
-
-    Args:
-      spec: the robot model, which is changed.
-      joints: names of the joints.
-      servo: their servos.
     """
     import mujoco
 

@@ -102,14 +102,10 @@ def _strongest(
 def push_intervals(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Start and duration [s] of possible pushes on the robot.
+    """Start and duration [s] of possible pushes, from an (N,) residual [noise].
 
     The first one lasts for all of the recording; the others are the bursts of error or,
     if there are none, times of small errors of one sign.
-
-    Args:
-      predictor: the predictor that computed `residual`.
-      residual: (N,) in units of noise.
     """
     last_s = max(trace.time_s[-1] for trace in predictor.traces)
     short = [
@@ -126,15 +122,14 @@ def push_intervals(
 def faint_pushes(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Start and end [s] of windows in which a faint push may have acted, surest first.
+    """Windows in which a faint push may have acted, from an (N,) residual [noise].
 
     There is at most one window of each length (0.1, 0.25, 0.5 s): that with the most
     significant mean error. A mean error that all windows have, such as that of an
     unmodelled payload, is ignored.
 
-    Args:
-      predictor: the predictor that computed `residual`.
-      residual: (N,) in units of noise.
+    Returns:
+      Start and end [s] of each window, the most significant first.
     """
     c = len(predictor.channels.names)
     own = [

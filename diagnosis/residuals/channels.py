@@ -56,10 +56,7 @@ def channel_unit(plant: Plant, name: str) -> str:
 def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
     """The channels that all recordings measured and that can be simulated.
 
-    Args:
-      plant: nominal robot model.
-      traces: recordings, from which the noise of each channel is estimated; there is a
-        least noise for each kind of sensor.
+    Their noise is estimated from the recordings, with a least value for each sensor.
     """
     names = [f"position.{joint}" for joint in plant.joints]
     least = [LEAST_NOISE_RAD] * len(names)

@@ -163,12 +163,8 @@ def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
     The model of a walking robot is wrong in a different way at each step. An effect
     that fits some of these errors by chance gains much at some moments, loses at
     others, and gains on recordings of the healthy robot, too. A true change gains at
-    most moments, and much more than it gains there.
-
-    Args:
-      judge: the judge of the search that has run. If it has no predictors of recordings
-        of the healthy robot, nothing is removed.
-      result: the result of the search.
+    most moments, and much more than it gains there. Without recordings of the healthy
+    robot nothing is removed.
     """
     chosen = result.chosen
     while judge.healthy and chosen:

@@ -90,8 +90,8 @@ class Judge:
 
         Args:
           before: energy of the smaller model on the selection data [nats].
-          after: energy of the larger model there.
-          nothing: energy of the nominal sim there.
+          after: energy of the larger model on these data.
+          nothing: energy of the nominal sim on these data.
         """
         return before - after > self.least_gain and self.matters(before, after, nothing)
 
@@ -102,8 +102,8 @@ class Judge:
 
         Args:
           before: energy of the smaller model on the selection data [nats].
-          after: energy of the larger model there.
-          nothing: energy of the nominal sim there.
+          after: energy of the larger model on these data.
+          nothing: energy of the nominal sim on these data.
         """
         rules = self.rules
         left = before - (1 + rules.unsure_floor) * self.floor

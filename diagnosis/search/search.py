@@ -27,12 +27,7 @@ class Search:
     """
 
     def __init__(self, judge: Judge) -> None:
-        """Prepare a search.
-
-        Args:
-          judge: fits and judges the models; its predictors must be calibrated at the
-            nominal robot model.
-        """
+        """Prepare a search; the predictors of `judge` must be calibrated already."""
         self.judge = judge
         self.signatures: list[Signature] = []
         self._rules, self._fit = judge.rules, judge.fit
