@@ -1,8 +1,7 @@
-"""Simulated robots on terrain: worlds that step them, and recordings of their walks.
+"""Robots on terrain under physics: sim (MuJoCo), real (PyBullet), and recordings.
 
-There are two worlds, "sim" (MuJoCo) and "real" (PyBullet). Both have the interface
-`World`: n robots are stepped together by joint commands. Whole programs are in
-docs/python.md.
+Both worlds, "sim" and "real", have the interface `World`: n robots are stepped together
+by joint commands. Whole programs are in docs/python.md.
 
 Example:
   >>> import numpy as np, robots, terrain, worlds
