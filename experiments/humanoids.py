@@ -1,4 +1,4 @@
-"""`groundwalk humanoids`: tune the gait for other robots than the NAO."""
+"""`groundwalk humanoids`: tune a gait for other humanoid robots than the NAO."""
 
 import contextlib
 import dataclasses
@@ -50,8 +50,8 @@ SEARCHED = TrialRules(limit_s=5.0, start_spread_rad=0.02)
 than in the final count of falls: a search sees only a few walks of each gait."""
 
 START = gaits.get("start").replace(max_forward=0.12)
-"""Gait from which every search starts: the NAO's untuned gait with its forward speed
-lowered to 0.12 m/s, because it is not tuned for these robots."""
+"""Gait from which every search starts: the NAO's start gait, slowed down to 0.12 m/s
+because that gait is not made for these robots."""
 
 WALKS = 3
 """Number of walks that rate a gait in the search, each from another start pose,

@@ -28,7 +28,7 @@ PLANTS = {
     "nao_standing": 0.10,
     "nao_walking": 0.05,
 }
-"""Share of the cases for each robot; a NAO hangs in the air, stands or walks."""
+"""Share of the cases for each robot; a NAO is fixed in the air, stands or walks."""
 CASE_KINDS = {
     "single": 0.45,
     "pair": 0.15,
@@ -50,7 +50,8 @@ CONFUSABLE = (
 _CONFUSABLE_SHARE = 0.6
 """Share of the cases with two or three effects that contain a pair of `CONFUSABLE`."""
 _COMPOUND_EASE = 0.5
-"""Smallest ease (0 hard to 1 easy to see) of the effects in pairs and triples."""
+"""Smallest ease (0 hard, 1 easy to see) of the effects in pairs and triples, so that
+each of the effects matters."""
 _QUANTA_RAD = (0.0015, 2 * np.pi / 2**14)
 """Possible resolutions of the encoders [rad]: of 12 and of 14 bits per turn."""
 _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "none": 0}

@@ -133,11 +133,7 @@ class CaseMotion:
         )
 
     def feed(self, number: int) -> tuple[FloatArray, Feed]:
-        """The start pose (j,) [rad], and a function that returns the commands [rad].
-
-        Args:
-          number: index of the recording in the case.
-        """
+        """Start pose (j,) [rad] and command function of the recording `number`."""
         rng = np.random.default_rng([self.seeds[number], 0])
         name, description = self.names[number], self.plant.description
         if name == "walk" and description is not None:
@@ -158,11 +154,9 @@ class CaseMotion:
 
 
 def table_feed(command_rad: FloatArray) -> tuple[FloatArray, Feed]:
-    """Turn a table of commands into the start pose (j,) [rad] and a command function.
+    """Turn position targets (ticks, j) [rad] into a start pose and a command function.
 
-    Args:
-      command_rad: (rows, j) position targets [rad], a row for each tick; the first row
-        is the start pose.
+    The start pose (j,) is the first row.
     """
     return command_rad[0], lambda row, sense: command_rad[row]
 

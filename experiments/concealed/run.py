@@ -89,12 +89,7 @@ def _note_code(config: ConcealedRun, kind: str) -> None:
 
 
 def unanswered(folder: Path, kind: str) -> list[Path]:
-    """Folders of the cases that have no answer yet.
-
-    Args:
-      folder: folder of the set of cases.
-      kind: subfolder of the answers, such as "answers" or "baselines/bic".
-    """
+    """Folders of the cases in a set that have no answer in the subfolder `kind` yet."""
     return [case for case in cases_of(folder) if not _path(folder, kind, case).exists()]
 
 

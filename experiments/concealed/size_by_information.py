@@ -19,7 +19,7 @@ LEVELS = {"L1": 100.0, "L2": 20.0, "L3": 5.0, "L4": 1.0}
 see, those of L4 nearly invisible."""
 
 MOST_NATS = 1e5
-"""Largest information that is drawn [nats per recording], in the easiest level."""
+"""Largest information [nats per recording] that is drawn, in the easiest level, L1."""
 
 SHARES = {"L1": 0.40, "L2": 0.35, "L3": 0.15, "L4": 0.10}
 """Share of the cases that is drawn for each level. The narrow level L2 gets many cases,
@@ -34,8 +34,7 @@ LEAST_EASE, MOST_EASE = -2.0, 1.0
 """Range of the search for the ease, a measure of an effect's size from 0 (hard to see)
 to 1 (easy) that may go beyond 0 here."""
 NEAR = math.log(1.3)
-"""Logarithm of the factor by which the nats may differ from the wanted ones at the end
-of the search."""
+"""Logarithm of the factor between reached and wanted nats at which a search ends."""
 FAR = math.log(3.0)
 """Logarithm of the factor above which the nats of the best trial are too far from the
 wanted ones: the search then has no result."""
@@ -44,7 +43,8 @@ MOST_TRIALS = 8
 _LEAST_TOLD, _MOST_TOLD = 0.1, 1e9
 """Bounds to which nats are clipped before their logarithm is taken."""
 _INNER = 0.1
-"""Least distance of a trial from the ends of the search's bracket, as a share of it."""
+"""Least distance of a trial from the ends of the bracket that encloses the solution, as
+a share of its width, so that the bracket shrinks."""
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
@@ -72,7 +72,7 @@ def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) ->
     Args:
       nominal: motions without hidden effects, one for each recording.
       runs: the same motions with the hidden effects.
-      sensors: the sensors, whose encoder noise is the unit of differences.
+      sensors: their encoder noise is the unit of differences.
     """
     if not all(run.ok for run in runs):
         return math.inf

@@ -18,8 +18,7 @@ from experiments.diagnosis_report.place_words import at_words, choice, listing
 from experiments.diagnosis_report.text import badge, doubts, headline, next_step
 
 _SHOWN_AMOUNTS = 3
-"""Largest number of effects whose smallest detectable size is printed with the verdict
-"none"."""
+"""Number of effects whose smallest detectable size the verdict "none" mentions."""
 _MOST_FOUND = 3
 """Largest number of lines on findings (effects and pulses)."""
 _MOST_UNSURE = 2

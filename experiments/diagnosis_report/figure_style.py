@@ -53,14 +53,9 @@ def note(
     colour: str = FAINT,
     offset: tuple[float, float] = (4, 0),
 ) -> None:
-    """Write a small text beside a point.
+    """Write a small text beside the point `at` (in data coordinates of the axes).
 
-    Args:
-      axes: the axes to draw on.
-      text: the text.
-      at: the point, in data coordinates of the axes.
-      colour: colour of the text.
-      offset: x and y from the point to the text's left end [1/72 inch].
+    Its left end has the distance `offset` (x, y) [1/72 inch] from the point.
     """
     axes.annotate(
         text,

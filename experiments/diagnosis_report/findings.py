@@ -16,8 +16,7 @@ MANY = 3
 
 SHOWN = 0.01
 """A value that is smaller than this share of its interval's width is not mentioned,
-because the data do not show it. Values that the data show are far above this share, so
-that its exact size does not matter."""
+because the data do not show it. The exact share does not matter."""
 
 _WAYS = {
     "actuator input": "came in at the input of the actuator of {joint}",

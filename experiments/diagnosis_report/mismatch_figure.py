@@ -28,8 +28,8 @@ further channel is left out."""
 _SHARE_WIDTH, _CELL_WIDTH, _BURST_WIDTH = 2.0, 0.9, 2.6
 """Relative widths of the panel of bars, of a column of cells, and of the time axis."""
 _LEAST_TOP = 0.7
-"""Least decimal logarithm of the error [noise floors] at which cells are darkest: 5
-noise floors. Errors near the noise stay pale even if they are the largest ones."""
+"""Cells are darkest at the largest error, but at least at this decimal logarithm of the
+error [noise floors], so that errors near the noise stay pale."""
 _DARK = 0.6
 """Share of the colour scale above which the number in a cell is white, not black."""
 

@@ -46,12 +46,7 @@ def badge(verdict: Verdict, changed: bool = False) -> str:
 
 
 def question(robot: str, changed: bool) -> str:
-    """The question that a diagnosis answers.
-
-    Args:
-      robot: name of the robot, or its model file.
-      changed: whether reference recordings of the healthy robot were given.
-    """
+    """The question that a diagnosis answers; another one with reference recordings."""
     if changed:
         return f"What has changed about {robot} since the reference recordings?"
     return f"What does the sim of {robot} lack that its recordings show?"

@@ -94,11 +94,7 @@ def reach(description: Description, gait: Gait) -> Reach:
 def saturation(description: Description, recording: Recording) -> Saturation:
     """Find the motor that is at its limit for the largest share of a walk.
 
-    Each motor's torque is computed from recorded commands, positions and velocities.
-
-    Args:
-      description: the robot model.
-      recording: recording of a walk, with commands, positions and velocities.
+    Its torque is computed from the commands, positions and velocities in the recording.
     """
     shares = {}
     for joint in description.links:

@@ -10,7 +10,7 @@ from experiments.real_robot_study.cases import Published, RealRobot
 from experiments.transfer.claims import Claim
 
 TWICE = 2.0
-"""Factor by which held-out errors must at least fall for the claim of `_twice`."""
+"""Least factor by which the effects found must reduce held-out errors, as claimed."""
 
 
 def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:

@@ -13,9 +13,7 @@ if TYPE_CHECKING:
 def write_figure(figure: "Figure", path: Path) -> None:
     """Write a figure as a PNG file; after an error no partial file remains.
 
-    Args:
-      figure: a figure made without pyplot, so that it need not be closed.
-      path: the file to write.
+    The figure must be made without pyplot, so that it need not be closed.
     """
     png = io.BytesIO()
     figure.savefig(png, format="png")

@@ -17,12 +17,7 @@ TEMPLATES = Path(__file__).parent / "templates"
 
 
 def render(template: str, **values: Any) -> str:
-    """Fill a Jinja template of the folder `templates/`; texts are escaped.
-
-    Args:
-      template: name of the template's file.
-      **values: the template's variables.
-    """
+    """Fill the variables of a Jinja template in `templates/`; texts are escaped."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     environment = Environment(

@@ -59,11 +59,9 @@ class Report:
         )
 
     def write(self, folder: Path, page: str = PAGE) -> None:
-        """Write the page as Markdown and as `report.html`, without partial files.
+        """Write the page as Markdown (file `page`) and as `report.html`.
 
-        Args:
-          folder: folder of the pictures, into which both files are written.
-          page: name of the Markdown file.
+        Both files are written into the folder of the pictures.
         """
         write_text(folder / page, self.to_markdown())
         write_text(folder / REPORT, self.to_html(folder))

@@ -69,7 +69,7 @@ def score_rows(scores: Scores) -> list[tuple[str, str, str, str]]:
 
 
 def print_json(result: Mapping[str, Any]) -> None:
-    """Print a result as JSON, for programs that read standard output."""
+    """Print a result as JSON, the only text on standard output, for other programs."""
     print(json.dumps(result, indent=1))
 
 

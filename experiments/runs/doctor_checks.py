@@ -40,7 +40,7 @@ class State(enum.StrEnum):
 
     OK = "ok"
     NOTE = "note"
-    """The finding works, but is not as tested; or something optional is missing."""
+    """It works, but in another version than tested; or it is optional and missing."""
     FAIL = "fail"
 
 

@@ -110,12 +110,7 @@ class RunFolder:
             self.write_json(PROVENANCE, began)
 
     def write_json(self, name: str, content: Any) -> None:
-        """Write a JSON file; after an error no partial file remains.
-
-        Args:
-          name: the file's name in the folder.
-          content: dicts, lists, texts, numbers, booleans and None.
-        """
+        """Write a JSON file into the folder; after an error no partial file remains."""
         self.write_text(name, json.dumps(content, indent=1) + "\n")
 
     def write_text(self, name: str, content: str) -> None:
@@ -240,10 +235,9 @@ def open_run(verb: str, config: Config, may_grow: str = "") -> tuple[RunFolder, 
 
 
 def with_whole_paths(config: Config) -> Config:
-    """Options with absolute file paths, so that the files are found from any folder.
+    """Make all file paths of a frozen dataclass of options absolute.
 
-    Args:
-      config: a frozen dataclass. `out` and `resume` stay as they are.
+    The files are then found from any folder. `out` and `resume` stay as they are.
     """
     changes = {}
     for field in options_of(config):

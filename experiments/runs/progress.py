@@ -101,12 +101,7 @@ class Stages:
     """
 
     def __init__(self, work: str, threads: int) -> None:
-        """Begin before the first stage.
-
-        Args:
-          work: name of the work, for the line that announces its duration.
-          threads: number of threads, for the same line.
-        """
+        """Show `work` (its name) and `threads` when the duration is announced."""
         self._work, self._threads = work, max(threads, 1)
         self._open = ExitStack()
         self._task: Task | None = None
@@ -123,11 +118,7 @@ class Stages:
         self._open.close()
 
     def cost(self, seconds: float) -> None:
-        """Print how long the work will take, if that is more than a minute.
-
-        Args:
-          seconds: estimated duration [s].
-        """
+        """Print the estimated duration of the work, if that is more than a minute."""
         if seconds > LONG_S:
             threads = f"{self._threads} thread{'s' if self._threads > 1 else ''}"
             minutes = round(seconds / 60)

@@ -18,7 +18,7 @@ MEAN, BEST, TRIED, FALLS = "#0072b2", "#e69f00", "#7f8894", "#d55e00"
 colour-blind people can distinguish (Okabe and Ito)."""
 
 MOST_MARKED = 40
-"""Number of generations above which the lines are drawn without markers."""
+"""Number of generations above which lines have no markers, which would overlap."""
 
 WIDTH = 0.6
 """Width of a generation's dots and bar, as a share of the distance to the next one."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 LEGS = {"left": "#0072b2", "right": "#d55e00"}
 ARMS, TORSO, GROUND, ENDED = "#009e73", "#444444", "#dddddd", "#b2182b"
-"""Colours of arms, torso, ground and the label of an early end."""
+"""Colours of arms, torso, ground and of the time label at an early end."""
 
 PANEL_IN = 5.0
 """Width of a walk's panel [inch]."""

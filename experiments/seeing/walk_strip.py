@@ -126,13 +126,7 @@ def _stills(time_s: FloatArray) -> IntArray:
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
-    """Choose stills whose stick figures do not overlap, from the last one back.
-
-    Args:
-      x_m: (ticks,) x of the head [m].
-      stills: (stills,) ticks to choose from.
-      room_m: least distance between two heads [m].
-    """
+    """Choose stills (ticks) whose heads, at x_m (ticks,) [m], are room_m apart."""
     chosen: list[int] = []
     for still in stills[::-1].tolist():
         if (np.abs(x_m[chosen] - x_m[still]) >= room_m).all():

@@ -14,7 +14,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from robots import biped
 
 LOADED = 0.3
-"""Share of the robot's weight above which a foot that carries it counts as standing."""
+"""A foot that carries more than this share of the robot's weight counts as standing."""
 
 _SHORT_S = 0.04
 """Time over which the motion of a foot is measured [s]: in a shorter time the motion is

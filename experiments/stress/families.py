@@ -67,7 +67,7 @@ class Place:
       robot: name of the robot.
       world: "sim" or "real".
       family: a key of `FAMILIES`, or `FLAT`.
-      severity: in the family's unit; 0 for `FLAT`.
+      severity: severity in the unit of the family; 0 for `FLAT`.
     """
 
     robot: str

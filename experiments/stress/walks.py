@@ -29,10 +29,11 @@ LIMIT_PENDULUMS = 50.0
 """Time limit of a trial in units of sqrt(leg length / gravity); 8 s for the NAO."""
 
 BEGIN_LEGS = (0.8, 1.6)
-"""Range from which the radius of the flat area at the start is drawn [leg lengths]."""
+"""Range [leg lengths] from which each trial's flat area around the start is drawn."""
 
 START_SPREAD_RAD = 0.01
-"""Standard deviation of the joint angles in the start poses [rad]."""
+"""Standard deviation of the joint angles in the start poses [rad], so that trials
+differ."""
 
 Row = tuple[str, int]
 """Name of a gait, and number of a trial of it."""

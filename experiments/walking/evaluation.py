@@ -244,15 +244,10 @@ def _metadata(
 def keep(
     folder: RunFolder, world: str, outcomes: Mapping[str, Outcome]
 ) -> dict[str, dict[str, Any]]:
-    """Write the recordings of all gaits into a run folder.
-
-    Args:
-      folder: the run's folder.
-      world: "sim" or "real"; part of the file names.
-      outcomes: trials and recording of each gait, by the gait's name.
+    """Write the recordings of all gaits in a world into a run folder.
 
     Returns:
-      The fields of each gait's `Score`, by its name.
+      The fields of each gait's `Score`, by the name of the gait.
     """
     for name, outcome in outcomes.items():
         path = folder.path / RECORDINGS / f"{world}_{name}.parquet"

@@ -98,12 +98,7 @@ def run_search(
 
 
 def best_mean(means: FloatArray, ratings: Sequence[FloatArray]) -> Gait:
-    """The mean gait with the best average reward.
-
-    Args:
-      means: (n, 16) vectors of mean gaits.
-      ratings: for each rating, the rewards (n,) [cm/s] of all means.
-    """
+    """The mean gait, of vectors (n, 16), with the best average of its rewards (n,)."""
     return Gait.from_vector(means[np.mean(ratings, axis=0).argmax()])
 
 

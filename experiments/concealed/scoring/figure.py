@@ -28,9 +28,6 @@ def score_figure(score: Mapping[str, Any]) -> "Figure":
 
     The left panel shows the share of single effects that were named correctly, by level
     of difficulty; the right one the share of correct names over the stated probability.
-
-    Args:
-      score: the contents of score.json.
     """
     from matplotlib.figure import Figure
 

@@ -24,12 +24,7 @@ BINS = 10
 
 
 def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
-    """Compute all figures of one method's score.
-
-    Args:
-      marks: comparison of answer and truth, one for each case.
-      seed: seed of the bootstrap.
-    """
+    """Compute all figures of one method's score; the bootstrap uses the seed."""
     rng = np.random.default_rng(seed)
     hidden, single = by_kind(marks, *NAMED_KINDS), by_kind(marks, "single")
     certain = [each for each in marks if each.probability is not None]
@@ -78,11 +73,7 @@ def share(right: Iterable[bool]) -> Figure:
 
 
 def f1(marks: Sequence[Mark]) -> float:
-    """F1 score of the effects named: 2 hits / (2 hits + extra + missed).
-
-    Args:
-      marks: comparisons of answers and truths, whose effects are counted together.
-    """
+    """F1 score of the effects in all answers: 2 hits / (2 hits + extra + missed)."""
     hits = sum(each.hits for each in marks)
     wrong = sum(each.extra + each.missed for each in marks)
     return 2 * hits / max(2 * hits + wrong, 1)
