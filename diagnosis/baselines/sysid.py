@@ -171,10 +171,7 @@ class _Residual:
 
 
 def _beginnings(plant: Plant, traces: Sequence[Trace]) -> list[Trace]:
-    """The first seconds of each recording, equally long, 8 s or 2 s together.
-
-    The latter is for a floating base.
-    """
+    """The first seconds of each recording, 8 s in all; for a floating base 2 s."""
     seconds = SECONDS if plant.base == "fixed" else FLOATING_SECONDS
     some = traces[: int(seconds)]
     each_s = seconds / len(some)

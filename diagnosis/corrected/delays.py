@@ -10,12 +10,7 @@ class LateCommands:
     """Delays commands; a physics step in which two act gets their weighted mean."""
 
     def __init__(self, delay_s: float, step_s: float) -> None:
-        """Make room for the commands under way; call `begin` before `step`.
-
-        Args:
-          delay_s: time between a command and its effect.
-          step_s: time step of the physics.
-        """
+        """Make room for commands on their way; `step_s` is the physics step."""
         steps, self._share = divmod(delay_s / step_s, 1)
         self._commands: deque[FloatArray] = deque(maxlen=int(steps) + 2)
 
@@ -35,12 +30,7 @@ class LateEncoders:
     """Delays measured joint positions and velocities, interpolating between steps."""
 
     def __init__(self, delay_s: float, step_s: float) -> None:
-        """Make room for past measurements; call `begin` before `note` and `seen`.
-
-        Args:
-          delay_s: age of the measurements.
-          step_s: time step of the physics.
-        """
+        """Make room for past measurements; `step_s` is the physics step."""
         steps, self._share = divmod(delay_s / step_s, 1)
         self._step_s = step_s
         self._states: deque[tuple[FloatArray, FloatArray]] = deque(

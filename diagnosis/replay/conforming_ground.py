@@ -97,11 +97,9 @@ def _above(
 
 
 def _stands(runs: Sequence[Run], lowest: FloatArray) -> BoolArray:
-    """(N, feet) whether a foot carries the robot as its run begins.
+    """(N, feet) whether a foot carries the robot as a simulation's run begins.
 
-    Args:
-      runs: the run of each simulation.
-      lowest: (N, feet) height of each foot's lowest point above the plane [m].
+    `lowest` (N, feet) is the height of each foot's lowest point above the plane [m].
     """
     forces = [run.trace.foot_force_n for run in runs]
     found = lowest - lowest.min(axis=1, keepdims=True) <= ABOVE_M

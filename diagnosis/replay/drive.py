@@ -100,20 +100,15 @@ class Drive:
         )
 
     def ends(self, now_s: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """(B, n R, j) targets [rad] as B steps begin and end; None if there are none.
-
-        Args:
-          now_s: (B, R) times at which the steps begin.
-        """
+        """Targets (B, n R, j) as steps from (B, R) times begin and end [rad], or None."""
         before = self._all(self._commands, now_s, Held.at)
         after = self._all(self._commands, now_s + self._step_s, Held.at)
         return None if before is None or after is None else (before, after)
 
     def added(self, now_s: FloatArray) -> FloatArray | None:
-        """(B, n R, j) recorded torques [N m] to be added to the servos'; None if none.
+        """(B, n R, j) recorded torques [N m] to be added to the servos', or None.
 
-        Args:
-          now_s: (B, R) times at which the steps begin.
+        `now_s` are (B, R) times at which steps begin.
         """
         if not any(self._added):
             return None

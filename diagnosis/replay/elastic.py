@@ -113,11 +113,7 @@ class ElasticJoints:
         return np.asarray(np.where(np.abs(wanted) > limit, bound, free))
 
     def seen(self, position_rad: FloatArray) -> FloatArray:
-        """(rows, j) angles [rad] that encoders measure: motor angles at elastic joints.
-
-        Args:
-          position_rad: (rows, j) angles of the links.
-        """
+        """(rows, j) angles [rad] that encoders measure: of motors at elastic joints."""
         if self._angle is None:
             return position_rad
         return np.where(self.soft, self._angle, position_rad)

@@ -66,12 +66,9 @@ class BatchGaps:
         return position + arrives, apart
 
     def drag_nm(self, velocity: FloatArray) -> FloatArray:
-        """(rows, j) torque [N m] of servo damping on joints that their motors touch.
+        """Damping torque [N m] of servos on joints with (rows, j) speeds [rad/s].
 
         Joints whose motors are free in the gap do not get this torque.
-
-        Args:
-          velocity: (rows, j) speeds of the joints [rad/s].
         """
         law = self._law
         servo_nm = np.clip(law["kd"] * velocity, -law["limit"], law["limit"])

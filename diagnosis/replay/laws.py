@@ -125,11 +125,9 @@ class BatchLaws:
         self._ctrl[:, self._actuators] = asked_rad
 
     def jumps(self, ends: Ends | None) -> list[Ends | None]:
-        """For each of B steps the targets as it begins and ends; None if none jumps.
+        """For each of B steps its targets (n R, j) as it begins and ends, if any jumps.
 
-        Args:
-          ends: (B, n R, j) targets as the steps begin and as they end; None if there
-            are no targets.
+        `ends` are the targets (B, n R, j) of all steps.
         """
         if ends is None:
             return []

@@ -69,12 +69,7 @@ class CommandLine:
     """Delays commands to servos by a time that need not be whole physics steps."""
 
     def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
-        """Begin with one command in force and no other sent.
-
-        Args:
-          start_rad: (j,) position targets that the servos have at the beginning.
-          delay_steps: delay of later commands, in physics steps.
-        """
+        """Begin with (j,) targets that servos have; later ones come `delay_steps` late."""
         self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
         self._coming: deque[tuple[float, FloatArray]] = deque()
 

@@ -90,12 +90,7 @@ def check_engine(name: str, effects: Sequence[Hidden]) -> None:
 
 
 def least_inertia_kg_m2(plant: HiddenPlant, pose_rad: FloatArray) -> FloatArray:
-    """(j,) inertia [kg m^2] seen by a torque at each joint, all other joints free.
-
-    Args:
-      plant: the nominal robot.
-      pose_rad: (j,) joint angles.
-    """
+    """(j,) inertia [kg m^2] seen by a torque at each joint, all other joints free."""
     import mujoco
 
     model = plant.make_spec().compile()

@@ -71,9 +71,6 @@ class HiddenJoints:
         """(j,) true angles [rad] that the encoders measure, before any encoder offset.
 
         These are joint angles, or a motor's angle where the encoder sits at the motor.
-
-        Args:
-          position_rad: (j,) joint angles.
         """
         angles = position_rad
         for joint, transmission in self._loose.items():

@@ -17,12 +17,7 @@ class HiddenMujoco:
     """One robot driven by joint torques in MuJoCo; implements `HiddenEngine`."""
 
     def __init__(self, plant: HiddenPlant, model: "mujoco.MjModel") -> None:
-        """Allocate MuJoCo's data.
-
-        Args:
-          plant: the nominal robot.
-          model: model of the robot with its hidden effects.
-        """
+        """Allocate MuJoCo's data; `model` is the robot with its hidden effects."""
         import mujoco
 
         self._mujoco, self._model = mujoco, model

@@ -19,11 +19,9 @@ _POSES = 100
 
 
 def scales(plant: HiddenPlant, runs: Sequence[Run]) -> Scales:
-    """Measure runs of the nominal robot, mostly by the largest value of all runs.
+    """Measure simulated runs of the nominal robot without hidden effects.
 
-    Args:
-      plant: the nominal robot.
-      runs: simulated motions without hidden effects.
+    Where runs differ, the largest value counts.
     """
     torque = [_servo_nm(plant, run) for run in runs]
     asked = [

@@ -77,11 +77,7 @@ class Servos:
         return kp, self.kd_nm_s_rad, self.back_emf_nm_s_rad, self.max_torque_nm
 
     def set_point(self, command_rad: FloatArray) -> FloatArray:
-        """(j,) true joint angles [rad] that the servos aim at in the next step.
-
-        Args:
-          command_rad: (j,) position targets that have reached the servos.
-        """
+        """(j,) true joint angles [rad] that servos with these (j,) commands aim at."""
         target = command_rad
         if self.leaks:
             target = target.copy()

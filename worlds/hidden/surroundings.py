@@ -63,11 +63,7 @@ class Surroundings:
         return np.asarray(self.tilt().T @ np.array([0, 0, -GRAVITY_M_S2]))
 
     def ground(self, seed: np.random.SeedSequence) -> Heightfield:
-        """The ground under a floating robot: a plane, or bumps everywhere.
-
-        Args:
-          seed: of the bumps' random shape.
-        """
+        """The ground under a floating robot: a plane, or random bumps everywhere."""
         low, high = -_HALF_SIDE_M, _HALF_SIDE_M
         if self.bumps_m == 0:
             return Heightfield(np.zeros((2, 2)), (low, low), high - low)

@@ -74,10 +74,7 @@ class Drag(HiddenKind):
         return lambda time_s, velocity: -coefficient * velocity()
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Coefficient; at 1 m/s the drag is a share of the moving parts' weight.
-
-        The share is 2 % (hard to detect) to 40 % (easy).
-        """
+        """Drag at 1 m/s of 2 % (hard to detect) to 40 % (easy) of the moving weight."""
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
         return {"coefficient": s.part(0.4, 0.02) * weight_n}
 
