@@ -126,7 +126,7 @@ class Diagnose(RunOptions):
 
 
 def main(config: Diagnose) -> None:
-    """Diagnose and print the verdict, or only audit the recordings."""
+    """Diagnose and print the verdict, or only check the recordings (--audit-only)."""
     if config.audit_only:
         print_audit(config)
         return

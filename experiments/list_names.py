@@ -110,7 +110,7 @@ class List:
 
 
 def main(config: List) -> None:
-    """Print the list."""
+    """Print the list that the option `kind` names."""
     print_table(*TABLES[config.kind]())
 
 

@@ -93,7 +93,7 @@ class Record:
 
     @property
     def on_feet(self) -> bool:
-        """Whether the robot stands on the ground in this motion."""
+        """Whether the robot stands on its feet in this motion, not fixed in the air."""
         return self.motion not in MOTIONS
 
     def effects(self) -> tuple[Hidden, ...]:

@@ -47,7 +47,7 @@ class ConcealedMake:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse numbers out of range.
+        """Refuse options out of range.
 
         Raises:
           BadValueError: no case or too many cases are asked for, or a number is

@@ -46,7 +46,7 @@ def badge(verdict: Verdict, changed: bool = False) -> str:
 
 
 def question(robot: str, changed: bool) -> str:
-    """The question that a diagnosis answers; another one with reference recordings."""
+    """The question that a diagnosis answers: what changed, or what the sim lacks."""
     if changed:
         return f"What has changed about {robot} since the reference recordings?"
     return f"What does the sim of {robot} lack that its recordings show?"

@@ -68,7 +68,7 @@ class SearchPlan:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse invalid values."""
+        """Refuse invalid options of a search."""
         description = robots.get(self.robot)
         if self.sim is not None:
             check_correction(description, self.options, self.sim)

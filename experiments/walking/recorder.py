@@ -23,7 +23,7 @@ class Recorder:
     """
 
     def __init__(self, description: Description, robots: Sequence[int]) -> None:
-        """Make an empty recorder.
+        """Make a recorder without any ticks.
 
         Args:
           description: the robot model.

@@ -213,5 +213,5 @@ def _controls(
 
 
 def by_kind(marks: Sequence[Mark], *kinds: str) -> list[Mark]:
-    """The marks of cases of the given kinds."""
+    """Select the marks (answers compared with the truth) of cases of some kinds."""
     return [each for each in marks if each.case.kind in kinds]

@@ -80,7 +80,7 @@ def f1(marks: Sequence[Mark]) -> float:
 
 
 def median_error(marks: Sequence[Mark]) -> float:
-    """Median relative error of all effects that are true in name and place."""
+    """Median relative error of the found effects that have true name and place."""
     return float(np.median([error for each in marks for error in each.errors]))
 
 
@@ -141,7 +141,7 @@ def _by_level(
 
 
 def _mean(marks: Sequence[Mark], name: str, rng: np.random.Generator) -> Figure:
-    """Mean of an attribute over the marks in which it is not None."""
+    """Mean of an attribute of `Mark`, with interval; None values are left out."""
     there = [each for each in marks if getattr(each, name) is not None]
 
     def statistic(some: Sequence[Mark]) -> float:
