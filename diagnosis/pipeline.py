@@ -197,7 +197,7 @@ def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind
     judge, plant = search.judge, search.judge.fit.plant
     result = without_unsure(accepted(judge, search.run()), judge.least_gain)
     kind = verdict_kind(result, plant, audited)
-    # with a floating base, models of whole kinds would take an hour
+    # with a floating base, models with effects at all joints would take an hour
     if plant.base == "fixed" and kind == "unknown":
         result = all_joints(judge, result)
         kind = verdict_kind(result, plant, audited)

@@ -193,7 +193,7 @@ def _targets(trace: Trace) -> list[tuple[str, FloatArray]]:
 
 
 def _excess(values: FloatArray, low: float, high: float) -> float:
-    """Distance by which values leave a range; 1 % at each end are left out."""
+    """Distance by which values leave a range, without the outermost 1 % at each end."""
     there = values[np.isfinite(values)]
     least, most = np.quantile(there, (0.01, 0.99)) if len(there) else (low, high)
     return float(max(most - high, low - least, 0.0))

@@ -11,7 +11,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
 
 MOST = 4
-"""Number of models that are fitted to find the best wrong one: those with the smallest
+"""Number of wrong models that are fitted to find the best one: those with the smallest
 errors before the fit."""
 
 STEPS = 4

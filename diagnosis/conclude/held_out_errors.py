@@ -55,7 +55,7 @@ class HeldOutErrors:
         self._errors["ceiling"] = flexible_regression_errors(*nominal, regression)
 
     def fit(self) -> Fit:
-        """The errors in the form of `Verdict.fit`."""
+        """The errors of each channel, and of all channels together, for the verdict."""
         channels = {
             name: ChannelFit(
                 unit=channel_unit(self._test.plant, name),

@@ -60,7 +60,7 @@ def load_plant(
       >>> load_plant("nao", "fixed").joints[:2]
       ('LHipYawPitch', 'LHipRoll')
     """
-    quiet_mujoco()  # of trial values that blow up, or joints that mimic others
+    quiet_mujoco()  # no warnings on trial values that diverge, or on mimic joints
     name, spec, description = _read(source, base)
     known = _compiled(spec.copy(), name)  # compiling may merge bodies
     ours = _chosen(known, joints, name)

@@ -153,7 +153,7 @@ class Predictor:
         self._correction = 2 * finer - fine - coarse
         self._fine_correction = 2 * (finer - fine)
         self._doubt = self._start_doubt(model)
-        # what remains after the extrapolation is the error of second order
+        # the extrapolation leaves the error of second order
         left = (finer - fine) - (fine - coarse) / 2
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
         return float(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2)))

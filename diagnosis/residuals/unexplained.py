@@ -70,7 +70,7 @@ def _curve(values: FloatArray, wrong: FloatArray) -> Curve:
 
 
 def _explained(curve: tuple[str, str, *Curve]) -> float:
-    """Chi-square of the means of a curve (name, unit, curve) against zero."""
+    """Significance of a curve (name, unit, curve): chi-square of its means."""
     mean, spread = np.array(curve[3]), np.array(curve[4])
     return float(np.sum((mean / np.maximum(spread, 1e-12)) ** 2)) if len(mean) else 0.0
 

@@ -177,7 +177,7 @@ def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
 
 def _is_new(judge: Judge, less: Model, more: Model) -> bool:
     """Whether `more` gains more over `less` than it does on the healthy robot."""
-    # fitting and selection data together: a few seconds each are too few blocks
+    # fitting and selection data together, since each has too few time blocks
     now = np.concatenate(
         [_gains(part, less, more) for part in (judge.fit, judge.select)]
     )

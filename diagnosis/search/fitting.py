@@ -232,7 +232,7 @@ class _Course:
         self._residuals: dict[bytes, FloatArray] = {}
         self._jacobians: dict[bytes, FloatArray] = {}
         self._last: FloatArray | None = None
-        """Point at which the latest Jacobian was computed."""
+        """(p,) point, in scaled coordinates, at which a Jacobian was computed last."""
 
     def begin(self, x: FloatArray, jacobian: FloatArray) -> None:
         """Start from a known Jacobian (N, p) at a point (p,)."""

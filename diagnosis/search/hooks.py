@@ -75,7 +75,7 @@ class Hooks:
         checkpoint: Checkpoint | None = None,
         part: str = "",
     ) -> None:
-        """Connect a diagnosis with its caller.
+        """Connect a diagnosis with a progress display and a checkpoint.
 
         Args:
           progress: receives reports; None for no reports.

@@ -184,7 +184,7 @@ class Judge:
     def _judged(
         self, starts: Sequence[Model], jacobians: Sequence[FloatArray | None] | None
     ) -> list[Judged]:
-        """Compute what `judged` returns, without the checkpoint."""
+        """Fit and judge models like `judged`, but without the checkpoint."""
         rough = fit_all(
             self.fit, starts, self.rules.first_steps, followed=True, jacobians=jacobians
         )
