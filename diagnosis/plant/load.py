@@ -83,7 +83,7 @@ def described_plant(
 
     Args:
       description: the robot as data, as in `robots`.
-      spec: its specification, with or without a ground; it is changed.
+      spec: MuJoCo specification of the robot, with or without a ground; it is changed.
       base: "fixed" to the world or "floating".
 
     Example:

@@ -1,4 +1,4 @@
-"""Smooth positions, speeds and accelerations from noisy samples at uneven times."""
+"""Smooths noisy samples at uneven times, and estimates their rates of change."""
 
 from dataclasses import dataclass
 

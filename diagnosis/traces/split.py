@@ -163,9 +163,9 @@ def _covered(taken: FloatArray, rest: FloatArray) -> float:
 def _cut(traces: Sequence[Trace]) -> Split:
     """Cut each trace into parts, with uses in the order that covers motion best.
 
-    Each trace begins one part later in that order. An event that all traces have at the
-    same time, such as a push or the end of a drift, is then fitted in some of them and
-    judged in others.
+    The uses of each trace begin one part later in that order than those of the trace
+    before. An event that all traces have at the same time, such as a push, is then
+    fitted in some of them and judged in others.
     """
     best, chosen = -np.inf, list[tuple[Trace, int]]()
     for order in sorted(set(permutations((FIT, FIT, SELECT, TEST)))):
