@@ -100,7 +100,7 @@ class Drive:
         )
 
     def ends(self, now_s: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Targets (B, n R, j) as steps from (B, R) times begin and end [rad], or None."""
+        """(B, n R, j) targets [rad] as steps from (B, R) times begin and end."""
         before = self._all(self._commands, now_s, Held.at)
         after = self._all(self._commands, now_s + self._step_s, Held.at)
         return None if before is None or after is None else (before, after)

@@ -69,7 +69,7 @@ class CommandLine:
     """Delays commands to servos by a time that need not be whole physics steps."""
 
     def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
-        """Begin with (j,) targets that servos have; later ones come `delay_steps` late."""
+        """Begin with (j,) targets in force; later ones come `delay_steps` late."""
         self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
         self._coming: deque[tuple[float, FloatArray]] = deque()
 

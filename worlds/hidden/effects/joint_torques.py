@@ -32,7 +32,7 @@ class ViscousFriction(HiddenKind):
         return lambda time_s, angle, speed, servo: -coefficient * speed
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Friction at top speed, 2 % (hard to detect) to 20 % (easy) of usual torque."""
+        """At top speed 2 % (hard to detect) to 20 % (easy) of usual servo torque."""
         return {"coefficient": s.part(0.2, 0.02) * s.torque_nm / s.speed_rad_s}
 
     def cancels(self, plant: HiddenPlant) -> bool:
