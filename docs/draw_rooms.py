@@ -123,14 +123,7 @@ def draw(house: Floors, shelves: dict[str, Floors], path: Path) -> None:
 def _draw_shelves(
     axes: "Axes", rows: Floors, corner: tuple[float, float], wide: float
 ) -> None:
-    """Draw the rows of subpackages of one package.
-
-    Args:
-      axes: the picture.
-      rows: rows of subpackages, from the top down.
-      corner: upper left corner of the first row [in].
-      wide: width of the package's box [in].
-    """
+    """Draw the rows of subpackages of one package, from its upper left corner [in]."""
     left, top = corner
     for k, row in enumerate(rows):
         each = (wide - 0.2) / len(row)

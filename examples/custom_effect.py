@@ -47,13 +47,7 @@ class WaterDrag(Effect):
 
 
 def swing(path: Path, duration: float, seed: int) -> None:
-    """Record a pendulum in water that follows random commands.
-
-    Args:
-      path: file of the recording.
-      duration: length of the recording [s].
-      seed: seed of the commands and of the sensor noise.
-    """
+    """Record a pendulum in water that follows random commands for `duration` [s]."""
     model = mujoco.MjModel.from_xml_string(PENDULUM.format(water=0.3))
     data, rng, rows = mujoco.MjData(model), np.random.default_rng(seed), []
     pace = rng.uniform(3, 9, 3)

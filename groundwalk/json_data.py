@@ -130,10 +130,7 @@ def _refuse_constant(constant: str) -> NoReturn:
 def _one_line(error: BaseException, where: str) -> GroundwalkError:
     """Make one error with a one-line message from the first of cattrs' nested errors.
 
-    Args:
-      error: an error, or a cattrs group of errors whose notes name keys and indices.
-      where: name of the outermost value; the message continues it to the key at which
-        the error happened, such as "verdict.effects[2].place".
+    The message continues `where` to the wrong key, as in "verdict.effects[2].place".
     """
     while isinstance(error, BaseValidationError):
         error = error.exceptions[0]

@@ -94,10 +94,7 @@ def _by_role(description: Description, leg: _Leg) -> _Leg:
 def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
     """Indices of shoulder pitch and roll of the arm on one side; None without an arm.
 
-    Args:
-      description: the robot.
-      legs: indices of the joints of both legs.
-      side: 1 left, -1 right.
+    `legs` are the indices of both legs' joints; `side` is 1 left, -1 right.
     """
     for i, joint in enumerate(description.links):
         if joint.parent < 0 and i not in legs and joint.origin_m[1] * side > 0:
@@ -109,13 +106,7 @@ def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
 
 
 def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
-    """Whether hip axes meet in one point, ankle axes in another, and legs are mirrored.
-
-    Args:
-      description: the robot.
-      left: indices of the left leg's joints from hip to foot.
-      right: indices of the right leg's joints from hip to foot.
-    """
+    """Whether hip axes meet in a point, ankle axes in another, and legs mirror."""
     one, other = ([description.links[joint] for joint in leg] for leg in (left, right))
     axes = np.array([joint.axis for joint in one])
     expected = np.array([axes[0], *np.eye(3)[[0, 1, 1, 1, 0]]])
@@ -150,11 +141,7 @@ def _like(description: Description, chain: _Leg, leg: _Leg) -> LegGeometry:
 
     The approximation has its hip on the hip pitch axis, straight above the foot, its
     ankle on the ankle pitch axis, and the thigh and shin lengths seen from the side.
-
-    Args:
-      description: the robot.
-      chain: indices of the left leg's joints from hip to foot.
-      leg: the same indices in the order yaw, roll, pitch, knee, ankle pitch and roll.
+    `chain` has the joints from hip to foot, `leg` those from yaw to ankle roll by role.
     """
     at = _places(description, chain)
     _, _, pitch, knee, ankle, _ = (at[chain.index(joint)] for joint in leg)

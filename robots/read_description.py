@@ -79,14 +79,7 @@ def read_description(path: Path) -> Description:
 def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatArray]:
     """The next moving joint (or root) above a joint, and the parent's position in it.
 
-    Args:
-      name: the joint.
-      joints: the file's joint tables by name.
-      root: name of the root link.
-
-    Returns:
-      Name of the moving joint or the root, and the position (3,) of the joint's direct
-      parent in its frame [m], which is not zero if that parent is fixed.
+    The position (3,) [m] of the direct parent is not zero if that parent is fixed.
     """
     offset = np.zeros(3)
     parent = joints[name]["parent"]
@@ -120,12 +113,7 @@ def _link(
 ) -> Link:
     """Make the link of a moving joint or the root, with all fixed links merged in.
 
-    Args:
-      link: name of the link.
-      owner: name of the moving joint or the root.
-      joints: the file's joint tables by name.
-      carrier: for each joint, the owner of its link and the link's position in it [m].
-      own: the table of the joint or the root, with mass, inertia and shapes.
+    `carrier` has, by joint, the owner of its link and the link's position in it [m].
     """
     bodies = [_inertial(own)]
     shapes = [_capsule(shape, np.zeros(3)) for shape in own.get("shapes", ())]

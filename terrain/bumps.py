@@ -61,13 +61,7 @@ class Bumps(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights [m] of random bumps, shape (rows, columns), flat around the origin.
-
-        Args:
-          x_m: world x of the grid's columns [m], shape (1, columns).
-          y_m: world y of the grid's rows [m], shape (rows, 1).
-          generator: source of all randomness.
-        """
+        """Heights (rows, columns) [m] of round bumps at x (1, columns), y (rows, 1)."""
         columns_m, rows_m = x_m[0], y_m[:, 0]
         area_m2 = float(np.ptp(columns_m) * np.ptp(rows_m))
         count = generator.poisson(self.density_per_m2 * area_m2)
@@ -84,12 +78,7 @@ class Bumps(Ground):
         return self.past_start(np.hypot(x_m, y_m)) * heights_m
 
     def _near(self, samples_m: FloatArray, centre_m: float) -> slice:
-        """Indices of the samples along one axis that a bump can raise.
-
-        Args:
-          samples_m: the samples' coordinates along the axis [m].
-          centre_m: the bump's centre on the axis [m].
-        """
+        """Indices of the samples along one axis that a bump at a centre can raise."""
         reach = math.ceil(self.radius_m / self.spacing_m)
         middle = round((centre_m - float(samples_m[0])) / self.spacing_m)
         return slice(max(middle - reach, 0), middle + reach + 1)

@@ -20,5 +20,5 @@ class Flat(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Zeros (rows, columns): heights [m] on the grid of columns x and rows y."""
+        """Heights (rows, columns) [m], all zero, at x (1, columns), y (rows, 1)."""
         return np.zeros((y_m.size, x_m.size))

@@ -113,12 +113,7 @@ class Ground(ABC):
         return t * t * (3.0 - 2.0 * t)
 
     def _require_spacings(self, name: str, least: int) -> None:
-        """Refuse a length parameter of fewer than `least` grid spacings.
-
-        Args:
-          name: name of the parameter, an attribute in metres.
-          least: smallest length in grid spacings.
-        """
+        """Refuse the length parameter `name` if it is below `least` grid spacings."""
         length_m, least_m = getattr(self, name), least * self.spacing_m
         if length_m < least_m:
             raise BadValueError(

@@ -137,14 +137,7 @@ class Heightfield:
     ) -> tuple[IntArray, FloatArray]:
         """Index of the grid cell that holds a coordinate, and the position in the cell.
 
-        Args:
-          position_m: world x or y [m], any shape.
-          origin_m: coordinate of the grid's first sample [m].
-          samples: number of samples along this axis.
-
-        Returns:
-          Cell indices, and positions in the cell from 0 to 1, both in the shape of
-          `position_m`; outside of the grid those of its nearest edge.
+        The position counts from 0 to 1; outside of the grid the nearest edge's hold.
         """
         position_m = np.asarray(position_m, np.float64)
         cells = np.clip((position_m - origin_m) / self.spacing_m, 0.0, samples - 1)

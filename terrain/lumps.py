@@ -74,13 +74,7 @@ class Lumps(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights [m] of random lumps, shape (rows, columns), flat around the origin.
-
-        Args:
-          x_m: world x of the grid's columns [m], shape (1, columns).
-          y_m: world y of the grid's rows [m], shape (rows, 1).
-          generator: source of all randomness.
-        """
+        """Heights (rows, columns) [m] of the lumps at x (1, columns), y (rows, 1)."""
         octave = generator.uniform(-0.5, 0.5, WAVES)
         direction_rad = generator.uniform(0.0, 2.0 * math.pi, WAVES)
         phase_rad = generator.uniform(0.0, 2.0 * math.pi, WAVES)

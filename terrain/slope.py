@@ -61,13 +61,7 @@ class Slope(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights [m] of the plane, shape (rows, columns), behind a rounded lower edge.
-
-        Args:
-          x_m: world x of the grid's columns [m], shape (1, columns).
-          y_m: world y of the grid's rows [m], shape (rows, 1).
-          generator: not used; the ground is not random.
-        """
+        """Heights (rows, columns) [m] of the plane at x (1, columns), y (rows, 1)."""
         beyond_m = x_m - self.start_radius_m
         within_m = np.clip(beyond_m, 0.0, self.blend_m)
         # The integral of a gradient that grows linearly over the blend.

@@ -54,13 +54,7 @@ class Stairs(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights [m] of the steps, shape (rows, columns), the same in every row.
-
-        Args:
-          x_m: world x of the grid's columns [m], shape (1, columns).
-          y_m: world y of the grid's rows [m], shape (rows, 1).
-          generator: not used; the ground is not random.
-        """
+        """Heights (rows, columns) [m] of the steps at x (1, columns), y (rows, 1)."""
         treads = (x_m - self.start_radius_m) / self.tread_m
         # A sample on an edge belongs to the lower tread, whatever its rounding.
         climbed = np.clip(np.ceil(treads - 1e-9), 0, self.steps)

@@ -56,13 +56,7 @@ class Waves(Ground):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights [m] of the waves, shape (rows, columns), flat around the origin.
-
-        Args:
-          x_m: world x of the grid's columns [m], shape (1, columns).
-          y_m: world y of the grid's rows [m], shape (rows, 1).
-          generator: not used; the ground is not random.
-        """
+        """Heights (rows, columns) [m] of the waves at x (1, columns), y (rows, 1)."""
         along_m = math.cos(self.heading_rad) * x_m + math.sin(self.heading_rad) * y_m
         wave = np.sin(2.0 * math.pi / self.wavelength_m * along_m)
         return self.past_start(np.hypot(x_m, y_m)) * self.amplitude_m * wave

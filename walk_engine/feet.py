@@ -107,11 +107,7 @@ def _opening(
 ) -> FloatArray:
     """Outward turn (n,) of the legs about the hips' x axes during a step [rad].
 
-    Args:
-      outward_m: (n,) distance in a cycle of two steps to the swing foot's side [m].
-      progress: (n,) progress of the step, 0 to 1.
-      origin: positions of the feet when the step began.
-      leg_height_m: (n,) height of the hip above the ankle [m].
+    `outward_m` is the distance in a cycle of two steps to the swing foot's side.
     """
     step = np.arctan(np.maximum(outward_m, 0.0) * progress / leg_height_m)
     return 0.5 * step + origin.opening_rad * (1.0 - progress)
@@ -122,11 +118,7 @@ def _toe_out(
 ) -> FloatArray:
     """Outward turn (n,) of the toes during a step [rad].
 
-    Args:
-      outward_rad: (n,) turn in a cycle of two steps to the swing foot's side [rad].
-      progress: (n,) progress of the step, 0 to 1.
-      origin: positions of the feet when the step began.
-      config: the engine's constants.
+    `outward_rad` is the turn in a cycle of two steps to the swing foot's side.
     """
     outer = config.outward_turn_share
     target = np.where(outward_rad > 0, outer, 1.0 - outer) * outward_rad

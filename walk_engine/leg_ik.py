@@ -71,10 +71,7 @@ def _yaw_undone(
 ) -> _Vector:
     """Rotate a vector about a leg's yaw axis by the negative yaw (Rodrigues).
 
-    Args:
-      leg: lengths and axes of the left leg.
-      turn: cosine and sine of the yaw angle.
-      vector: x, y and z.
+    `turn` is the cosine and the sine of the yaw angle.
     """
     a, b, c = leg.yaw_axis
     x, y, z = vector
@@ -90,14 +87,9 @@ def _yaw_undone(
 def _within_reach(
     leg: LegGeometry, target: _Vector
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Move a target out of reach to the nearest distance from the hip within reach.
+    """Move an ankle target out of reach to the nearest distance from the hip in reach.
 
-    Args:
-      leg: lengths and axes of the left leg.
-      target: x, y and z of the ankle relative to the hip [m].
-
-    Returns:
-      x, y and z of the moved target, and its distance from the hip [m].
+    The result is x, y and z relative to the hip and the distance from the hip [m].
     """
     x, y, z = target
     # A target at the hip has no direction: use a point just below instead.

@@ -69,14 +69,7 @@ class Stepper:
     def __init__(
         self, biped: Biped, gait: GaitColumns, tick_s: float, config: EngineConfig
     ) -> None:
-        """Keep gaits and constants.
-
-        Args:
-          biped: the robots' legs and joints.
-          gait: values (n,) of each gait parameter, by its name.
-          tick_s: duration of a tick [s].
-          config: the engine's constants.
-        """
+        """Keep the gaits' parameters, the tick [s] and the constants."""
         self._leg = biped.leg
         self._gait = gait
         self._tick_s = tick_s
@@ -150,14 +143,7 @@ class Stepper:
     def _end(
         self, now: Progress, time_s: FloatArray, feet: Feet, sensing: Sensing
     ) -> Progress:
-        """End a tick: update robots whose step, crouching or rising is over.
-
-        Args:
-          now: the progress in this tick.
-          time_s: (n,) time since the step, crouching or rising began [s].
-          feet: positions of the feet.
-          sensing: the state of the force sensing after this tick.
-        """
+        """End a tick: update robots whose step, crouching or rising is over."""
         config, period_s = self._config, now.plan.period_s
         changes = step_is_over(
             time_s,

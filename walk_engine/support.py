@@ -111,11 +111,8 @@ def _lateral_cop_m(pressure: FloatArray, lateral_m: FloatArray) -> FloatArray:
     """Lateral centre of pressure (n,) [m], positive to the left; 0 without load.
 
     The sensors are added one by one, each with its mirror image, so that neither the
-    number of robots nor mirroring changes a bit of the result.
-
-    Args:
-      pressure: (8, n) readings of the sensors as shares of their largest readings.
-      lateral_m: (8,) positions of the sensors [m], left of the torso's middle.
+    number of robots nor mirroring changes a bit of the result. `pressure` (8, n) has
+    the readings as shares of each sensor's largest reading.
     """
     moment = total = np.zeros(pressure.shape[1])
     for left, right in zip(_LEFT, _RIGHT, strict=True):

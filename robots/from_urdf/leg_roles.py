@@ -84,13 +84,7 @@ def _in_order(tree: UrdfTree, leg: Sequence[str]) -> tuple[str, ...]:
 def _legs(
     tree: UrdfTree, placed: Mapping[str, Placement], held: Sequence[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names of the six joints of each leg, from hip to foot; the legs in any order.
-
-    Args:
-      tree: the robot's URDF.
-      placed: placement of each link in the root link's frame.
-      held: names of joints that are held still.
-    """
+    """Names of the six joints of each leg, from hip to foot; the legs in any order."""
     free = [one for one in tree.joints.values() if one.moving and one.name not in held]
     carriers = {name for joint in free for name in tree.chain(joint.parent)}
     ends = [joint for joint in free if joint.name not in carriers]
@@ -125,11 +119,7 @@ def _facing(
     A knee with the range [a, b] about an axis can bend by a + b more one way than the
     other. A positive turn about an axis that points left swings the shin backward.
 
-    Args:
-      tree: the robot's URDF.
-      placed: placement of each link in the root link's frame.
-      legs: names of the joints of both legs, from hip to foot.
-      across: (2,) horizontal unit vector between the feet.
+    `across` (2,) is a horizontal unit vector between the feet.
     """
     bend = np.zeros(3)
     for leg in legs:
