@@ -1,4 +1,4 @@
-"""Robots as data: descriptions, and MuJoCo and PyBullet models made from them.
+"""Robots as data: descriptions, and MuJoCo and PyBullet models of them.
 
 Example:
   >>> import robots

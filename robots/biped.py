@@ -106,7 +106,7 @@ def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
 
 
 def _meet(description: Description, left: _Leg, right: _Leg) -> bool:
-    """Whether hip axes meet in a point, ankle axes in another, and legs mirror."""
+    """Whether hip axes meet in a point, ankle axes in another, legs are mirrored."""
     one, other = ([description.links[joint] for joint in leg] for leg in (left, right))
     axes = np.array([joint.axis for joint in one])
     expected = np.array([axes[0], *np.eye(3)[[0, 1, 1, 1, 0]]])
