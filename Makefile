@@ -30,7 +30,7 @@ help:
 	@echo "make walk    tune a gait in simulation and try it in both worlds (into runs/)"
 	@echo "make test    run the tests"
 	@echo "make lint    check style, types and imports"
-	@echo "make results write docs/results anew (a run of some minutes)"
+	@echo "make results write docs/results again (many hours; one page: make results-NAME)"
 	@echo "make bench   measure speed"
 	@echo "make env     only set up the environment (in $(VENV))"
 
