@@ -169,7 +169,7 @@ def _clipped_share(name: str, values: FloatArray, step: float) -> float:
 
 
 def _longest_s(time_s: FloatArray, mask: BoolArray) -> float:
-    """Longest time [s] that (T,) flags hold, from the row before to the row after."""
+    """Length [s] of the longest run of true flags in `mask` (T,), edges included."""
     longest = 0.0
     for start, stop in _spans(mask):
         end = min(stop, len(time_s) - 1)

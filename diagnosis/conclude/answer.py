@@ -23,9 +23,11 @@ MOST_LEFT = 0.5
 it, hardly more than noise remains, and the verdict is not `unknown`."""
 
 
-UNSURE_NATS, WEAK = 15.0, 4.0
-"""An effect is unsure if a model without it is less plausible by less than the first
-number [nats]; it must then gain the second number times what other effects must."""
+UNSURE_NATS = 15.0
+"""An effect is unsure if leaving it out lowers the log-likelihood by less than this."""
+WEAK = 4.0
+"""An unsure effect stays in the answer only if it improves the fit by this many times
+the gain that is asked of other effects."""
 
 
 def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:

@@ -107,7 +107,12 @@ def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
 
 
 def _variance(sums: FloatArray) -> float:
-    """Variance of one value from (blocks,) sums of the residuals' influences on it."""
+    """Variance of one estimated value.
+
+    Args:
+      sums: (blocks,) how far the residuals of each block of consecutive rows shift the
+        estimate, in its unit; blocks count as independent of each other.
+    """
     variance = float(sums @ sums)
     if len(sums) < FEWEST or variance <= 0:
         return variance

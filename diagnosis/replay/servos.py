@@ -20,8 +20,8 @@ LEAST_KP = 1e-9
 """Smallest stiffness [N m/rad] used as a divisor, to avoid division by zero."""
 
 JUMP = 0.3
-"""Share of the servo error at the torque limit: a target that changes by more in one
-physics step counts as a jump. Smaller changes rarely saturate a servo."""
+"""A target that changes in one physics step by more than this share of the position
+error at which the servo saturates counts as a jump."""
 
 Columns = slice | list[int]
 """Index of the joints' columns in an array of MuJoCo."""

@@ -209,7 +209,7 @@ class Judge:
 
         Args:
           fits: models fitted to the fitting data.
-          exactly: correct each model's own integration error instead of a common one.
+          exactly: remove each model's own integration error, not one common to all.
         """
         energies = self.energies([fit.model for fit in fits], exactly)
         return [
@@ -238,7 +238,7 @@ class Judge:
 
         Args:
           models: the effects with values.
-          exactly: correct each model's own integration error instead of a common one.
+          exactly: remove each model's own integration error, not one common to all.
         """
         if not models:
             return []

@@ -20,7 +20,7 @@ from diagnosis.traces.windows import FLOATING_WINDOW_S
 from groundwalk.errors import BadRecordingError
 
 MOST_S = 40.0
-"""Most seconds that are used of the recordings of the healthy robot."""
+"""Most seconds used of all recordings of the healthy robot together [s]."""
 
 CHECK_S = 6.0
 """Seconds of recordings of the healthy robot on which effects are checked: one that

@@ -35,7 +35,7 @@ class Usage:
 
     @classmethod
     def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Usage":
-        """The usage of each of a plant's joints over all traces."""
+        """Measure how far, how fast and how hard each joint moves, over all traces."""
         position = np.concatenate([trace.position_rad for trace in traces])
         speeds, torques = [], []
         for trace in traces:

@@ -25,8 +25,7 @@ EDGE_S = 0.05
 speeds are not accurate there."""
 
 LEAST_WINDOW_S = 0.1
-"""Windows of a robot with a floating base that are shorter than this [s] are not
-compared with the replay."""
+"""Shorter windows [s] of recordings with a floating base are not replayed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -126,7 +126,13 @@ def _stills(time_s: FloatArray) -> IntArray:
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
-    """Choose stills (ticks) whose heads, at x_m (ticks,) [m], are room_m apart."""
+    """Those of the given stills, from the last one back, that do not overlap.
+
+    Args:
+      x_m: (ticks,) position of the robot's head [m].
+      stills: numbers of the ticks to choose from.
+      room_m: least distance between the heads of two stills [m].
+    """
     chosen: list[int] = []
     for still in stills[::-1].tolist():
         if (np.abs(x_m[chosen] - x_m[still]) >= room_m).all():

@@ -81,8 +81,9 @@ GOALS = (
     Goal("not excited, and said so", ("unexcited_right",)),
     Goal("calibration error (ECE)", ("ece",), high=0.10),
 )
-"""The figures on the page, with the goals of the diagnosis. The goal of a control is to
-remove less than half of the error that the diagnosis removes."""
+"""The numbers on the page, each with the goal that the diagnosis should reach. The
+control corrections, which are wrong on purpose, should remove less than half of the
+error that the diagnosis removes."""
 
 
 def text_of(figure: Mapping[str, Any], with_interval: bool = True) -> str:
