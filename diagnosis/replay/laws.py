@@ -163,7 +163,7 @@ class BatchLaws:
         self._applied[:, self._dofs] = already + torque_nm
 
     def push_bodies(self, time_s: FloatArray) -> None:
-        """Apply pushes and drag in the step that begins at (R,) times [s], one a run."""
+        """Apply pushes and drag in the step that begins at (R,) times [s]."""
         self._outside.apply(time_s)
 
     def joint_state(self) -> tuple[FloatArray, FloatArray]:

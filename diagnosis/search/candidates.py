@@ -174,7 +174,7 @@ class Candidates:
         }
 
     def _pairs(self, residual: FloatArray, known: Sequence[Model]) -> list[Model]:
-        """Pairs of effects likely to explain most of the residual, without known pairs."""
+        """Pairs of effects likely to explain most of the residual; no known ones."""
         seen = {keys_of(model) for model in known}
         pairs = self._screen.pairs(residual, self._rules.pairs)
         return [guess.model for guess in pairs if keys_of(guess.model) not in seen]

@@ -69,7 +69,7 @@ class ForwardModel:
 
     @property
     def outcome_scale(self) -> FloatArray:
-        """(p,) standard deviation of each predicted change of state in the training data."""
+        """(p,) standard deviation of each state's change in the training data."""
         return self._network.targets.scale
 
     def action_scale(self, actions: int) -> FloatArray:
