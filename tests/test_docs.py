@@ -5,7 +5,7 @@ import ast
 import pytest
 from typed_pages import PAGES, blocks
 
-LONG = ("tune_gait(", "run_diagnosis(", "Grounding(")
+LONG = ("tune_gait(", "run_diagnosis(", "GroundingStep(")
 """What no test waits for: the examples' tests do it in a small size."""
 
 
