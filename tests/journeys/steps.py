@@ -243,8 +243,8 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "groundwalk list robots": Run(says="g1"),
         "groundwalk humanoids --robots my_robot.urdf": Run(
             "--population 4 --generations 1 --trials 1 --real-trials 1 "
-            "--out runs/humanoids",
-            writes=("runs/humanoids/report.html", "runs/humanoids/humanoids.png"),
+            "--out runs/of-mine",
+            writes=("runs/of-mine/report.html", "runs/of-mine/humanoids.png"),
         ),
     },
     "seeing.md": {
