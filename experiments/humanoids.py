@@ -117,7 +117,7 @@ def main(config: Humanoids) -> None:
             with extra(f"{own.path}: a picture"):
                 picture_run(own)
     with extra(PICTURE):
-        walks = {name: _walk(folder, name) for name in config.robots}
+        walks = {short_name(name): _walk(folder, name) for name in config.robots}
         draw_humanoids(walks, folder.path / PICTURE)
     write_humanoids_page(folder, result)
     if config.json:
