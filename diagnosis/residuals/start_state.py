@@ -63,7 +63,7 @@ class StartUncertainty:
         ]
 
     def part(self, first: int, last: int) -> "StartUncertainty":
-        """The same for the windows `first` to `last - 1` only."""
+        """The start uncertainty of the windows `first` to `last - 1` only."""
         some = object.__new__(StartUncertainty)
         some._runs = self._runs[first:last]
         return some

@@ -87,7 +87,7 @@ class Hooks:
         self._saved = 0
 
     def within(self, part: str) -> "Hooks":
-        """The same hooks for a named part of the diagnosis, such as "reference"."""
+        """Hooks for a named part of the diagnosis, such as "reference"."""
         return Hooks(self.progress, self._checkpoint, part)
 
     def stage(self, name: str, steps: int) -> None:

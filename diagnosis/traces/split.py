@@ -27,8 +27,8 @@ _TWICE_S = 20.0
 _STROKE_S = 0.2
 """Time [s] between the two positions by whose difference a joint's speed is judged."""
 _MANY = 12
-"""Of up to this many recordings all sets that may be set aside are compared; of more,
-only every second one, every third one and so on."""
+"""With this many recordings or fewer, all sets that may be set aside are compared; with
+more recordings only every second set, every third one and so on."""
 _LEAST_PART_ROWS = 8
 """Fewest rows that a part of a recording must have."""
 FIT, SELECT, TEST = 0, 1, 2

@@ -111,7 +111,7 @@ def test_where_nothing_is_nothing_is_found():
 
 @pytest.mark.parametrize(("gained", "believed"), [(0.5, False), (2.0, True)])
 def test_what_was_fitted_must_show_it_too(gained, believed):
-    """Of many models some fit a quarter of the data well by chance."""
+    """Among many models some fit a quarter of the data well by chance."""
     judge = searched()[0].judge
     one = judged(PLANT, judge.nothing - 3 * judge.least_gain, "armature@elbow")
     energy = judge.nothing_fit - gained * judge.least_gain
