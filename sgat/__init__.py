@@ -10,11 +10,4 @@ effect in the simulator. The subpackages:
 - `sgat.walks`: grounding of worlds in which robots walk.
 - `sgat.gym`: grounding of Gymnasium environments.
 - `sgat.tabular`: grounding of finite worlds, where every model is a table.
-
-PyTorch is imported when a network is first used, not before.
 """
-
-from sgat.noise import NoiseLaw, NoiseStream, WhiteNoise
-from sgat.transitions import Transitions
-
-__all__ = ["NoiseLaw", "NoiseStream", "Transitions", "WhiteNoise"]

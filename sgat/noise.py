@@ -32,15 +32,14 @@ class NoiseLaw(Protocol):
     def dimensions(self) -> int:
         """d, how many numbers are drawn for a robot at each tick."""
 
-    def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
+    def chunk(self, generators: Generators) -> FloatArray:
         """Draw the noise of the next ticks.
 
-        To the last bit, a robot's noise depends only on its own generator and its own
-        past, not on the other robots.
+        To the last bit, a robot's noise depends only on its own generator, not on the
+        other robots.
 
         Args:
           generators: n random generators, one for each robot.
-          last: (n, d) noise of the tick before, or None at the start.
 
         Returns:
           (ticks, n, d) noise without a unit; the law chooses the number of ticks.
@@ -65,8 +64,8 @@ class WhiteNoise:
         if self.dimensions < 1:
             raise BadValueError(f"dimensions is {self.dimensions}; give at least 1")
 
-    def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """(CHUNK_TICKS, n, d) noise of the next ticks; `last` (n, d) is not used."""
+    def chunk(self, generators: Generators) -> FloatArray:
+        """(CHUNK_TICKS, n, d) noise of the next ticks."""
         shape = (CHUNK_TICKS, self.dimensions)
         return np.stack([g.standard_normal(shape) for g in generators], axis=1)
 
@@ -98,8 +97,7 @@ class NoiseStream:
         If a model predicts a mixture, the uniform numbers choose a component.
         """
         if self._tick == len(self._noise):
-            last = self._noise[-1] if len(self._noise) else None
-            self._noise = self._law.chunk(self._generators, last)
+            self._noise = self._law.chunk(self._generators)
             ticks = len(self._noise)
             self._choice = np.stack([g.random(ticks) for g in self._generators], axis=1)
             self._tick = 0

@@ -67,35 +67,10 @@ class ForwardModel:
         """Scalings of the s + a input columns, and of the p changes of the state."""
         return self._network.inputs, self._network.targets
 
-    @property
-    def outcome_scale(self) -> FloatArray:
-        """(p,) standard deviation of each state's change in the training data."""
-        return self._network.targets.scale
-
-    def action_scale(self, actions: int) -> FloatArray:
-        """(actions,) standard deviations of the training actions; 1 if constant."""
-        return self._network.inputs.scale[-actions:]
-
     def predict(self, state: FloatArray, action: FloatArray) -> FloatArray:
         """(n, p) mean next state for states (n, s) and actions (n, a), as in GAT."""
         means = [self._head.mean(raw, np) for raw in self._each(state, action)]
         return self._next_state(state, np.mean(means, axis=0))
-
-    def moments(
-        self, state: FloatArray, action: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Mean (n, p) and covariance (n, p, p) of the next state, over all networks.
-
-        States are (n, s), actions (n, a).
-        """
-        head, every = self._head, list(self._each(state, action))
-        means = np.array([head.mean(raw, np) for raw in every], dtype=float)
-        off = means - means.mean(axis=0)
-        between = np.einsum("mni,mnj->nij", off, off) / len(every)
-        within = [head.covariance(head.parts(raw, np)) for raw in every]
-        spread = self._network.targets.spread
-        covariance = (between + np.mean(within, axis=0)) * np.outer(spread, spread)
-        return self._next_state(state, means.mean(axis=0)), covariance
 
     def sample(
         self, state: FloatArray, action: FloatArray, stream: NoiseStream
@@ -109,18 +84,6 @@ class ForwardModel:
         member = (stream.member() * self.config.members).astype(np.intp)
         head, raw = self._head, self._raw(state, action, member)
         return self._next_state(state, head.sample(head.parts(raw, np), z, choice))
-
-    def action_effect(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        """(n, p, a) derivative of the mean next state by the action (n, a)."""
-        actions = action.shape[1]
-        network = self._network
-        x = network.inputs.to_scaled(np.hstack([state, action]))
-        slopes = [
-            self._head.mean_slope(raw, network.network.slope(member, x, actions))
-            for member, raw in enumerate(self._each(state, action))
-        ]
-        units = network.targets.spread[:, None] / self.action_scale(actions)
-        return np.asarray(np.mean(slopes, axis=0) * units)
 
     def scaled_change(self) -> Callable[[Tensor], Tensor]:
         """The mean change of the state as a function that torch can differentiate.

@@ -15,7 +15,6 @@ import torch.distributions as td
 from torch import Tensor
 
 from groundwalk.arrays import FloatArray
-from sgat.models.network import Float32Array
 
 Parts: TypeAlias = tuple[Any, ...]
 """The parameters of n distributions, as arrays or tensors; each head has its own."""
@@ -62,17 +61,6 @@ class Head(ABC):
     def mean(self, raw: Any, xp: Any) -> Any:
         """(..., d) mean from raw outputs (..., width); usually the first d of them."""
         return raw[..., : self.dimensions]
-
-    def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """(n, d, a) derivative of the mean by actions.
-
-        `slope` (n, width, a) is the derivative of `raw` (n, width).
-        """
-        return slope[:, : self.dimensions]
-
-    @abstractmethod
-    def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) covariances of n distributions."""
 
     @abstractmethod
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
@@ -126,10 +114,6 @@ class GaussianHead(Head):
         densities: Tensor = normal.log_prob(y)  # type: ignore[no-untyped-call]
         return densities
 
-    def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) diagonal covariances of n distributions."""
-        return np.asarray(parts[1][..., None] ** 2 * np.eye(self.dimensions))
-
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
         """(n, d) samples: mean plus noise z (n, d) times standard deviation."""
         return np.asarray(parts[0] + parts[1] * z)
@@ -161,10 +145,6 @@ class FullHead(Head):
         mean, factor = parts
         normal = td.MultivariateNormal(mean, scale_tril=factor, validate_args=False)
         return normal.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
-
-    def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) covariances L L^T of n distributions."""
-        return np.asarray(parts[1] @ parts[1].swapaxes(-1, -2))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
         """(n, d) samples: mean plus L times noise z (n, d)."""
@@ -204,13 +184,6 @@ class LowRankHead(Head):
         )
         return normal.log_prob(y)  # type: ignore[no-untyped-call, no-any-return]
 
-    def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) covariances U U^T + D of n distributions."""
-        _, factor, variance = parts
-        factor = factor.astype(float)  # the Cholesky factor needs float64
-        shared = factor @ factor.swapaxes(-1, -2)
-        return np.asarray(shared + variance[..., None] * np.eye(self.dimensions))
-
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
         """(n, d) samples: mean plus the covariance's Cholesky factor times z (n, d)."""
         return FullHead(self.dimensions).sample(self._triangular(parts), z, choice)
@@ -220,4 +193,8 @@ class LowRankHead(Head):
         return FullHead(self.dimensions).residuals(self._triangular(parts), y, choice)
 
     def _triangular(self, parts: Parts) -> Parts:
-        return parts[0], np.linalg.cholesky(self.covariance(parts))
+        mean, factor, variance = parts
+        factor = factor.astype(float)  # the Cholesky factor needs float64
+        shared = factor @ factor.swapaxes(-1, -2)
+        covariance = shared + variance[..., None] * np.eye(self.dimensions)
+        return mean, np.linalg.cholesky(covariance)

@@ -9,7 +9,6 @@ from torch import Tensor
 
 from groundwalk.arrays import FloatArray, IntArray
 from sgat.models.heads import Head, Parts, bounded
-from sgat.models.network import Float32Array
 
 _LARGEST_LOGIT = 8.0
 """Bound of a component's logit: weights differ by a factor of at most e^16, so that
@@ -54,25 +53,6 @@ class MixtureHead(Head):
         """(..., d) weighted mean of the components' means, from raw outputs."""
         weights, means, _ = self.parts(raw, xp)
         return (weights[..., None] * means).sum(-2)
-
-    def mean_slope(self, raw: Float32Array, slope: Float32Array) -> Float32Array:
-        """(n, d, a) derivative of the mean by actions, from that of raw outputs."""
-        k, d = self.components, self.dimensions
-        weights, means, _ = self.parts(raw, np)
-        logits = slope[:, :k] / np.cosh(raw[:, :k, None] / _LARGEST_LOGIT) ** 2
-        logits = logits - np.einsum("nk,nka->na", weights, logits)[:, None, :]
-        by_weight = np.einsum("nk,nka,nkd->nda", weights, logits, means)
-        components = slope[:, k : k + k * d].reshape(len(raw), k, d, -1)
-        by_mean = np.einsum("nk,nkda->nda", weights, components)
-        return np.asarray(by_weight + by_mean)
-
-    def covariance(self, parts: Parts) -> FloatArray:
-        """(n, d, d) mean covariance of the components plus the covariance of means."""
-        weights, means, deviations = parts
-        off = means - (weights[..., None] * means).sum(axis=-2, keepdims=True)
-        between = np.einsum("...k,...ki,...kj->...ij", weights, off, off)
-        within = (weights[..., None] * deviations**2).sum(axis=-2)
-        return np.asarray(between + within[..., None] * np.eye(self.dimensions))
 
     def sample(self, parts: Parts, z: FloatArray, choice: FloatArray) -> FloatArray:
         """(n, d) samples of the components that `choice` (n,) from 0 to 1 picks."""

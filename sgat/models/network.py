@@ -46,16 +46,6 @@ class Network:
         last: Float32Array = values @ self.weights[-1][which] + self.biases[-1][which]
         return last
 
-    def slope(self, which: int, x: FloatArray, inputs: int) -> Float32Array:
-        """(n, outputs, inputs) derivative of one network by the last columns of x."""
-        values: Any = x.astype(np.float32)
-        slope: Any = np.eye(self.inputs, dtype=np.float32)[-inputs:]
-        for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
-            values = np.tanh(values @ weight[which] + bias[which])
-            slope = (slope @ weight[which]) * (1 - values**2)[:, None, :]
-        last: Float32Array = (slope @ self.weights[-1][which]).swapaxes(1, 2)
-        return last
-
     def mixed(self, x: FloatArray, member: IntArray) -> Float32Array:
         """(n, outputs) raw outputs for x (n, inputs) of the networks `member` (n,)."""
         if self.members == 1:

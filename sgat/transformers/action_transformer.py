@@ -8,7 +8,6 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from sgat.models.distributional_inverse import DistributionalInverse
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
 from sgat.noise import NoiseLaw, NoiseStream, WhiteNoise
@@ -40,7 +39,7 @@ class ActionTransformer:
     def __init__(
         self,
         forward: ForwardModel,
-        inverse: InverseModel | DistributionalInverse,
+        inverse: InverseModel,
         low: FloatArray,
         high: FloatArray,
         noise: NoiseLaw | None = None,
@@ -51,13 +50,11 @@ class ActionTransformer:
 
         Args:
           forward: f_real, the forward model of the real world.
-          inverse: f_inv, the inverse model of the sim; a `DistributionalInverse` if the
-            sim is stochastic.
+          inverse: f_inv, the inverse model of the sim.
           low: (a,) least action.
           high: (a,) largest action.
           noise: None for GAT. For SGAT the law of the standardised noise, with as many
-            dimensions as a next state, or as an action if the inverse model is a
-            `DistributionalInverse`.
+            dimensions as a next state.
           smoothing: share of the transformed action in the result, from 0 to 1; the
             remainder is the policy's action.
           inverse_columns: how many of a state's first columns the inverse model sees;
@@ -69,11 +66,10 @@ class ActionTransformer:
         """
         if not 0 <= smoothing <= 1:
             raise BadValueError(f"smoothing is {smoothing}; it must be from 0 to 1")
-        of_actions = isinstance(inverse, DistributionalInverse)
-        wanted = len(low) if of_actions else forward.outcomes
-        if noise is not None and noise.dimensions != wanted:
+        if noise is not None and noise.dimensions != forward.outcomes:
             raise BadValueError(
-                f"the noise has {noise.dimensions} dimensions; it must have {wanted}"
+                f"the noise has {noise.dimensions} dimensions; it must have "
+                f"{forward.outcomes}"
             )
         self.forward = forward
         self.inverse = inverse
@@ -121,7 +117,6 @@ class ActionTransformer:
         self.forward.save(folder / FORWARD)
         self.inverse.save(folder / INVERSE)
         return {
-            "distributional": isinstance(self.inverse, DistributionalInverse),
             "noise_dimensions": noise and noise.dimensions,
             "smoothing": self.smoothing,
             "inverse_columns": self.inverse_columns,
@@ -132,11 +127,10 @@ class ActionTransformer:
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
         """Read what `save` wrote; `header` is what it returned, bounds are (a,)."""
-        kind = DistributionalInverse if header["distributional"] else InverseModel
         white = header["noise_dimensions"]
         return cls(
             ForwardModel.load(folder / FORWARD),
-            kind.load(folder / INVERSE),
+            InverseModel.load(folder / INVERSE),
             low,
             high,
             None if white is None else WhiteNoise(white),
@@ -145,19 +139,11 @@ class ActionTransformer:
         )
 
     def _find(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        if isinstance(self.inverse, DistributionalInverse):
-            wanted = self.forward.moments(state, action)
-            actions = self.inverse.predict(state, action, *wanted)
-            if self.noise is None:
-                return actions.mean
-            return actions.sample(self._noise_of(len(state)).draw()[0])
-        seen = state[:, self._columns]
         if self.noise is None:
-            return self.inverse.predict(seen, self.forward.predict(state, action))
-        sample = self.forward.sample(state, action, self._noise_of(len(state)))
-        return self.inverse.predict(seen, sample)
-
-    def _noise_of(self, n: int) -> NoiseStream:
-        if self._stream is None or self._stream.n != n:
+            wanted = self.forward.predict(state, action)
+        elif self._stream is None or self._stream.n != len(state):
+            n = len(state)
             raise BadValueError(f"reset with {n} seeds before {n} robots act")
-        return self._stream
+        else:
+            wanted = self.forward.sample(state, action, self._stream)
+        return self.inverse.predict(state[:, self._columns], wanted)

@@ -47,8 +47,8 @@ class BlockNoise:
         """d, how many numbers are drawn for a robot at each tick."""
         return int(self._residuals.shape[1])
 
-    def chunk(self, generators: Generators, last: FloatArray | None) -> FloatArray:
-        """(ticks, n, d) noise of the next ticks, in whole blocks; `last` is unused."""
+    def chunk(self, generators: Generators) -> FloatArray:
+        """(ticks, n, d) noise of the next ticks, in whole blocks."""
         blocks = -(-CHUNK_TICKS // self.ticks)
         picks = [g.integers(len(self._starts), size=blocks) for g in generators]
         starts = self._starts[np.stack(picks, axis=1)]

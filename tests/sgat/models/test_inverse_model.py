@@ -39,7 +39,7 @@ def test_the_score_is_each_actions_share_of_variance(inverse):
 
 
 def test_a_noisy_sim_makes_least_squares_shrink(inverse):
-    """What this model is not for: see `DistributionalInverse`."""
+    """What this model is not for."""
     step = noisy_actions(linear, 0.6)
     noisy = roll(step, 60, 50, seed=42)
     shrunk = InverseModel().fit(noisy, np.random.SeedSequence(2))

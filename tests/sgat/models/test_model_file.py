@@ -10,7 +10,6 @@ import torch
 from known_dynamics import linear, noisy_actions, roll
 
 from groundwalk.errors import BadModelError
-from sgat.models.distributional_inverse import DistributionalInverse
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
@@ -41,15 +40,11 @@ def test_a_forward_model_comes_back_to_the_bit(tmp_path, options):
     again = ForwardModel.load(tmp_path / "new" / "forward.pt")
     assert again.config == model.config
     np.testing.assert_array_equal(again.residuals(WORLD), model.residuals(WORLD))
-    for ours, theirs in zip(
-        again.moments(WORLD.state, WORLD.action),
-        model.moments(WORLD.state, WORLD.action),
-        strict=True,
-    ):
-        np.testing.assert_array_equal(ours, theirs)
+    asked = WORLD.state, WORLD.action
+    np.testing.assert_array_equal(again.predict(*asked), model.predict(*asked))
 
 
-def test_inverse_models_come_back_to_the_bit(tmp_path):
+def test_an_inverse_model_comes_back_to_the_bit(tmp_path):
     model = InverseModel(NetworkConfig(hidden=(7,), epochs=2)).fit(WORLD, SEED)
     model.save(tmp_path / "inverse.pt")
     again = InverseModel.load(tmp_path / "inverse.pt")
@@ -57,15 +52,6 @@ def test_inverse_models_come_back_to_the_bit(tmp_path):
     np.testing.assert_array_equal(
         again.predict(WORLD.state, WORLD.next_state),
         model.predict(WORLD.state, WORLD.next_state),
-    )
-    stochastic = DistributionalInverse(ForwardConfig(head="full", epochs=2))
-    stochastic.fit(WORLD, SEED).save(tmp_path / "stochastic.pt")
-    wish = WORLD.next_state, np.tile(np.eye(3), (WORLD.n, 1, 1))
-    np.testing.assert_array_equal(
-        DistributionalInverse.load(tmp_path / "stochastic.pt")
-        .predict(WORLD.state, WORLD.action, *wish)
-        .mean,
-        stochastic.predict(WORLD.state, WORLD.action, *wish).mean,
     )
 
 

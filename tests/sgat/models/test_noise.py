@@ -97,7 +97,7 @@ def test_block_noise_is_standardised_as_it_is_drawn(ticks):
     blocks = len(all_blocks(residuals, episode, ticks))
     rounds = math.lcm(blocks, -(-64 // ticks)) // -(-64 // ticks)
     every = EveryBlock()
-    noise = np.concatenate([law.chunk([every], None) for _ in range(rounds)])[:, 0]
+    noise = np.concatenate([law.chunk([every]) for _ in range(rounds)])[:, 0]
     np.testing.assert_allclose(noise.mean(axis=0), 0, atol=1e-9)
     np.testing.assert_allclose(noise.var(axis=0), 1, rtol=1e-9)
 

@@ -8,15 +8,11 @@ from known_dynamics import (
     LIGHT,
     LOW,
     action_bias,
-    linear,
-    noisy_actions,
-    roll,
     seeds,
     spread_ratio,
 )
 
 from groundwalk.errors import BadValueError
-from sgat.models.distributional_inverse import DistributionalInverse
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
@@ -96,22 +92,6 @@ def test_blocks_of_residuals_fit_in(full, inverse, noisy_real):
     g = ActionTransformer(full, inverse, LOW, HIGH, law)
     ratio = spread_ratio(transformed(g, data), ideal(data), data.action)
     np.testing.assert_allclose(ratio, 1, atol=0.15)
-
-
-def test_a_stochastic_sim_gets_only_the_noise_that_it_lacks(full, noisy_real):
-    """sim: actions with 0.18 of noise; real: 0.3. Wanted: root(0.3^2 - 0.18^2)."""
-    sim = roll(noisy_actions(linear, 0.18), 60, 50, seed=81)
-    config = ForwardConfig(head="full", **LIGHT)
-    stochastic = DistributionalInverse(config).fit(sim, np.random.SeedSequence(82))
-    inner = (np.abs(noisy_real[1].action) < 0.4).all(axis=1)
-    data = noisy_real[1].subset(inner)
-    g = ActionTransformer(full, stochastic, LOW, HIGH, WhiteNoise(2))
-    found = transformed(g, data)
-    np.testing.assert_allclose((found - data.action).mean(axis=0), 0, atol=0.08)
-    spread = (found - data.action).std(axis=0)
-    assert spread.mean() == pytest.approx(np.sqrt(0.3**2 - 0.18**2), rel=0.25)
-    calm = transformed(ActionTransformer(full, stochastic, LOW, HIGH), data)
-    assert (calm - data.action).std() < 0.7 * spread.mean()
 
 
 def test_actions_stay_within_their_bounds(full, inverse, noisy_real):

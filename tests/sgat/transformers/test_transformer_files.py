@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadModelError, BadValueError
-from sgat.models.distributional_inverse import DistributionalInverse
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
@@ -55,14 +54,6 @@ def test_what_is_read_back_answers_to_the_same_bits(
     assert (answers(before, data) == answers(after, data)).all()
     other = ActionTransformer(forward, inverse, LOW, HIGH, noise)
     assert (answers(other, data) != answers(after, data)).any()
-
-
-def test_a_distributional_inverse_comes_back_as_one(tmp_path, data, forward):
-    inverse = DistributionalInverse(ForwardConfig(head="full", **TINY))
-    inverse.fit(data, np.random.SeedSequence(4))
-    before = ActionTransformer(forward, inverse, LOW, HIGH, WhiteNoise(2))
-    write_transformer(tmp_path, before)
-    assert (answers(before, data) == answers(read_transformer(tmp_path), data)).all()
 
 
 def test_a_direct_transformer_comes_back(tmp_path, data, forward):
