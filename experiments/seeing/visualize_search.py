@@ -15,7 +15,6 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError, RunFolderError
 from walk_engine import Gait
 from walk_engine.gait import PARAMETERS
-from worlds.rerun_files.search import write_search
 from worlds.rerun_files.search_history import SearchHistory
 
 SEARCH_RERUN = "search.rrd"
@@ -45,6 +44,8 @@ def visualize_search(folder: RunFolder) -> Path | None:
         history = read_history(entries)
     except (KeyError, TypeError, ValueError) as error:
         raise RunFolderError(f"{path} is damaged: {error!r}") from None
+    from worlds.rerun_files.search import write_search  # it takes a second to load
+
     identity = hashlib.sha256(json.dumps(entries).encode()).hexdigest()[:32]
     rerun = folder.path / SEARCH_RERUN
     write_search(rerun, _with_walks(folder, history, entries), identity)

@@ -14,9 +14,8 @@ ZMP stands for zero-moment point. Paths are below the scene's name.
 | `fall` | a ring on the ground where the robot fell, labelled with the time |
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import rerun as rr
 
 from groundwalk.arrays import FloatArray, IntArray
 from worlds.rerun_files.columns import ColumnLog
@@ -26,9 +25,6 @@ from worlds.scenes.curves import MEASURED_SUPPORT, SIDEWAYS, Trace
 from worlds.scenes.fall_ring import fall_ring
 from worlds.scenes.scene import Scene
 from worlds.world import FALLS
-
-if TYPE_CHECKING:
-    import rerun as rr
 
 _LIFT_M = 0.002
 """Height of marks above the ground [m], so that the ground does not hide them."""
@@ -46,8 +42,6 @@ def write_balance(log: ColumnLog, scene: Scene) -> None:
 
 
 def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
-    import rerun as rr
-
     points = {
         "centre_of_mass": (found.centre_of_mass_m, colours.MASS),
         "below": (found.below_m, colours.MASS),
@@ -64,8 +58,7 @@ def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
             # At a tick without the point show nothing, not the last known point.
             known = np.isfinite(place_m[:, 0])
             columns = rr.Points3D.columns(positions=(place_m + lift_m)[known])
-            rows = np.arange(len(known))
-            log.send_rows(f"balance/{name}", rows, columns.partition(known.astype(int)))
+            log.send_rows(f"balance/{name}", columns.partition(known.astype(int)))
             if is_placed and name != "below":
                 trace = [name.replace("_", " ")], place_m[:, 1], [colour]
                 log.trace(Trace(f"{SIDEWAYS}/{name}", *trace))
@@ -74,8 +67,6 @@ def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
 
 def _write_track(log: ColumnLog, found: Balance) -> None:
     """Write the whole path of the centre of mass as a line."""
-    import rerun as rr
-
     is_known = np.isfinite(found.centre_of_mass_m).all(axis=1)
     track = rr.LineStrips3D(
         [found.centre_of_mass_m[is_known]], radii=_LINE_M / 2, colors=colours.MASS
@@ -84,29 +75,22 @@ def _write_track(log: ColumnLog, found: Balance) -> None:
 
 
 def _write_polygons(log: ColumnLog, polygons_m: list[FloatArray]) -> None:
-    import rerun as rr
-
     look = rr.LineStrips3D.from_fields(radii=_LINE_M, colors=colours.SUPPORT_POLYGON)
     log.log("balance/polygon", look)
     lift_m = np.array([0.0, 0.0, _LIFT_M])
     strips = [np.vstack([corners, corners[:1]]) + lift_m for corners in polygons_m]
-    rows = np.arange(len(strips))
-    log.send_rows("balance/polygon", rows, rr.LineStrips3D.columns(strips=strips))
+    log.send_rows("balance/polygon", rr.LineStrips3D.columns(strips=strips))
 
 
 def _write_support(log: ColumnLog, scene: Scene) -> None:
-    import rerun as rr
-
     rows, legs = measured_support(scene)
     if legs:
         log.log(MEASURED_SUPPORT, support_look())
-        log.send_rows(MEASURED_SUPPORT, rows, rr.StateChange.columns(state=legs))
+        log.send_rows(MEASURED_SUPPORT, rr.StateChange.columns(state=legs), rows)
 
 
-def support_look() -> "rr.StateConfiguration":
+def support_look() -> rr.StateConfiguration:
     """Colours of the supporting legs ("left", "right", "both", "none") in Rerun."""
-    import rerun as rr
-
     lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE, "none": colours.FALL}
     return rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
 
@@ -123,8 +107,6 @@ def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
 
 def _write_fall(log: ColumnLog, scene: Scene, found: Balance) -> None:
     """Write a ring where the robot fell, shown from the start of the recording."""
-    import rerun as rr
-
     end = scene.recording.metadata.end
     place_m = found.below_m[-1]
     if end not in FALLS or not np.isfinite(place_m).all():

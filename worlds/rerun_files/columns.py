@@ -1,44 +1,48 @@
-"""Writes values at the times of one recording as columns of a Rerun file."""
+"""Writes columns of values over timelines into a Rerun file."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+import rerun as rr
 
 from groundwalk.arrays import FloatArray, IntArray
 from worlds.scenes.curves import Trace
 
-if TYPE_CHECKING:
-    import rerun as rr
+
+def tick_times(time_s: FloatArray) -> dict[str, npt.NDArray[Any]]:
+    """Rerun's timelines of a recording: `sim_time`, and `tick`, the row from 0."""
+    # Rounded, because Rerun cuts off fractions of a nanosecond.
+    nanoseconds = np.rint(time_s * 1e9).astype("timedelta64[ns]")
+    return {"sim_time": nanoseconds, "tick": np.arange(time_s.size)}
 
 
 class ColumnLog:
-    """Writes values that share their times, as Rerun entities below one path.
-
-    Rerun's timelines are `sim_time`, the times, and `tick`, their row from 0.
-    """
+    """Writes values that share their times, as Rerun entities below one path."""
 
     def __init__(
-        self, stream: "rr.RecordingStream", at: str, time_s: FloatArray
+        self,
+        stream: rr.RecordingStream,
+        at: str,
+        timelines: Mapping[str, npt.NDArray[Any]],
     ) -> None:
         """Write into a Rerun stream.
 
         Args:
           stream: the stream of the file.
           at: first part of all paths, with a "/" at its end; may be empty.
-          time_s: (ticks,) times of the values.
+          timelines: by name, (ticks,) times of the values: durations or whole numbers.
         """
-        self._stream, self._at = stream, at
-        # Rounded, because Rerun cuts off fractions of a nanosecond.
-        self._time = np.rint(time_s * 1e9).astype("timedelta64[ns]")
+        self._stream, self._at, self._timelines = stream, at, timelines
+        self._all = np.arange(len(next(iter(timelines.values()))))
 
-    def log(self, path: str, what: "rr.AsComponents") -> None:
+    def log(self, path: str, what: rr.AsComponents) -> None:
         """Write something that does not change over time to the entity `path`."""
         self._stream.log(f"{self._at}{path}", what, static=True, strict=True)
 
     def trace(self, trace: Trace) -> None:
         """Write lines over time, with their names and colours."""
-        import rerun as rr
-
         self.log(trace.path, rr.SeriesLines(names=trace.names, colors=trace.lines))
         self.send(trace.path, rr.Scalars, scalars=trace.values)
 
@@ -47,21 +51,25 @@ class ColumnLog:
 
         Rows in which a value is NaN are left out.
         """
-        parts = [values.reshape(self._time.size, -1) for values in columns.values()]
+        parts = [values.reshape(self._all.size, -1) for values in columns.values()]
         rows = np.flatnonzero(~np.isnan(np.hstack(parts)).any(axis=1))
         known = {name: values[rows] for name, values in columns.items()}
         if rows.size:
-            self.send_rows(path, rows, kind.columns(**known))
+            self.send_rows(path, kind.columns(**known), rows)
 
-    def send_rows(self, path: str, rows: IntArray, columns: Any) -> None:
-        """Write values that are known only at the times with the indices `rows`.
+    def send_rows(self, path: str, columns: Any, rows: IntArray | None = None) -> None:
+        """Write columns of a Rerun archetype, with a value for each of some times.
 
-        `columns` are those of a Rerun archetype, with a value for each of these rows.
+        Args:
+          path: the entity.
+          columns: the values.
+          rows: indices of their times; None for all times.
         """
-        import rerun as rr
-
-        indexes = (
-            rr.TimeColumn("sim_time", duration=self._time[rows]),
-            rr.TimeColumn("tick", sequence=rows),
-        )
+        rows = self._all if rows is None else rows
+        indexes = [
+            rr.TimeColumn(name, duration=times[rows])
+            if times.dtype.kind == "m"
+            else rr.TimeColumn(name, sequence=times[rows])
+            for name, times in self._timelines.items()
+        ]
         self._stream.send_columns(f"{self._at}{path}", indexes, columns, strict=True)

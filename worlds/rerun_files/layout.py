@@ -1,18 +1,16 @@
 """Layout of a Rerun file: the views of robots, feet and curves, and their places."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
 
 from groundwalk.arrays import FloatArray
 from worlds.recordings.columns import SUPPORT
 from worlds.scenes.balance import loaded_feet
 from worlds.scenes.curves import MEASURED_SUPPORT, Curve, Plot, plots
 from worlds.scenes.scene import Scene
-
-if TYPE_CHECKING:
-    import rerun.blueprint as rrb
 
 MOST_ABREAST = 2
 """Largest number of scenes shown side by side with all curves; more get tabs."""
@@ -26,7 +24,7 @@ _ROBOT_COLUMNS = 4
 
 def blueprint(
     scenes: Sequence[Scene], pages: Mapping[str, Sequence[Curve]]
-) -> "rrb.Blueprint":
+) -> rrb.Blueprint:
     """Lay out a file: scenes from left to right, each above its curves.
 
     Args:
@@ -34,18 +32,14 @@ def blueprint(
       pages: further curves, by the name of their tab. If there are any, they are below
         the robots instead of the scenes' own curves.
     """
-    import rerun.blueprint as rrb
-
     tabs: list[rrb.Grid | rrb.Vertical] = [_page(*page) for page in pages.items()]
     if not pages and len(scenes) > MOST_ABREAST:
         tabs = [_scene_tab(scene) for scene in scenes]
-    if tabs:
+    rows = []
+    if tabs and scenes:
         abreast = min(len(scenes), _ROBOT_COLUMNS)
-        robots = map(_robot_view, scenes)
-        rows = [rrb.Grid(*robots, grid_columns=abreast)] if scenes else []
-        rows.append(rrb.Tabs(*tabs))
-    else:
-        rows = [rrb.Horizontal(*map(_scene_views, scenes))]
+        rows.append(rrb.Grid(*map(_robot_view, scenes), grid_columns=abreast))
+    rows.append(rrb.Tabs(*tabs) if tabs else rrb.Horizontal(*map(_scene_views, scenes)))
     return rrb.Blueprint(
         rrb.Vertical(*rows) if len(rows) > 1 else rows[0],
         rrb.TimePanel(timeline="sim_time", state="collapsed", loop_mode="All"),
@@ -53,14 +47,12 @@ def blueprint(
     )
 
 
-def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
+def _page(name: str, curves: Sequence[Curve]) -> rrb.Grid:
     """A tab of plots, two in a row; those in the first row have a legend.
 
     The ranges of the axes are set to show the whole curve: the viewer would choose them
     by the values near the time cursor when the file is opened, and there may be none.
     """
-    import rerun.blueprint as rrb
-
     views = [
         rrb.TimeSeriesView(
             name=curve.title,
@@ -74,15 +66,11 @@ def _page(name: str, curves: Sequence[Curve]) -> "rrb.Grid":
     return rrb.Grid(*views, grid_columns=_PAGE_COLUMNS, name=name)
 
 
-def _whole(time_s: FloatArray) -> "rrb.TimeAxis":
+def _whole(time_s: FloatArray) -> rrb.TimeAxis:
     """Time axis from the first to the last of the times (ticks,)."""
-    import rerun as rr
-    import rerun.blueprint as rrb
-
-    start, end = (
-        rrb.TimeRangeBoundary.absolute(seconds=float(time_s[row])) for row in (0, -1)
-    )
-    return rrb.TimeAxis(view_range=rr.TimeRange(start, end))
+    at = rrb.TimeRangeBoundary.absolute
+    first, last = (at(seconds=float(time_s[row])) for row in (0, -1))
+    return rrb.TimeAxis(view_range=rr.TimeRange(first, last))
 
 
 def _reach(values: FloatArray) -> tuple[float, float]:
@@ -93,10 +81,8 @@ def _reach(values: FloatArray) -> tuple[float, float]:
     return float(low - margin), float(high + margin)
 
 
-def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
+def _robot_view(scene: Scene) -> rrb.Spatial3DView:
     """View of the robot by a camera that follows it, ahead of it on its right."""
-    import rerun.blueprint as rrb
-
     at = f"/{scene.name}"
     size = scene.description.scale.length
     follow = rrb.EyeControls3D(
@@ -107,10 +93,8 @@ def _robot_view(scene: Scene) -> "rrb.Spatial3DView":
     return rrb.Spatial3DView(name=scene.title, origin=at, eye_controls=follow)
 
 
-def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
+def _balance_view(scene: Scene) -> rrb.Spatial3DView:
     """View of soles and balance marks from above, following the robot; ahead is up."""
-    import rerun.blueprint as rrb
-
     at = f"/{scene.name}"
     robot = scene.description
     feet = [robot.links[foot.joint].link.name for foot in robot.feet]
@@ -132,10 +116,8 @@ def _balance_view(scene: Scene) -> "rrb.Spatial3DView":
     )
 
 
-def _scene_views(scene: Scene) -> "rrb.Vertical":
+def _scene_views(scene: Scene) -> rrb.Vertical:
     """Views of one scene: its robot, and its balance from above, above its curves."""
-    import rerun.blueprint as rrb
-
     rows, shares = _traces(scene)
     above = _robot_view(scene)
     if scene.description.feet:
@@ -143,10 +125,8 @@ def _scene_views(scene: Scene) -> "rrb.Vertical":
     return rrb.Vertical(above, *rows, row_shares=[12, *shares])
 
 
-def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
+def _scene_tab(scene: Scene) -> rrb.Horizontal | rrb.Spatial3DView:
     """Tab of one scene: its balance from above, beside its curves."""
-    import rerun.blueprint as rrb
-
     rows, shares = _traces(scene)
     views = [_balance_view(scene)] if scene.description.feet else []
     if rows:
@@ -154,10 +134,8 @@ def _scene_tab(scene: Scene) -> "rrb.Horizontal | rrb.Spatial3DView":
     return rrb.Horizontal(*views, column_shares=[1, 3][: len(views)], name=scene.name)
 
 
-def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]":
+def _traces(scene: Scene) -> tuple[list[rrb.Horizontal | rrb.View], list[int]]:
     """Rows of plots, the last for the supporting legs, and their relative heights."""
-    import rerun.blueprint as rrb
-
     at = f"/{scene.name}"
     rows: list[rrb.Horizontal | rrb.View] = [
         rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
@@ -166,11 +144,10 @@ def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]"
     lanes = [SUPPORT] if SUPPORT in scene.recording.columns else []
     lanes += [MEASURED_SUPPORT] if loaded_feet(scene) else []
     if lanes:
-        contents = [f"{at}/{lane}" for lane in lanes]
         view = rrb.StateTimelineView(
             name="support: planned and felt",
             origin=at,
-            contents=contents,
+            contents=[f"{at}/{lane}" for lane in lanes],
             time_view=_window(),
         )
         rows.append(view)
@@ -178,9 +155,7 @@ def _traces(scene: Scene) -> "tuple[list[rrb.Horizontal | rrb.View], list[int]]"
     return rows, shares
 
 
-def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
-    import rerun.blueprint as rrb
-
+def _plot_view(at: str, plot: Plot) -> rrb.TimeSeriesView:
     return rrb.TimeSeriesView(
         name=plot.name,
         contents=[f"{at}/{path}" for path in plot.paths],
@@ -188,11 +163,7 @@ def _plot_view(at: str, plot: Plot) -> "rrb.TimeSeriesView":
     )
 
 
-def _window() -> "rrb.TimeAxis":
+def _window() -> rrb.TimeAxis:
     """Time axis from 2 s before to 1 s after the time cursor, so that steps show."""
-    import rerun as rr
-    import rerun.blueprint as rrb
-
-    start = rrb.TimeRangeBoundary.cursor_relative(seconds=-2.0)
-    end = rrb.TimeRangeBoundary.cursor_relative(seconds=1.0)
-    return rrb.TimeAxis(view_range=rr.TimeRange(start, end))
+    at = rrb.TimeRangeBoundary.cursor_relative
+    return rrb.TimeAxis(view_range=rr.TimeRange(at(seconds=-2.0), at(seconds=1.0)))

@@ -17,20 +17,19 @@ distribution from which a generation is drawn.
 """
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
 
 from groundwalk.arrays import FloatArray
 from groundwalk.files import write_bytes
+from worlds.rerun_files.columns import ColumnLog
 from worlds.rerun_files.search_history import SearchHistory
 from worlds.rerun_files.search_page import search_page
 from worlds.rerun_files.search_walk import walk_view, write_walks
 from worlds.scenes import colours
-
-if TYPE_CHECKING:
-    import rerun as rr
-    import rerun.blueprint as rrb
 
 TIMELINE = "generation"
 _APPLICATION = "groundwalk-search"
@@ -50,76 +49,18 @@ def write_search(path: Path, history: SearchHistory, identity: str) -> None:
       history: the search, with at least one generation.
       identity: recording id; the viewer shows files with equal ids as one recording.
     """
-    import rerun as rr
-
     stream = rr.RecordingStream(_APPLICATION, recording_id=identity)
     file = stream.memory_recording()
     stream.send_blueprint(_layout(history))
     stream.send_recording_name(path.stem)
-    _write_rewards(stream, history)
-    _write_parameters(stream, history)
+    tried = _tried(history)
+    log = ColumnLog(stream, "search/", {TIMELINE: np.arange(len(tried))})
+    _write_rewards(log, history, tried)
+    _write_parameters(log, history)
     if history.walks:
-        index = rr.TimeColumn(TIMELINE, sequence=np.arange(len(history.walks)))
-        write_walks(stream, history.walks, index, _BEST)
-    for generation in range(len(history.rewards)):
-        _write_generation(stream, history, generation)
+        write_walks(stream, history.walks, TIMELINE, _BEST)
+    _write_generations(stream, history, tried)
     write_bytes(path, file.drain_as_bytes())
-
-
-def _write_rewards(stream: "rr.RecordingStream", history: SearchHistory) -> None:
-    import rerun as rr
-
-    tried = _tried(history)
-    count = tried.shape[1]
-    look = rr.SeriesPoints(
-        colors=[_TRIED] * count, names=["tried"] * count, marker_sizes=[1.5] * count
-    )
-    _send(stream, "reward/tried", tried, look)
-    for name, values, colour in (
-        ("best", np.nanmax(tried, axis=1), _BEST),
-        ("middle", np.nanmedian(tried, axis=1), colours.AXES[1]),
-        ("mean gait", history.mean_reward, _MEAN),
-    ):
-        _send(stream, f"reward/{name.split()[0]}", values, _line(name, colour))
-    counts = np.array([len(rewards) for rewards in history.rewards])
-    share = 100 * history.falls / counts
-    _send(stream, "falls", share, _line("fell [%]", colours.FALL))
-
-
-def _write_parameters(stream: "rr.RecordingStream", history: SearchHistory) -> None:
-    import rerun as rr
-
-    band = [colours.pale(_MEAN)] * 2
-    for name, mean in history.mean.items():
-        around = history.spread.get(name)
-        if around is not None:
-            edges = np.stack([mean - around, mean + around], axis=1)
-            look = rr.SeriesLines(names=["mean - sd", "mean + sd"], colors=band)
-            _send(stream, f"parameters/{name}/spread", edges, look)
-        _send(stream, f"parameters/{name}/mean", mean, _line("mean", _MEAN))
-        if name in history.best:
-            best = history.best[name]
-            _send(stream, f"parameters/{name}/best", best, _line("best", _BEST))
-
-
-def _write_generation(
-    stream: "rr.RecordingStream", history: SearchHistory, generation: int
-) -> None:
-    """Write the histogram of rewards and the text about one generation."""
-    import rerun as rr
-
-    tried = _tried(history)
-    edges = np.linspace(np.nanmin(tried), np.nanmax(tried) + 1e-9, _BINS + 1)
-    bars = rr.BarChart(
-        np.histogram(history.rewards[generation], edges)[0],
-        abscissa=(edges[:-1] + edges[1:]) / 2,
-        widths=np.diff(edges).astype(np.float32),
-        color=_MEAN,
-    )
-    stream.set_time(TIMELINE, sequence=generation)
-    stream.log("search/rewards", bars, strict=True)
-    page = rr.TextDocument(search_page(history, generation), media_type="text/markdown")
-    stream.log("search/gait", page, strict=True)
 
 
 def _tried(history: SearchHistory) -> FloatArray:
@@ -130,45 +71,83 @@ def _tried(history: SearchHistory) -> FloatArray:
     return tried
 
 
-def _send(
-    stream: "rr.RecordingStream", path: str, values: FloatArray, look: Any
+def _write_rewards(log: ColumnLog, history: SearchHistory, tried: FloatArray) -> None:
+    count = tried.shape[1]
+    look = rr.SeriesPoints(
+        colors=[_TRIED] * count, names=["tried"] * count, marker_sizes=[1.5] * count
+    )
+    _send(log, "reward/tried", tried, look)
+    share = 100 * history.falls / np.array(list(map(len, history.rewards)))
+    for path, name, values, colour in (
+        ("reward/best", "best", np.nanmax(tried, axis=1), _BEST),
+        ("reward/middle", "middle", np.nanmedian(tried, axis=1), colours.AXES[1]),
+        ("reward/mean", "mean gait", history.mean_reward, _MEAN),
+        ("falls", "fell [%]", share, colours.FALL),
+    ):
+        _send(log, path, values, _line(name, colour))
+
+
+def _write_parameters(log: ColumnLog, history: SearchHistory) -> None:
+    band = [colours.pale(_MEAN)] * 2
+    for name, mean in history.mean.items():
+        at, around = f"parameters/{name}", history.spread.get(name)
+        if around is not None:
+            edges = np.stack([mean - around, mean + around], axis=1)
+            look = rr.SeriesLines(names=["mean - sd", "mean + sd"], colors=band)
+            _send(log, f"{at}/spread", edges, look)
+        _send(log, f"{at}/mean", mean, _line("mean", _MEAN))
+        if name in history.best:
+            _send(log, f"{at}/best", history.best[name], _line("best", _BEST))
+
+
+def _write_generations(
+    stream: rr.RecordingStream, history: SearchHistory, tried: FloatArray
 ) -> None:
+    """Write the histogram of rewards and the text about each generation."""
+    edges = np.linspace(np.nanmin(tried), np.nanmax(tried) + 1e-9, _BINS + 1)
+    for generation, rewards in enumerate(history.rewards):
+        bars = rr.BarChart(
+            np.histogram(rewards, edges)[0],
+            abscissa=(edges[:-1] + edges[1:]) / 2,
+            widths=np.diff(edges).astype(np.float32),
+            color=_MEAN,
+        )
+        page = search_page(history, generation)
+        text = rr.TextDocument(page, media_type="text/markdown")
+        stream.set_time(TIMELINE, sequence=generation)
+        stream.log("search/rewards", bars, strict=True)
+        stream.log("search/gait", text, strict=True)
+
+
+def _send(log: ColumnLog, path: str, values: FloatArray, look: Any) -> None:
     """Write (generations,) or (generations, lines) values, drawn as `look` says."""
-    import rerun as rr
-
-    stream.log(f"search/{path}", look, static=True, strict=True)
-    index = rr.TimeColumn(TIMELINE, sequence=np.arange(len(values)))
-    columns = rr.Scalars.columns(scalars=values)
-    stream.send_columns(f"search/{path}", [index], columns, strict=True)
+    log.log(path, look)
+    log.send_rows(path, rr.Scalars.columns(scalars=values))
 
 
-def _line(name: str, colour: colours.Colour) -> "rr.SeriesLines":
-    import rerun as rr
-
+def _line(name: str, colour: colours.Colour) -> rr.SeriesLines:
     return rr.SeriesLines(names=[name], colors=[colour])
 
 
-def _layout(history: SearchHistory) -> "rrb.Blueprint":
+def _layout(history: SearchHistory) -> rrb.Blueprint:
     """Layout: the walk beside the text on the generation, and tabs of curves below.
 
     Without walks there are no tabs: all rewards, the text and all curves are shown.
     """
-    import rerun.blueprint as rrb
-
     page = rrb.TextDocumentView(name="gaits of this generation", origin="search/gait")
     parameters = [_parameter_view(history, name) for name in history.mean]
-    grid = rrb.Grid(*parameters, grid_columns=_PARAMETER_COLUMNS, name="parameters")
+    curves = []
+    if parameters:
+        columns = _PARAMETER_COLUMNS
+        curves = [rrb.Grid(*parameters, grid_columns=columns, name="parameters")]
     if history.walks:
         robot = walk_view(history.walks, "best gait of this generation")
         above = rrb.Horizontal(robot, page, column_shares=[5, 2])
-        tabs = [_reward_views(history, abreast=True), *([grid] if parameters else [])]
-        rows = [above, rrb.Tabs(*tabs)]
+        rows = [above, rrb.Tabs(_reward_views(history, abreast=True), *curves)]
         shares = [5, 3]
     else:
-        above = rrb.Horizontal(
-            _reward_views(history, abreast=False), page, column_shares=[2, 1]
-        )
-        rows = [above, *([grid] if parameters else [])]
+        rewards = _reward_views(history, abreast=False)
+        rows = [rrb.Horizontal(rewards, page, column_shares=[2, 1]), *curves]
         shares = [1] * len(rows)
     return rrb.Blueprint(
         rrb.Vertical(*rows, row_shares=shares),
@@ -179,10 +158,8 @@ def _layout(history: SearchHistory) -> "rrb.Blueprint":
 
 def _reward_views(
     history: SearchHistory, abreast: bool
-) -> "rrb.Horizontal | rrb.Vertical":
+) -> rrb.Horizontal | rrb.Vertical:
     """Views of rewards, their histogram and falls, in a row if `abreast`."""
-    import rerun.blueprint as rrb
-
     unit = history.units.get("reward", "")
     rewards = rrb.TimeSeriesView(name=f"reward [{unit}]", origin="search/reward")
     others = (
@@ -195,9 +172,7 @@ def _reward_views(
     return rrb.Vertical(rewards, rrb.Horizontal(*others), row_shares=[3, 2])
 
 
-def _parameter_view(history: SearchHistory, name: str) -> "rrb.TimeSeriesView":
-    import rerun.blueprint as rrb
-
+def _parameter_view(history: SearchHistory, name: str) -> rrb.TimeSeriesView:
     return rrb.TimeSeriesView(
         name=f"{name} [{history.units[name]}]" if name in history.units else name,
         origin=f"search/parameters/{name}",

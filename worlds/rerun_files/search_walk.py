@@ -10,24 +10,22 @@
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
 
 from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Link
 from terrain import Heightfield
+from worlds.rerun_files.columns import ColumnLog
 from worlds.rerun_files.meshes import LinkMesh, capsule_mesh, link_mesh
 from worlds.rerun_files.search_history import SearchWalk
 from worlds.scenes import colours
 from worlds.scenes.balance import balance
 from worlds.scenes.fall_ring import fall_ring
-from worlds.scenes.forward_kinematics import LinkPoses
 from worlds.scenes.shapes import Mesh, ground_mesh, sole_mesh
-
-if TYPE_CHECKING:
-    import rerun as rr
-    import rerun.blueprint as rrb
 
 AT = "search/walk"
 POSES = 7
@@ -40,9 +38,9 @@ _TRACK_M, _RING_M = 0.003, 0.0045
 
 
 def write_walks(
-    stream: "rr.RecordingStream",
+    stream: rr.RecordingStream,
     walks: Sequence[SearchWalk],
-    index: "rr.TimeColumn",
+    timeline: str,
     colour: colours.Colour,
 ) -> None:
     """Write walks of one robot: its poses, paths and ground.
@@ -50,31 +48,14 @@ def write_walks(
     Args:
       stream: Rerun stream of the file.
       walks: at least one; all with grounds on the same grid, or all without.
-      index: position of each walk on a timeline.
+      timeline: name of the timeline on which the walks are numbered from 0.
       colour: the colour that marks the robot.
     """
-    import rerun as rr
-
     stream.log(AT, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
-    log = _WalkLog(stream, index)
+    log = ColumnLog(stream, f"{AT}/", {timeline: np.arange(len(walks))})
     _write_robot(log, walks, colour)
     _write_tracks(log, walks)
     _write_ground(log, walks)
-
-
-class _WalkLog:
-    """Writes Rerun entities that have one row for each walk, below `search/walk`."""
-
-    def __init__(self, stream: "rr.RecordingStream", index: "rr.TimeColumn") -> None:
-        self._stream, self._index = stream, index
-
-    def log(self, path: str, what: "rr.AsComponents") -> None:
-        """Write something that all walks share to the entity `path`."""
-        self._stream.log(f"{AT}/{path}", what, static=True, strict=True)
-
-    def send(self, path: str, columns: Any) -> None:
-        """Write columns of a Rerun archetype, with a row for each walk, to `path`."""
-        self._stream.send_columns(f"{AT}/{path}", [self._index], columns, strict=True)
 
 
 def stills(ticks: int) -> IntArray:
@@ -83,22 +64,20 @@ def stills(ticks: int) -> IntArray:
 
 
 def _write_robot(
-    log: _WalkLog, walks: Sequence[SearchWalk], colour: colours.Colour
+    log: ColumnLog, walks: Sequence[SearchWalk], colour: colours.Colour
 ) -> None:
-    import rerun as rr
-
     robot = walks[0].scene.description
     poses = _still_poses(walks)
     for link in (robot.root, *(joint.link for joint in robot.links)):
         mesh = _look(link, colour)
         if mesh is not None:
             log.log(f"robot/{link.name}", rr.Mesh3D(**mesh._asdict()))
-            log.send(f"robot/{link.name}", poses[link.name])
+            log.send_rows(f"robot/{link.name}", poses[link.name])
     for foot in robot.feet:
         link = robot.links[foot.joint].link
         sole = sole_mesh(foot, colour)
         log.log(f"robot/{link.name}/sole", rr.Mesh3D(**sole._asdict()))
-        log.send(f"robot/{link.name}/sole", poses[link.name])
+        log.send_rows(f"robot/{link.name}/sole", poses[link.name])
 
 
 def _look(link: Link, colour: colours.Colour) -> LinkMesh | Mesh | None:
@@ -110,35 +89,29 @@ def _look(link: Link, colour: colours.Colour) -> LinkMesh | Mesh | None:
 
 def _still_poses(walks: Sequence[SearchWalk]) -> dict[str, Any]:
     """Rerun columns of poses by link name; a walk's row has several poses."""
-    import rerun as rr
-
     rows = [stills(walk.scene.recording.ticks) for walk in walks]
     whole = [walk.scene.link_poses() for walk in walks]
     columns = {}
     for name in whole[0]:
-        parts = [
-            LinkPoses(poses[name].position_m[row], poses[name].orientation[row])
-            for poses, row in zip(whole, rows, strict=True)
-        ]
-        orientation = np.vstack([part.orientation for part in parts])
+        poses = [one[name] for one in whole]
+        places = [pose.position_m[row] for pose, row in zip(poses, rows, strict=True)]
+        turns = [pose.orientation[row] for pose, row in zip(poses, rows, strict=True)]
         columns[name] = rr.InstancePoses3D.columns(
-            translations=np.vstack([part.position_m for part in parts]),
-            quaternions=np.roll(orientation, -1, axis=1),
-        ).partition([len(row) for row in rows])
+            translations=np.vstack(places),
+            quaternions=np.roll(np.vstack(turns), -1, axis=1),
+        ).partition(list(map(len, rows)))
     return columns
 
 
-def _write_tracks(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
+def _write_tracks(log: ColumnLog, walks: Sequence[SearchWalk]) -> None:
     """Write the paths of the centre of mass, and rings where robots fell."""
-    import rerun as rr
-
     found = [balance(walk.scene) for walk in walks]
     tracks_m = [one.centre_of_mass_m for one in found]
     look = rr.LineStrips3D.from_fields(radii=_TRACK_M, colors=colours.MASS)
     log.log("track", look)
-    log.send("track", rr.LineStrips3D.columns(strips=tracks_m))
-    fell = np.array([walk.fell for walk in walks])
-    if not fell.any():
+    log.send_rows("track", rr.LineStrips3D.columns(strips=tracks_m))
+    fell = [walk.fell for walk in walks]
+    if not any(fell):
         return
     rings_m, texts = [], []
     for walk, one in zip(walks, found, strict=True):
@@ -150,13 +123,11 @@ def _write_tracks(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
     log.log("fall", look)
     columns = rr.LineStrips3D.columns(strips=rings_m, labels=texts)
     # A walk without a fall removes the ring of the walk before.
-    log.send("fall", columns.partition(fell.astype(int)))
+    log.send_rows("fall", columns.partition(np.array(fell, int)))
 
 
-def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
+def _write_ground(log: ColumnLog, walks: Sequence[SearchWalk]) -> None:
     """Write the ground of each walk, or only one if all grounds are equal."""
-    import rerun as rr
-
     around_m = _reached(walks) + np.array([[-_BESIDE_M], [_BESIDE_M]])
     grounds = [
         _cropped(walk.scene.ground, around_m)
@@ -166,8 +137,8 @@ def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
     if len(grounds) < len(walks):
         return
     meshes = [ground_mesh(ground) for ground in grounds]
-    heights_m = [ground.heights_m for ground in grounds]
-    if all(np.array_equal(heights_m[0], other_m) for other_m in heights_m):
+    first_m = grounds[0].heights_m
+    if all(np.array_equal(first_m, ground.heights_m) for ground in grounds):
         log.log("ground", rr.Mesh3D(**meshes[0]._asdict()))
         return
     look = rr.Mesh3D.from_fields(
@@ -179,7 +150,8 @@ def _write_ground(log: _WalkLog, walks: Sequence[SearchWalk]) -> None:
         vertex_positions=np.vstack([mesh.vertex_positions for mesh in meshes]),
         vertex_normals=np.vstack([mesh.vertex_normals for mesh in meshes]),
     )
-    log.send("ground", columns.partition([height_m.size for height_m in heights_m]))
+    sizes = [ground.heights_m.size for ground in grounds]
+    log.send_rows("ground", columns.partition(sizes))
 
 
 def _reached(walks: Sequence[SearchWalk]) -> FloatArray:
@@ -210,10 +182,8 @@ def _cropped(ground: Heightfield, around_m: FloatArray) -> Heightfield:
     return Heightfield(heights_m, (x_m, y_m), ground.spacing_m)
 
 
-def walk_view(walks: Sequence[SearchWalk], name: str) -> "rrb.Spatial3DView":
+def walk_view(walks: Sequence[SearchWalk], name: str) -> rrb.Spatial3DView:
     """View with the title `name` of one or more walks, from the right of the robot."""
-    import rerun.blueprint as rrb
-
     low_m, high_m = _reached(walks)
     size_m = walks[0].scene.description.scale.length
     middle_m = np.array([*((low_m + high_m) / 2), 0.15 * size_m])
