@@ -197,7 +197,7 @@ def _control(plant: Plant, trace: Trace, size: int, since_s: FloatArray) -> Floa
     Without commands these are the measured positions.
     """
     asked = trace.position_rad if trace.command_rad is None else trace.command_rad
-    held = Held.of(trace.time_s, asked)
+    held = Held(trace.time_s, asked)
     control = np.zeros((len(since_s), size))
     control[:, plant.actuators] = held.mean(trace.time_s[0] + since_s, STEP_S)
     return control

@@ -1,8 +1,7 @@
 """Replays: recorded commands simulated with variants of a robot model.
 
 `replay` runs all variants through all recordings in one batch of MuJoCo simulations and
-returns predicted measurements. Effects that MuJoCo lacks are computed at every step by
-`servos`, `gaps`, `elastic`, `friction` and `outside_forces`, which `laws` combines.
+returns predicted measurements. At every step `laws` applies effects that MuJoCo lacks.
 """
 
 from diagnosis.replay.replay import STEP_S, replay

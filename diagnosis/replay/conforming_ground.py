@@ -1,9 +1,9 @@
 """Uneven ground for replays, inferred from where recorded soles stood at their start.
 
-The effect uneven ground states how high bumps are, not where. But recorded base and
-joints say where each point of a loaded sole is when a replay begins. Where that is off
-the model's plane by more than measurement errors, the ground is taken to be there, at
-most as high or low as the bumps. Where a foot steps later, the ground is flat.
+The effect uneven ground states how high bumps are, not where. Recorded base and joints
+say where each point of a loaded sole is when a replay begins. Where that is off the
+model's plane by more than measurement errors, the ground is taken to be there, at most
+as high or low as the bumps. Where a foot steps later, the ground is flat.
 """
 
 from collections.abc import Sequence
@@ -78,12 +78,8 @@ def _above(
 ) -> FloatArray:
     """(N, geoms) height of each geom's lowest point above the plane [m].
 
-    Args:
-      model: the robot model.
-      geoms: ids of a foot's geoms.
-      floor: id of the plane's geom.
-      at: (N, ngeom, 3) positions of all geoms.
-      turns: (N, ngeom, 3, 3) orientations of all geoms.
+    `geoms` are a foot's, `floor` is the plane; `at` (N, ngeom, 3) and `turns` (N,
+    ngeom, 3, 3) are positions and orientations of all geoms.
     """
     import mujoco
 
@@ -97,13 +93,10 @@ def _above(
 
 
 def _stands(runs: Sequence[Run], lowest: FloatArray) -> BoolArray:
-    """(N, feet) whether a foot carries the robot as a simulation's run begins.
-
-    `lowest` (N, feet) is the height of each foot's lowest point above the plane [m].
-    """
-    forces = [run.trace.foot_force_n for run in runs]
+    """(N, feet) whether a foot carries the robot, from heights `lowest` (N, feet) [m]."""
     found = lowest - lowest.min(axis=1, keepdims=True) <= ABOVE_M
-    for row, force in enumerate(forces):
+    for row, run in enumerate(runs):
+        force = run.trace.foot_force_n
         if force is not None and force.shape[1] == lowest.shape[1]:
             found[row] = force[0] > LOADED * max(force[0].sum(), 1e-9)
     return np.asarray(found)

@@ -1,7 +1,7 @@
 """Recorded commands and torques, resampled to the physics steps of a replay."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -10,57 +10,42 @@ from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray, IntArray
 
 
-@dataclass(frozen=True, eq=False)
 class Held:
-    """Values that each hold from one row of a recording to the next.
+    """Values (T, j) that each hold from one row of a recording to the next.
 
     A physics step uses the mean over its duration. So a command may change within a
     step, and a delay need not be a whole number of steps.
-
-    Attributes:
-      time_s: (T,) times of the rows.
-      values: (T, j) values that hold from each row on.
-      integral: (T, j) time integral of the values from the first row to each row.
     """
 
-    time_s: FloatArray
-    values: FloatArray
-    integral: FloatArray
-
-    @classmethod
-    def of(cls, time_s: FloatArray, values: FloatArray) -> "Held":
+    def __init__(self, time_s: FloatArray, values: FloatArray) -> None:
         """Hold (T, j) values from (T,) times on; NaN becomes the value before it."""
-        values = filled(values)
-        steps = np.diff(time_s)[:, None] * values[:-1]
-        integral = np.vstack([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
-        return cls(time_s, values, integral)
+        self._time_s, self._values = time_s, filled(values)
+        steps = np.diff(time_s)[:, None] * self._values[:-1]
+        start = np.zeros_like(self._values[:1])
+        self._integral = np.vstack([start, np.cumsum(steps, axis=0)])
 
     def mean(self, start_s: FloatArray, step_s: float) -> FloatArray:
-        """(..., j) mean values from `start_s` to `start_s + step_s`.
+        """(..., j) mean values from (...) times `start_s` to `start_s + step_s`.
 
         The first value also holds before the first row, the last one for ever.
-
-        Args:
-          start_s: (...) times.
-          step_s: length of the interval.
         """
         end_s = start_s + step_s
-        return (self._at(end_s) - self._at(start_s)) / step_s
+        return (self._integral_at(end_s) - self._integral_at(start_s)) / step_s
 
     def at(self, time_s: FloatArray) -> FloatArray:
         """(..., j) values that hold at (...) times."""
-        return np.asarray(self.values[self._row(time_s)])
+        return np.asarray(self._values[self._row(time_s)])
 
-    def _at(self, time_s: FloatArray) -> FloatArray:
+    def _integral_at(self, time_s: FloatArray) -> FloatArray:
         """(..., j) time integral of the values from the first row to (...) times."""
         row = self._row(time_s)
-        since = (time_s - self.time_s[row])[..., None]
-        return np.asarray(self.integral[row] + since * self.values[row])
+        since = (time_s - self._time_s[row])[..., None]
+        return np.asarray(self._integral[row] + since * self._values[row])
 
     def _row(self, time_s: FloatArray) -> IntArray:
         """(...) indices of the rows whose values hold at (...) times."""
-        row = np.searchsorted(self.time_s, time_s, side="right") - 1
-        return np.clip(row, 0, len(self.time_s) - 1)
+        row = np.searchsorted(self._time_s, time_s, side="right") - 1
+        return np.clip(row, 0, len(self._time_s) - 1)
 
 
 class Drive:
@@ -78,26 +63,20 @@ class Drive:
         self._delays_s, self._which = np.unique(delay_s, return_inverse=True)
         self._step_s = step_s
         traces = [run.whole or run.trace for run in runs]
-        self._commands = [_held(trace, _command_rad(trace)) for trace in traces]
-        self._torques = [_held(trace, _torque_nm(trace)) for trace in traces]
+        targets = [None if trace.unheld else trace.command_rad for trace in traces]
+        self._commands = list(map(_held, traces, targets))
+        self._torques = list(map(_held, traces, map(_torque_nm, traces)))
         self._added = [_held(trace, trace.added_nm) for trace in traces]
         self._variants, self._joints = len(delay_s), traces[0].position_rad.shape[1]
 
     def at(self, now_s: FloatArray) -> tuple[FloatArray | None, FloatArray | None]:
         """(B, n R, j) mean targets [rad] and torques [N m] of B steps, or None each.
 
-        Args:
-          now_s: (B, R) times at which the steps begin.
+        `now_s` are (B, R) times at which the steps begin.
         """
-
-        def mean(held: Held, late_s: FloatArray) -> FloatArray:
-            """Means of held values over the physics steps that begin at these times."""
-            return held.mean(late_s, self._step_s)
-
-        return (
-            self._all(self._commands, now_s, mean),
-            self._all(self._torques, now_s, mean),
-        )
+        mean = partial(Held.mean, step_s=self._step_s)
+        commands = self._all(self._commands, now_s, mean)
+        return commands, self._all(self._torques, now_s, mean)
 
     def ends(self, now_s: FloatArray) -> tuple[FloatArray, FloatArray] | None:
         """(B, n R, j) targets [rad] as steps from (B, R) times begin and end."""
@@ -139,12 +118,7 @@ class Drive:
 
 def _held(trace: Trace, values: FloatArray | None) -> Held | None:
     """Values (T, j) of a recording, each held to the next row; None for None."""
-    return None if values is None else Held.of(trace.time_s, values)
-
-
-def _command_rad(trace: Trace) -> FloatArray | None:
-    """(T, j) position targets [rad] of a recording; None if servos hold no joints."""
-    return None if trace.unheld else trace.command_rad
+    return None if values is None else Held(trace.time_s, values)
 
 
 def _torque_nm(trace: Trace) -> FloatArray | None:

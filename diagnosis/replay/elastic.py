@@ -1,11 +1,10 @@
 """Simulates motors that drive their links through springs, in a batch."""
 
 from collections.abc import Mapping
-from typing import Self
 
 import numpy as np
 
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 
 class ElasticJoints:
@@ -24,40 +23,23 @@ class ElasticJoints:
 
     def __init__(
         self,
-        soft: BoolArray,
-        stiffness: FloatArray,
-        damping: FloatArray,
-        servo: Mapping[str, FloatArray],
-        inertia: FloatArray,
-    ) -> None:
-        """Take arguments as `of`; `soft` flags joints with springs of K and D.
-
-        All are (rows, j). Motors start at the angles of their links.
-        """
-        self.soft, self.stiffness, self.damping = soft, stiffness, damping
-        self._servo, self._inertia = servo, inertia
-        self._angle: FloatArray | None = None
-        self._speed = np.zeros_like(stiffness)
-
-    @classmethod
-    def of(
-        cls,
         joints: Mapping[str, FloatArray],
         servo: Mapping[str, FloatArray],
         inertia: FloatArray,
-    ) -> Self | None:
-        """Motors for the joints that have a spring in some simulation; None if none.
+    ) -> None:
+        """Make motors that start at the angles of their links.
 
         Args:
           joints: arrays of `Joints` by name, with a row for each simulation.
           servo: gains and limits of the servos, `BatchServos.law`.
           inertia: (rows, j) inertias of the rotors [kg m^2].
         """
-        soft = np.isfinite(joints["spring_nm_rad"])
-        if not soft.any():
-            return None
-        stiffness = np.where(soft, joints["spring_nm_rad"], 1.0)
-        return cls(soft, stiffness, joints["spring_damping_nm_s_rad"], servo, inertia)
+        self.soft = np.isfinite(joints["spring_nm_rad"])
+        self.stiffness = np.where(self.soft, joints["spring_nm_rad"], 1.0)
+        self.damping = joints["spring_damping_nm_s_rad"]
+        self._servo, self._inertia = servo, inertia
+        self._angle: FloatArray | None = None
+        self._speed = np.zeros_like(self.stiffness)
 
     def drive(
         self,
@@ -80,13 +62,13 @@ class ElasticJoints:
           step_s: time step of the physics.
           torque_nm: (rows, j) further torque on the motors.
         """
+        h, link_before = step_s, velocity_rad_s.copy()
         if self._angle is None:
-            self._angle, self._speed = position_rad.copy(), velocity_rad_s.copy()
-            self._speed_before, self._link_before = self._speed, velocity_rad_s.copy()
-        h = step_s
+            self._angle = position_rad.copy()
+            self._speed = self._speed_before = self._link_before = link_before
         link = 2 * velocity_rad_s - self._link_before
         wanted_rad = asked_rad + h * (2 * self._speed - self._speed_before)
-        self._link_before, self._speed_before = velocity_rad_s.copy(), self._speed
+        self._link_before, self._speed_before = link_before, self._speed
         push = torque_nm + self.damping * link
         push -= self.stiffness * (self._angle - position_rad - h * link)
         momentum = self._inertia * self._speed + h * push

@@ -81,10 +81,11 @@ class BatchLaws:
             self._gaps.begin()
         self._outside.begin()
         is_first = self._elastic is None
-        law, inertia = self._servos.law, self._rotor_kg_m2
-        self._elastic = ElasticJoints.of(self.joints, law, inertia)
-        if self._elastic is not None and is_first:
-            self._servos.soften(self._elastic, self._step_s)
+        if np.isfinite(self.joints["spring_nm_rad"]).any():
+            law, inertia = self._servos.law, self._rotor_kg_m2
+            self._elastic = ElasticJoints(self.joints, law, inertia)
+            if is_first:
+                self._servos.soften(self._elastic, self._step_s)
 
     def servo(
         self, asked_rad: FloatArray, time_s: FloatArray, ends: Ends | None = None
@@ -96,19 +97,19 @@ class BatchLaws:
           time_s: (R,) times at which the step begins.
           ends: targets as the step begins and ends, if any jumps within it.
         """
-        asked_rad = asked_rad - self.joints["offset_rad"]
+        position, velocity = self.joint_state()
+        offset = self.joints["offset_rad"]
+        asked_rad = mean_rad = asked_rad - offset
         if ends is not None:
-            offset = self.joints["offset_rad"]
             ends = ends[0] - offset, ends[1] - offset
-        jumped_rad = self._jumped(asked_rad, ends) if ends else asked_rad
+            seen_rad = self.encoder_rad()
+            asked_rad = self._servos.equal(mean_rad, ends, seen_rad, velocity)
         if self._slews:
-            slewed_rad = self._slewed(asked_rad, ends or (asked_rad, asked_rad))
+            slewed_rad = self._slewed(mean_rad, ends or (mean_rad, mean_rad))
             slow = np.isfinite(self.joints["setpoint_speed_rad_s"])
-            jumped_rad = np.where(slow, slewed_rad, jumped_rad)
-        asked_rad = jumped_rad
+            asked_rad = np.where(slow, slewed_rad, asked_rad)
         if self._servos.fades:
             self._servos.fade(time_s)
-        position, velocity = self.joint_state()
         if self._friction.varies:
             self._rub(velocity, 0.0)
         if self._gaps is not None:
@@ -127,7 +128,7 @@ class BatchLaws:
     def jumps(self, ends: Ends | None) -> list[Ends | None]:
         """For each of B steps its targets (n R, j) as it begins and ends, if any jumps.
 
-        `ends` are the targets (B, n R, j) of all steps.
+        `ends` (B, n R, j) are the targets of all steps.
         """
         if ends is None:
             return []
@@ -138,12 +139,7 @@ class BatchLaws:
         ]
 
     def push_joints(self, torque_nm: FloatArray, time_s: FloatArray) -> None:
-        """Apply motor torques, and dry friction, to joints that no servo holds.
-
-        Args:
-          torque_nm: (n R, j) torques of the motors.
-          time_s: (R,) times at which the step begins.
-        """
+        """Apply motor torques (n R, j) to joints without servos, at (R,) times [s]."""
         position, velocity = self.joint_state()
         if self._elastic is not None:
             self._ctrl[:, self._actuators] = self._elastic.drive(
@@ -171,21 +167,15 @@ class BatchLaws:
         return self._qpos[:, self._columns], self._qvel[:, self._dofs]
 
     def encoder_rad(self) -> FloatArray:
-        """(n R, j) angles [rad] that encoders measure, before any encoder offset.
-
-        Those are joint angles, or motor angles at elastic joints.
-        """
+        """(n R, j) angles [rad] of joints, or motors at elastic joints, without offset."""
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 
     def _rub(self, velocity: FloatArray, added_nm: FloatArray | float) -> None:
         """Set dry friction by joint speed and by the torque through the gear.
 
-        That torque is the motor's minus its back-EMF; in an elastic joint the spring's.
-
-        Args:
-          velocity: (n R, j) speeds of the joints [rad/s].
-          added_nm: (n R, j) torques of motors without a servo.
+        That torque is the motor's minus its back-EMF, or the spring's at an elastic
+        joint; `added_nm` (n R, j) are torques of motors without a servo.
         """
         driven_nm = self._force[:, self._actuators] + added_nm
         stiff = np.isinf(self.joints["spring_nm_rad"])
@@ -202,11 +192,6 @@ class BatchLaws:
             for effect, values in self._torques
         ]
         return np.asarray(sum(torques, np.zeros_like(velocity)))
-
-    def _jumped(self, asked_rad: FloatArray, ends: Ends) -> FloatArray:
-        """(n R, j) constant targets with the same mean torque as targets that jump."""
-        velocity = self._qvel[:, self._dofs]
-        return self._servos.equal(asked_rad, ends, self.encoder_rad(), velocity)
 
     def _bind(self, name: str) -> FloatArray:
         """View of a field of `MjData` of all simulations; it changes as they step."""
@@ -233,8 +218,7 @@ class BatchLaws:
     def _rotors(self) -> FloatArray:
         """Rotor inertias (n R, j); moves those of elastic joints out of the links.
 
-        Call it before MuJoCo's `set_const`, which computes constants of the mass matrix
-        from them.
+        MuJoCo's `set_const` must follow: it computes constants from the inertias.
         """
         armature = self._expand("dof_armature")
         inertia = armature[:, self._dofs].copy()

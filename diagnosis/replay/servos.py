@@ -10,9 +10,6 @@ from diagnosis.plant.servo import Servo, servo_torque
 from diagnosis.replay.elastic import ElasticJoints
 from groundwalk.arrays import FloatArray
 
-SERVO = ("kp_nm_rad", "kd_nm_s_rad", "max_torque_nm", "back_emf_nm_s_rad")
-"""Names of the fields of a `Servo` that its law consists of."""
-
 UNLIMITED_NM = 1e9
 """Torque limit [N m] that stands for no limit, since MuJoCo needs a finite number."""
 
@@ -41,7 +38,7 @@ def columns(numbers: Sequence[int]) -> Columns:
 class BatchServos:
     """Servos of all simulations in a batch, as affine actuators of MuJoCo.
 
-    There is a row for each simulation: one variant of the robot model in one run.
+    Arrays have a row for each simulation: one variant of the robot model in one run.
 
     Attributes:
       law: present gains and limits of the servos, arrays (rows, j): `kp` [N m/rad],
@@ -70,20 +67,14 @@ class BatchServos:
         self.fades = bool(joints["fade_1_s"].any())
         self.law = _laws(servos, joints)
         self._full_kp = kp = self.law["kp"]
-        self._gain, self._bias, self._range, self._damping, limited = (
-            np.asarray(batch.expand(name))
-            for name in (
-                "actuator_gainprm",
-                "actuator_biasprm",
-                "actuator_forcerange",
-                "dof_damping",
-                "actuator_forcelimited",
-            )
-        )
+        self._gain = np.asarray(batch.expand("actuator_gainprm"))
+        self._bias = np.asarray(batch.expand("actuator_biasprm"))
+        self._range = np.asarray(batch.expand("actuator_forcerange"))
+        self._damping = np.asarray(batch.expand("dof_damping"))
         self._gain[:, self._actuators, 0] = kp
         self._bias[:, self._actuators, 1] = -kp
         self._bias[:, self._actuators, 2] = -self.law["kd"]
-        limited[:, self._actuators] = 1
+        np.asarray(batch.expand("actuator_forcelimited"))[:, self._actuators] = 1
         self._limit = np.minimum(self.law["limit"], UNLIMITED_NM)
         self._set_range(self._limit)
         self._dofs = columns(plant.dofs)
@@ -171,10 +162,7 @@ class BatchServos:
             field[:, self._actuators, column] = np.where(stiff, value, old)
 
     def soften(self, elastic: ElasticJoints, step_s: float) -> None:
-        """Turn the actuators of elastic joints into the springs that drive the links.
-
-        The motors of these joints are simulated by `ElasticJoints`.
-        """
+        """Turn actuators of elastic joints into springs between motors and links."""
         stiffness, damping = elastic.stiffness, elastic.damping
         for field, column, value in (
             (self._gain, 0, stiffness),
@@ -189,13 +177,9 @@ class BatchServos:
 
 
 def first_share(mean_rad: FloatArray, ends: Ends) -> FloatArray:
-    """(rows, j) share of a physics step in which its first target holds.
+    """(rows, j) share of a physics step in which its first target holds; 0 if it stays.
 
-    It is 0 where the target does not change.
-
-    Args:
-      mean_rad: (rows, j) mean target of the step.
-      ends: targets as the step begins and as it ends.
+    `mean_rad` (rows, j) is the step's mean target, `ends` are its first and last one.
     """
     before, after = ends
     jump = after - before
@@ -208,9 +192,10 @@ def _laws(
 ) -> dict[str, FloatArray]:
     """Gains and limits (rows, j) of the runs' servos, changed as the variants say."""
     n = len(joints["kp_factor"]) // len(servos)
-    kp, kd, limit, emf = (
-        np.tile([getattr(servo, name) for servo in servos], (n, 1)) for name in SERVO
-    )
+    kp = np.tile([servo.kp_nm_rad for servo in servos], (n, 1))
+    kd = np.tile([servo.kd_nm_s_rad for servo in servos], (n, 1))
+    limit = np.tile([servo.max_torque_nm for servo in servos], (n, 1))
+    emf = np.tile([servo.back_emf_nm_s_rad for servo in servos], (n, 1))
     return {
         "kp": kp * joints["kp_factor"],
         "kd": kd * joints["damping_factor"],

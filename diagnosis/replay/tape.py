@@ -2,14 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from diagnosis.effects.variants import Variants
-from diagnosis.replay.batch import ReplayBatch
 from diagnosis.replay.servos import columns
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from diagnosis.replay.replay import ReplayBatch
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,20 +41,13 @@ class Replayed:
 class Tape:
     """Stored states of the joints and of a floating base after every physics step."""
 
-    def __init__(self, batch: ReplayBatch, steps: int) -> None:
-        """Make room for all states, and store the start.
-
-        Args:
-          batch: the simulations, in the states that they start from.
-          steps: number of physics steps that they will take.
-        """
-        self._batch, j = batch, len(batch.plant.joints)
-        self._position = np.empty((steps + 1, batch.n, j))
-        self._velocity = np.empty((steps + 1, batch.n, j))
+    def __init__(self, batch: "ReplayBatch", steps: int) -> None:
+        """Make room for the states of `steps` physics steps, and store the start."""
+        self._batch, shape = batch, (steps + 1, batch.n, len(batch.plant.joints))
+        self._position, self._velocity, self._torque = map(np.empty, [shape] * 3)
         self._base: FloatArray | None = None
         if batch.plant.base == "floating":
             self._base = np.empty((steps + 1, batch.n, 13))
-        self._torque = np.zeros((steps + 1, batch.n, j))
         self._force = batch.bind("actuator_force")
         self._actuators = columns(batch.plant.actuators)
         self.note(0)
@@ -68,12 +64,7 @@ class Tape:
             self._base[step, :, 7:] = batch.qvel[:, :6]
 
     def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
-        """Predicted measurements for each run, at the rows of its recording.
-
-        Args:
-          runs: the runs that were replayed.
-          variants: variants of the robot model, which state delays and sensor errors.
-        """
+        """Predicted measurements for each run, at the rows of its recording."""
         return [self._read(k, run, variants) for k, run in enumerate(runs)]
 
     def _read(self, k: int, run: Run, variants: Variants) -> Replayed:
@@ -84,12 +75,12 @@ class Tape:
         late_s = now_s - variants.signals.sensor_delay_s[:, None]
         position, velocity = self._joints_at(rows, late_s)
         position = position + variants.joints.offset_rad[:, None]
-        gyroscope = np.repeat(
-            variants.signals.gyro_bias_rad_s[:, None], run.trace.ticks, axis=1
-        )
-        base = None
+        bias = variants.signals.gyro_bias_rad_s[:, None]
+        gyroscope, base = np.repeat(bias, run.trace.ticks, axis=1), None
         if self._base is not None:
-            base = self._linear(self._base, rows, now_s)
+            low, t = self._between(now_s)
+            row = rows[:, None]
+            base = (1 - t) * self._base[low, row] + t * self._base[low + 1, row]
             base[:, :, 3:7] /= np.linalg.norm(base[:, :, 3:7], axis=2, keepdims=True)
             gyroscope = gyroscope + base[:, :, 10:]
         torque = self._torque_at(rows, since_s)
@@ -112,31 +103,17 @@ class Tape:
     def _joints_at(
         self, rows: IntArray, time_s: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Joint positions and velocities (n, T, j), interpolated between physics steps.
+        """Joint positions and velocities (n, T, j) of simulations `rows` at some times.
 
         Before the start, joints are assumed to have moved at their first velocities.
-
-        Args:
-          rows: (n,) indices of simulations.
-          time_s: (n, T) times since the start.
         """
         low, t = self._between(time_s)
         row = rows[:, None]
-        before, after = (
-            (self._position[step, row], self._velocity[step, row])
-            for step in (low, low + 1)
-        )
+        before = self._position[low, row], self._velocity[low, row]
+        after = self._position[low + 1, row], self._velocity[low + 1, row]
         position, velocity = hermite(before, after, self._batch.step_s, t)
         before_s = np.minimum(time_s, 0.0)[..., None]
         return position + before_s * self._velocity[0, row], velocity
-
-    def _linear(
-        self, values: FloatArray, rows: IntArray, time_s: FloatArray
-    ) -> FloatArray:
-        """(n, T, ...) values at (n, T) times, interpolated linearly between steps."""
-        low, t = self._between(time_s)
-        row = rows[:, None]
-        return np.asarray((1 - t) * values[low, row] + t * values[low + 1, row])
 
     def _between(self, time_s: FloatArray) -> tuple[IntArray, FloatArray]:
         """Index of the physics step before each time, and the share of a step since."""

@@ -10,7 +10,7 @@ NAN = np.nan
 
 
 def held(time_s, *columns):
-    return Held.of(np.array(time_s, float), np.array(columns, float).T)
+    return Held(np.array(time_s, float), np.array(columns, float).T)
 
 
 def test_a_step_takes_the_mean_of_what_holds_during_it():
