@@ -1,26 +1,20 @@
 """Effects: kinds of physics that a sim may lack. `library` lists those built in.
 
 An effect's class holds all that a diagnosis needs to know of it. A new built-in effect
-is one file here, one line in `library`, and a second implementation for test worlds in
+is a class here, one line in `library`, and a second implementation for test worlds in
 `worlds.hidden.effects`. An effect of your own only needs `also_known`.
 """
 
 from diagnosis.effects.bases import (
     BodyEffect,
     JointEffect,
-    JointNumber,
+    NumberEffect,
     ServoEffect,
-    ServoNumber,
     TorqueEffect,
 )
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.library import all_effects, also_known, effect, grown_from
-from diagnosis.effects.parts import (
-    EffectWords,
-    JointMotion,
-    Parameter,
-    PlacedEffect,
-)
+from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, PlacedEffect
 from diagnosis.effects.variants import Push, Variants
 
 __all__ = [
@@ -29,12 +23,11 @@ __all__ = [
     "EffectWords",
     "JointEffect",
     "JointMotion",
-    "JointNumber",
+    "NumberEffect",
     "Parameter",
     "PlacedEffect",
     "Push",
     "ServoEffect",
-    "ServoNumber",
     "TorqueEffect",
     "Variants",
     "all_effects",

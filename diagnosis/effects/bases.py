@@ -1,19 +1,17 @@
-"""Base classes of effects at joints, servos and bodies."""
+"""Base classes of effects by their place, and by what they change there."""
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from diagnosis.effects.effect import Effect
-from diagnosis.effects.parts import PlaceKind
+from diagnosis.effects.parts import Parameter, PlaceKind
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
 from groundwalk.arrays import BoolArray, FloatArray
-
-if TYPE_CHECKING:
-    from diagnosis.effects.variants import Variants
-    from diagnosis.plant.plant import Plant
-    from diagnosis.traces.trace import Trace
 
 
 class JointEffect(Effect):
@@ -25,7 +23,7 @@ class JointEffect(Effect):
 
     place_kind: ClassVar[PlaceKind] = "joint"
 
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of all joints of the robot model."""
         return plant.joints
 
@@ -37,45 +35,52 @@ class ServoEffect(JointEffect):
       See docs/python.md, "An effect of your own".
     """
 
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints whose servo has a stiffness above 0 in any recording."""
         servos = [trace.servo for trace in traces] or [plant.servo]
         return joints_where(plant, [servo.kp_nm_rad > 0 for servo in servos])
 
 
-class JointNumber(JointEffect):
-    """An effect with one parameter, which changes one quantity of a joint.
+class BodyEffect(Effect):
+    """An effect that may be at any body that has a name and mass, and can move.
+
+    Example:
+      See docs/python.md, "An effect of your own".
+    """
+
+    place_kind: ClassVar[PlaceKind] = "body"
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of the bodies that have mass and can move."""
+        return tuple(name for name in plant.bodies if name)
+
+
+class NumberEffect(Effect):
+    """An effect that changes one number, or one vector, of its place.
 
     Attributes:
-      array: name of the quantity: an attribute of `Joints`, or a field of `MjModel`
-        with a value for each degree of freedom, such as "dof_damping".
-      combined: function of the quantity and the parameter that gives the new quantity.
-
-    Example:
-      See docs/python.md, "An effect of your own".
+      quantity: what the effect changes, see `Variants.at`.
+      combined: function of the quantity and the effect's values that gives the new
+        quantity.
+      usual: the effect's parameters, if they are the same for all robots and places;
+        otherwise override `parameters`.
     """
 
-    array: ClassVar[str]
+    quantity: ClassVar[str]
     combined: ClassVar[np.ufunc] = np.add
+    usual: ClassVar[tuple[Parameter, ...]]
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The effect's parameters, the same for all robots and places."""
+        return self.usual
 
     def apply(
-        self, variants: "Variants", row: int, place: str, values: FloatArray
+        self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
-        """Change the joint's quantity in one variant by the effect's value."""
-        if self.array in vars(variants.joints):
-            numbers = vars(variants.joints)[self.array]
-            at = row, variants.column(place)
-        else:
-            numbers, at = variants.field(self.array), (row, variants.dof(place))
-        numbers[at] = self.combined(numbers[at], values[0])
-
-
-class ServoNumber(JointNumber, ServoEffect):
-    """A `JointNumber` for joints whose servo has a stiffness above 0.
-
-    Example:
-      See docs/python.md, "An effect of your own".
-    """
+        """Change the quantity in one variant by the effect's value or vector."""
+        numbers, at = variants.at(self.quantity, row, place)
+        change = values if self.components > 1 else values[0]
+        numbers[at] = self.combined(numbers[at], change)
 
 
 class TorqueEffect(JointEffect):
@@ -90,7 +95,7 @@ class TorqueEffect(JointEffect):
     native: ClassVar[bool] = False
 
     def apply(
-        self, variants: "Variants", row: int, place: str, values: FloatArray
+        self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Store the values for one variant; those of several effects are added.
 
@@ -118,21 +123,7 @@ class TorqueEffect(JointEffect):
         """
 
 
-class BodyEffect(Effect):
-    """An effect that may be at any body that has a name and mass, and can move.
-
-    Example:
-      See docs/python.md, "An effect of your own".
-    """
-
-    place_kind: ClassVar[PlaceKind] = "body"
-
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
-        """Names of the bodies that have mass and can move."""
-        return tuple(name for name in plant.bodies if name)
-
-
-def joints_where(plant: "Plant", masks: Sequence[BoolArray]) -> tuple[str, ...]:
+def joints_where(plant: Plant, masks: Sequence[BoolArray]) -> tuple[str, ...]:
     """Names of the joints for which at least one of the masks (j,) is true."""
     found = np.flatnonzero(np.any(masks, axis=0))
     return tuple(plant.joints[column] for column in found)

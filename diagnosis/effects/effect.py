@@ -4,7 +4,7 @@ import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,14 +17,12 @@ from diagnosis.effects.parts import (
     PlaceKind,
     Values,
 )
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Base, Plant
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
 from diagnosis.verdict.verdict import When
 from groundwalk.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from diagnosis.effects.variants import Variants
-    from diagnosis.plant.plant import Base, Plant
-    from diagnosis.traces.trace import Trace
-    from diagnosis.traces.usage import Usage
 
 STRETCHES = (0.4, 1.0, 2.5)
 """Factors on a guessed size of an effect that are tried before the size is fitted."""
@@ -117,16 +115,16 @@ class Effect(ABC):
             cls.words = EffectWords(label, f"{where} has {label} {{lacking}}", meaning)
 
     @abstractmethod
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The effect's parameters, with bounds and typical values for this place."""
 
     @abstractmethod
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of places where the robot may have the effect, given its recordings."""
 
     @abstractmethod
     def apply(
-        self, variants: "Variants", row: int, place: str, values: FloatArray
+        self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Put the effect into one variant of the robot model.
 
@@ -140,7 +138,7 @@ class Effect(ABC):
         """
 
     def apply_to_sim(
-        self, variants: "Variants", row: int, place: str, values: FloatArray
+        self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Put the effect into a sim world, whose ground is a heightfield of its own.
 
@@ -151,7 +149,7 @@ class Effect(ABC):
         """
         self.apply(variants, row, place, values)
 
-    def obstacle(self, recorded: "Base", base: "Base") -> str:
+    def obstacle(self, recorded: Base, base: Base) -> str:
         """Why a sim cannot have the effect found in recordings; "" if it can.
 
         Args:
@@ -161,11 +159,7 @@ class Effect(ABC):
         return ""
 
     def first_tries(
-        self,
-        plant: "Plant",
-        place: str,
-        usage: "Usage",
-        intervals: Sequence[Interval],
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
     ) -> list[Values]:
         """Values to try first; one set is enough where the effect is nearly linear.
 
@@ -175,20 +169,19 @@ class Effect(ABC):
           usage: range and speed of each joint in the recordings.
           intervals: times at which the recordings show a short error.
         """
-        typical = tuple(p.typical for p in self.parameters(plant, place))
-        if self.components == 1 and not self.timed:
-            return [typical]
-        vectors, rest = (
-            one_by_one(typical[: self.components]),
-            typical[self.components :],
-        )
+        typical = tuple(one.typical for one in self.parameters(plant, place))
+        size = self.components
+        vectors = [
+            tuple(value if i == axis else 0.0 for i, value in enumerate(typical[:size]))
+            for axis in range(size)
+        ]
         if not self.timed:
-            return [vector + rest for vector in vectors]
-        between = rest[:-2]
+            return [vector + typical[size:] for vector in vectors]
+        between = typical[size:-2]
         return [vector + between + when for when in intervals for vector in vectors]
 
     def sizes_to_scan(
-        self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
+        self, plant: Plant, placed: PlacedEffect, traces: Sequence[Trace]
     ) -> list[PlacedEffect]:
         """The effect in several sizes around a guess; the fit starts from the best.
 
@@ -204,7 +197,7 @@ class Effect(ABC):
         return [replace(placed, values=(k * first, *rest)) for k in factors]
 
     def stretched(
-        self, plant: "Plant", placed: PlacedEffect, factor: float
+        self, plant: Plant, placed: PlacedEffect, factor: float
     ) -> PlacedEffect:
         """The effect `factor` times as large, within its parameters' bounds.
 
@@ -222,7 +215,7 @@ class Effect(ABC):
             values[i] = min(max(value, one.low), one.high)
         return replace(placed, values=tuple(values))
 
-    def neutral_values(self, plant: "Plant", placed: PlacedEffect) -> Values:
+    def neutral_values(self, plant: Plant, placed: PlacedEffect) -> Values:
         """Values at which the effect is absent; some may be infinite."""
         return tuple(one.neutral for one in self.parameters(plant, placed.place))
 
@@ -238,7 +231,7 @@ class Effect(ABC):
         """The simpler effect that `placed` contains, or else `placed` itself."""
         return placed
 
-    def twins(self, plant: "Plant", place: str) -> tuple[PlacedEffect, ...]:
+    def twins(self, plant: Plant, place: str) -> tuple[PlacedEffect, ...]:
         """Effects that recordings of this robot cannot distinguish from this one."""
         return ()
 
@@ -275,11 +268,3 @@ class Effect(ABC):
           damping_nm_s_rad: damping of the servo plus back-EMF at the joint.
         """
         return self.name, size, error
-
-
-def one_by_one(values: Values) -> list[Values]:
-    """For each of the values, a vector in which the other values are zero."""
-    return [
-        tuple(value if i == axis else 0.0 for i, value in enumerate(values))
-        for axis in range(len(values))
-    ]

@@ -1,23 +1,19 @@
 """Finds the geoms of ground and soles in a robot model, and their friction."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from diagnosis.plant.plant import Plant
 from groundwalk.arrays import IntArray
 
-if TYPE_CHECKING:
-    from diagnosis.plant.plant import Plant
 
-
-def ground_geoms(plant: "Plant") -> IntArray:
+def ground_geoms(plant: Plant) -> IntArray:
     """(k,) MuJoCo ids of the geoms on the world body that can collide: the ground."""
     model = plant.model
     can_touch = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
     return np.flatnonzero((model.geom_bodyid == 0) & can_touch)
 
 
-def foot_geoms(plant: "Plant", foot: str) -> IntArray:
+def foot_geoms(plant: Plant, foot: str) -> IntArray:
     """(k,) MuJoCo ids of a foot's geoms that can collide with the ground."""
     model = plant.model
     of_foot: IntArray = np.flatnonzero(model.geom_bodyid == model.body(foot).id)
@@ -30,18 +26,18 @@ def foot_geoms(plant: "Plant", foot: str) -> IntArray:
     return touching
 
 
-def sole_geoms(plant: "Plant") -> IntArray:
+def sole_geoms(plant: Plant) -> IntArray:
     """(k,) MuJoCo ids of the geoms of all feet that can collide with the ground."""
     none = np.zeros(0, np.intp)
     return np.concatenate([none, *(foot_geoms(plant, foot) for foot in plant.feet)])
 
 
-def has_ground_contact(plant: "Plant") -> bool:
+def has_ground_contact(plant: Plant) -> bool:
     """Whether the base floats and the robot has feet that can touch a ground."""
     return plant.base == "floating" and len(sole_geoms(plant)) > 0
 
 
-def sole_friction(plant: "Plant") -> float:
+def sole_friction(plant: Plant) -> float:
     """Sliding friction coefficient of the feet on the ground; 0 if they cannot touch.
 
     MuJoCo uses the coefficient of the geom with the higher priority, and the larger one

@@ -5,70 +5,49 @@ from collections.abc import Iterator, Mapping
 from contextvars import ContextVar
 from types import MappingProxyType
 
-from diagnosis.effects.com_offset import ComOffset
-from diagnosis.effects.command_latency import CommandLatency
-from diagnosis.effects.contact_compliance import ContactCompliance
-from diagnosis.effects.contact_friction import ContactFriction
-from diagnosis.effects.drag import Drag
+from diagnosis.effects import (
+    bodies,
+    contact,
+    friction,
+    ground_shape,
+    joints,
+    servos,
+    signals,
+)
 from diagnosis.effects.effect import Effect
-from diagnosis.effects.end_stop import EndStop
-from diagnosis.effects.external_force import ExternalForce
-from diagnosis.effects.ground_slope import GroundSlope
-from diagnosis.effects.gyro_bias import GyroBias
-from diagnosis.effects.joint_elasticity import JointElasticity
-from diagnosis.effects.joint_numbers import (
-    Armature,
-    Backlash,
-    CoulombFriction,
-    EncoderOffset,
-    LoadFriction,
-    ViscousFriction,
-)
-from diagnosis.effects.joint_spring import JointSpring
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.effects.payload_mass import PayloadMass
-from diagnosis.effects.sensor_delay import SensorDelay
-from diagnosis.effects.servo_numbers import (
-    ServoDamping,
-    ServoFade,
-    ServoGain,
-    SpeedLimit,
-    TorqueLimit,
-)
-from diagnosis.effects.stribeck_friction import StribeckFriction
-from diagnosis.effects.uneven_ground import UnevenGround
 from groundwalk.errors import BadValueError, UnknownNameError
 
 BUILT_IN: Mapping[str, Effect] = MappingProxyType(
     {
         one.name: one
         for one in (
-            ViscousFriction(),
-            CoulombFriction(),
-            StribeckFriction(),
-            LoadFriction(),
-            Backlash(),
-            JointElasticity(),
-            CommandLatency(),
-            SensorDelay(),
-            EncoderOffset(),
-            GyroBias(),
-            TorqueLimit(),
-            SpeedLimit(),
-            ServoGain(),
-            ServoDamping(),
-            Armature(),
-            PayloadMass(),
-            ComOffset(),
-            JointSpring(),
-            EndStop(),
-            ServoFade(),
-            ContactFriction(),
-            ContactCompliance(),
-            GroundSlope(),
-            UnevenGround(),
-            ExternalForce(),
-            Drag(),
+            friction.ViscousFriction(),
+            friction.CoulombFriction(),
+            friction.StribeckFriction(),
+            friction.LoadFriction(),
+            joints.Backlash(),
+            joints.JointElasticity(),
+            signals.CommandLatency(),
+            signals.SensorDelay(),
+            joints.EncoderOffset(),
+            signals.GyroBias(),
+            servos.TorqueLimit(),
+            servos.SpeedLimit(),
+            servos.ServoGain(),
+            servos.ServoDamping(),
+            joints.Armature(),
+            bodies.PayloadMass(),
+            bodies.ComOffset(),
+            joints.JointSpring(),
+            joints.EndStop(),
+            servos.ServoFade(),
+            contact.ContactFriction(),
+            contact.ContactCompliance(),
+            ground_shape.GroundSlope(),
+            ground_shape.UnevenGround(),
+            bodies.ExternalForce(),
+            bodies.Drag(),
         )
     }
 )

@@ -1,13 +1,11 @@
 """Typical torques, speeds and masses of a robot, for bounds of effects' parameters."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from diagnosis.plant.plant import Plant
 from groundwalk.gravity import GRAVITY_M_S2
-
-if TYPE_CHECKING:
-    from diagnosis.plant.plant import Plant
 
 REFERENCE_SPEED_RAD_S, REFERENCE_SPEED_M_S = 5.0, 0.5
 """Speed in brisk use of a hinge and of a sliding joint, assumed where the motor is not
@@ -20,7 +18,7 @@ _ACCELERATION_RAD_S2 = 5.0
 """Acceleration [rad/s^2] whose torque counts as large, for a joint without servo."""
 
 
-def torque_nm(plant: "Plant", joint: str) -> float:
+def torque_nm(plant: Plant, joint: str) -> float:
     """A large torque [N m] for a joint, always above 0.
 
     With a servo it is the servo's limit, or without a limit the torque at an error of
@@ -38,7 +36,7 @@ def torque_nm(plant: "Plant", joint: str) -> float:
     return max(gravity, _ACCELERATION_RAD_S2 * inertia_kg_m2(plant, joint))
 
 
-def inertia_kg_m2(plant: "Plant", joint: str) -> float:
+def inertia_kg_m2(plant: Plant, joint: str) -> float:
     """Inertia at a joint with the links beyond it, in the reference pose.
 
     It is the joint's entry in the diagonal of the mass matrix.
@@ -52,7 +50,7 @@ def inertia_kg_m2(plant: "Plant", joint: str) -> float:
     return float(mass_matrix[dof, dof])
 
 
-def speed_rad_s(plant: "Plant", joint: str) -> float:
+def speed_rad_s(plant: Plant, joint: str) -> float:
     """No-load speed of a joint's motor [rad/s]; 5 rad/s if not known.
 
     For sliding joints in m/s, and 0.5 m/s if not known.
@@ -65,7 +63,7 @@ def speed_rad_s(plant: "Plant", joint: str) -> float:
     return brisk_rad_s(plant, joint)
 
 
-def brisk_rad_s(plant: "Plant", joint: str) -> float:
+def brisk_rad_s(plant: Plant, joint: str) -> float:
     """Speed of a joint in brisk use: 5 rad/s for a hinge, 0.5 m/s for a slider."""
     import mujoco
 
@@ -74,7 +72,7 @@ def brisk_rad_s(plant: "Plant", joint: str) -> float:
     return REFERENCE_SPEED_M_S if slides else REFERENCE_SPEED_RAD_S
 
 
-def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:
+def range_rad(plant: Plant, joint: str) -> tuple[float, float]:
     """Lowest and highest angle of a joint's range; -pi and pi if it has no range."""
     view = plant.model.joint(joint)
     if not plant.model.jnt_limited[view.id]:
@@ -83,17 +81,17 @@ def range_rad(plant: "Plant", joint: str) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def mass_kg(plant: "Plant") -> float:
+def mass_kg(plant: Plant) -> float:
     """Mass of the whole robot model."""
     return float(plant.model.body_mass.sum())
 
 
-def weight_n(plant: "Plant") -> float:
+def weight_n(plant: Plant) -> float:
     """Weight of the robot on Earth [N], even if its model has no gravity."""
     return GRAVITY_M_S2 * mass_kg(plant)
 
 
-def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
+def _gravity_torque_nm(plant: Plant, joint: str) -> float:
     """Largest torque [N m] about a hinge that gravity of any direction can cause.
 
     The robot is in its reference pose. For a sliding joint, the weight [N] it carries.
@@ -111,7 +109,7 @@ def _gravity_torque_nm(plant: "Plant", joint: str) -> float:
     return weight * float(np.linalg.norm(arm - axis * (axis @ arm)))
 
 
-def _reference(plant: "Plant") -> Any:
+def _reference(plant: Plant) -> Any:
     """`MjData` of the robot model at rest in its reference pose."""
     import mujoco
 

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from diagnosis.plant.plant import Plant
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.bases import TorqueEffect
-    from diagnosis.plant.plant import Plant
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class Variants:
       torques: for each `TorqueEffect` used, its p parameter values (n, j, p).
     """
 
-    def __init__(self, plant: "Plant", n: int) -> None:
+    def __init__(self, plant: Plant, n: int) -> None:
         """Make n variants that are all equal to the robot model."""
         self.plant = plant
         self.n = n
@@ -158,6 +158,27 @@ class Variants:
             nominal = np.asarray(value, float)
             self.fields[name] = np.repeat(nominal[None], self.n, axis=0)
         return self.fields[name]
+
+    def at(
+        self, quantity: str, row: int, place: str
+    ) -> tuple[FloatArray, tuple[int, ...]]:
+        """Array of a quantity, to be changed in place, and index of one value in it.
+
+        Args:
+          quantity: attribute of `Joints`, `Signals` or `Outside`, or field of `MjModel`
+            with a row for each body or degree of freedom, such as "dof_damping".
+          row: index of the variant.
+          place: the joint or body; not used where a robot has the quantity once.
+        """
+        if quantity in vars(self.joints):
+            return vars(self.joints)[quantity], (row, self.column(place))
+        if quantity in vars(self.signals):
+            return vars(self.signals)[quantity], (row,)
+        if quantity in vars(self.outside):
+            array: FloatArray = vars(self.outside)[quantity]
+            return array, (row, self.body(place)) if array.ndim > 1 else (row,)
+        index = self.dof(place) if quantity.startswith("dof_") else self.body(place)
+        return self.field(quantity), (row, index)
 
     def torque_values(self, effect: "TorqueEffect", parameters: int) -> FloatArray:
         """(n, j, parameters) values of a `TorqueEffect`, to be changed in place.

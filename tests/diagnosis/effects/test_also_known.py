@@ -3,7 +3,7 @@
 import pytest
 
 from diagnosis.effects import all_effects, also_known, effect
-from diagnosis.effects.joint_numbers import ViscousFriction
+from diagnosis.effects.friction import ViscousFriction
 from groundwalk.errors import BadValueError, UnknownNameError
 
 

@@ -6,7 +6,7 @@ from made_up_traces import arm, recorded
 
 from diagnosis.effects import PlacedEffect, effect
 from diagnosis.effects.effect import LIMITS, STIFFNESSES, STRETCHES
-from diagnosis.effects.servo_numbers import WEAKER
+from diagnosis.effects.servos import WEAKER
 
 
 def sizes(name, *values, limit=8.0):

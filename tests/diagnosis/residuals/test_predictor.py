@@ -7,7 +7,7 @@ import pytest
 from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
-from diagnosis.effects.joint_elasticity import JointElasticity
+from diagnosis.effects.joints import JointElasticity
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import WARM_UP_S, WORST, Channels, Predictor
 

@@ -1,20 +1,23 @@
-"""The effect contact compliance: soles or ground are soft."""
+"""Effects of the contact between feet and ground: friction and softness."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from diagnosis.effects.effect import Effect
-from diagnosis.effects.ground import foot_geoms, has_ground_contact
-from diagnosis.effects.parts import EffectWords, Parameter, PlaceKind
+from diagnosis.effects.ground import (
+    foot_geoms,
+    ground_geoms,
+    has_ground_contact,
+    sole_friction,
+    sole_geoms,
+)
+from diagnosis.effects.parts import EffectWords, Parameter
 from diagnosis.effects.scales import mass_kg, weight_n
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from diagnosis.effects.variants import Variants
-    from diagnosis.plant.plant import Plant
-    from diagnosis.traces.trace import Trace
 
 DAMPING_RATIO = 0.1
 """Damping of soft contact as a share of critical damping of the robot on one foot."""
@@ -30,6 +33,51 @@ sticking foot hardly creeps."""
 _WEIGHT_OVER_GROUND = 1e9
 """MuJoCo's `solmix` of a soft foot: so large that the foot's solver parameters count in
 a contact instead of the ground's."""
+
+
+class ContactFriction(Effect):
+    """Friction of feet on the ground: tangential force <= mu times normal force.
+
+    Source: Coulomb friction as in Stewart and Trinkle 1996, "An implicit time-stepping
+    scheme for rigid body dynamics with inelastic collisions and Coulomb friction". In
+    MuJoCo `geom_friction`; friction of explicit contact pairs is not changed.
+    """
+
+    name = "contact_friction"
+    place_kind = "feet"
+    native = True
+    words = EffectWords(
+        "another grip of the ground",
+        "the friction coefficient between feet and ground is {coefficient}, unlike "
+        "{usual}",
+        "The feet slip earlier, or later, than they should.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """("feet",) if the feet can touch a ground and have friction on it, else ()."""
+        walks = has_ground_contact(plant) and sole_friction(plant) > 0
+        return ("feet",) if walks else ()
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The coefficient mu; two thirds of the model's is tried first."""
+        nominal = sole_friction(plant)
+        high = max(2.0, 2 * nominal)
+        return (
+            Parameter("coefficient", "1", 0.02, high, nominal, nominal * 2 / 3, True),
+        )
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Scale the coefficients of feet and ground in one variant by the same factor.
+
+        MuJoCo uses the larger coefficient of two geoms, or that of the geom with higher
+        priority; scaling both gives mu in either case.
+        """
+        plant = variants.plant
+        geoms = np.concatenate([ground_geoms(plant), sole_geoms(plant)])
+        factor = values[0] / sole_friction(plant)
+        variants.field("geom_friction")[row, geoms, 0] *= factor
 
 
 class ContactCompliance(Effect):
@@ -54,7 +102,7 @@ class ContactCompliance(Effect):
     """
 
     name = "contact_compliance"
-    place_kind: ClassVar[PlaceKind] = "feet"
+    place_kind = "feet"
     native = True
     main_parameters = ("stiffness",)
     words = EffectWords(
@@ -64,27 +112,18 @@ class ContactCompliance(Effect):
         "Carpet, grass or rubber soles: the feet sink in and come back late.",
     )
 
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """("feet",) if the model's feet can touch a ground, else ()."""
         return ("feet",) if has_ground_contact(plant) else ()
 
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """Stiffness K of one foot [N/m], on which the robot sinks by 0.1 to 30 mm."""
         weight = weight_n(plant)
-        return (
-            Parameter(
-                "stiffness",
-                "N/m",
-                weight / 0.03,
-                weight / 1e-4,
-                np.inf,
-                weight / 4e-3,
-                logarithmic=True,
-            ),
-        )
+        low, typical, high = (weight / sinks_m for sinks_m in (0.03, 4e-3, 1e-4))
+        return (Parameter("stiffness", "N/m", low, high, np.inf, typical, True),)
 
     def apply(
-        self, variants: "Variants", row: int, place: str, values: FloatArray
+        self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Make all feet of a variant soft, in series with any softness given before."""
         import mujoco
@@ -99,7 +138,7 @@ class ContactCompliance(Effect):
         ratio[row] = np.maximum(ratio[row], _IMPEDANCE_RATIO)
 
 
-def _soften(variants: "Variants", row: int, foot: str, stiffness: float) -> None:
+def _soften(variants: Variants, row: int, foot: str, stiffness: float) -> None:
     """Give one foot a stiffness [N/m], in series with any that it was given before."""
     plant = variants.plant
     geoms = foot_geoms(plant, foot)
@@ -119,14 +158,12 @@ def _soften(variants: "Variants", row: int, foot: str, stiffness: float) -> None
     mix[row, geoms] = _WEIGHT_OVER_GROUND
 
 
-def _contact_points(plant: "Plant", geoms: IntArray) -> int:
+def _contact_points(plant: Plant, geoms: IntArray) -> int:
     """Number of contacts that MuJoCo 4.0 makes between geoms lying flat and a plane."""
     import mujoco
 
     kind = mujoco.mjtGeom
-    points = {
-        int(kind.mjGEOM_SPHERE): 1,
-        int(kind.mjGEOM_ELLIPSOID): 1,
+    points = {  # other shapes, such as spheres, touch at one point
         int(kind.mjGEOM_CAPSULE): 2,
         int(kind.mjGEOM_CYLINDER): 3,
         int(kind.mjGEOM_BOX): 4,

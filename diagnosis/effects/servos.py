@@ -1,12 +1,11 @@
-"""Effects that change one number of a servo: stiffness, damping, fading and limits."""
+"""Effects of servos: stiffness, damping, fading, and limits of torque and speed."""
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.effects.bases import JointNumber, ServoNumber, joints_where
+from diagnosis.effects.bases import JointEffect, NumberEffect, ServoEffect, joints_where
 from diagnosis.effects.effect import LIMITS
 from diagnosis.effects.parts import (
     EffectWords,
@@ -17,20 +16,18 @@ from diagnosis.effects.parts import (
     Values,
 )
 from diagnosis.effects.scales import speed_rad_s, torque_nm
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
 from diagnosis.verdict.verdict import When
 from groundwalk.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from diagnosis.plant.plant import Plant
-    from diagnosis.traces.trace import Trace
-    from diagnosis.traces.usage import Usage
 
 WEAKER = (0.65, 0.8, 0.9, 0.96)
 """Shares of a servo's nominal torque limit that are tried as its true limit: if only
 sudden changes of the command reach the limit, other first guesses are poor."""
 
 
-class ServoGain(ServoNumber):
+class ServoGain(NumberEffect, ServoEffect):
     """A factor on the servo's stiffness: torque = factor kp (command - q) - kd v.
 
     Source: proportional part of a position loop, Spong, Hutchinson and Vidyasagar
@@ -40,17 +37,14 @@ class ServoGain(ServoNumber):
 
     name = "servo_gain"
     native = True
-    array = "kp_factor"
+    quantity = "kp_factor"
     combined = np.multiply
+    usual = (Parameter("factor", "1", 0.1, 5.0, 1.0, 0.8, logarithmic=True),)
     words = EffectWords(
         "servo stiffness",
         "the servo of {joint} has {factor} times its stiffness {usual}",
         "The torque that the servo gives for each radian of error is another one.",
     )
-
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The factor on the nominal stiffness kp."""
-        return (Parameter("factor", "1", 0.1, 5.0, 1.0, 0.8, logarithmic=True),)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) torque of the nominal stiffness; the share 1 - factor is missing."""
@@ -63,7 +57,7 @@ class ServoGain(ServoNumber):
         return self.name, 1 - size, error
 
 
-class ServoDamping(JointNumber):
+class ServoDamping(NumberEffect, JointEffect):
     """A factor on servo damping and back-EMF at speed v: torque -factor (kd + emf) v.
 
     Source: derivative part of a position loop and the motor's induced voltage, Spong,
@@ -73,28 +67,27 @@ class ServoDamping(JointNumber):
 
     name = "servo_damping"
     native = True
-    array = "damping_factor"
-    combined = np.multiply
     rarity_nats = 2.0
+    quantity = "damping_factor"
+    combined = np.multiply
+    usual = (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
     words = EffectWords(
         "servo damping",
         "the servo of {joint} has {factor} times its damping {usual}",
         "The torque with which servo and motor brake, for each rad/s, is another one.",
     )
 
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints whose servo has damping or back-EMF in any recording."""
         servos = [trace.servo for trace in traces] or [plant.servo]
         damping = [one.kd_nm_s_rad + one.back_emf_nm_s_rad for one in servos]
         return joints_where(plant, [values > 0 for values in damping])
 
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The factor on nominal damping and back-EMF."""
-        return (Parameter("factor", "1", 0.05, 20.0, 1.0, 1.5, logarithmic=True),)
 
-
-class ServoFade(ServoNumber):
+class ServoFade(NumberEffect, ServoEffect):
     """A servo that loses stiffness: kp (1 - rate t), t since the recording began.
+
+    Typical is a loss of 3 to 30 % in 10 to 60 s.
 
     Source: falling supply voltage or warming of winding and magnet reduce a motor's
     torque, here to first order; Hughes and Drury 2019, "Electric motors and drives",
@@ -103,18 +96,15 @@ class ServoFade(ServoNumber):
 
     name = "servo_fade"
     native = False
-    array = "fade_1_s"
     on_every_servo = False
     rarity_nats = 1.0
+    quantity = "fade_1_s"
+    usual = (Parameter("rate", "1/s", 0.0, 0.05, 0.0, 0.005),)
     words = EffectWords(
         "servo that weakens",
         "the servo of {joint} loses {rate} of its stiffness, unlike {usual}",
         "A motor that gets hot, or a battery that runs down, pulls less and less.",
     )
-
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
-        """The rate [1/s]; typical is a loss of 3 to 30 % in 10 to 60 s."""
-        return (Parameter("rate", "1/s", 0.0, 0.05, 0.0, 0.005),)
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
         """As a drift in all recordings, since the effect grows with time."""
@@ -125,7 +115,7 @@ class ServoFade(ServoNumber):
         return motion.since_s * motion.pull_nm
 
 
-class TorqueLimit(JointNumber):
+class TorqueLimit(NumberEffect, JointEffect):
     """A torque limit below the nominal one: torque = clip(demand, -limit, limit).
 
     Source: actuator saturation, Spong, Hutchinson and Vidyasagar 2006, "Robot modeling
@@ -134,37 +124,32 @@ class TorqueLimit(JointNumber):
 
     name = "torque_limit"
     native = True
-    array = "max_torque_nm"
-    combined = np.minimum
     threshold = True
+    quantity = "max_torque_nm"
+    combined = np.minimum
     words = EffectWords(
         "torque limit",
         "the motor of {joint} gives no more than {torque}, less than {usual}",
         "A motor that is weaker than the data sheet says, or a current limit.",
     )
 
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The limit [N m], at most the nominal one: a larger one has no effect."""
         scale = torque_nm(plant, place)
         own = float(plant.servo.max_torque_nm[plant.joints.index(place)])
         high = scale if np.isfinite(own) else 5 * scale
-        return (
-            Parameter("torque", "N m", 0.02 * scale, high, np.inf, 0.6 * scale, True),
-        )
+        low, typical = 0.02 * scale, 0.6 * scale
+        return (Parameter("torque", "N m", low, high, np.inf, typical, True),)
 
     def first_tries(
-        self,
-        plant: "Plant",
-        place: str,
-        usage: "Usage",
-        intervals: Sequence[Interval],
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
     ) -> list[Values]:
         """Limits at 90, 70 and 45 % of the torque that the nominal servo would give."""
         torque = usage.torque_nm[plant.joints.index(place)]
         return [(share * torque,) for share in (0.9, 0.7, 0.45)]
 
     def sizes_to_scan(
-        self, plant: "Plant", placed: PlacedEffect, traces: Sequence["Trace"]
+        self, plant: Plant, placed: PlacedEffect, traces: Sequence[Trace]
     ) -> list[PlacedEffect]:
         """Limits around the guess, and limits at some shares of the nominal limit."""
         column = plant.joints.index(placed.place)
@@ -174,7 +159,7 @@ class TorqueLimit(JointNumber):
         return [replace(placed, values=(limit,)) for limit in limits]
 
 
-class SpeedLimit(ServoNumber):
+class SpeedLimit(NumberEffect, ServoEffect):
     """A set-point that follows the command no faster than a limit.
 
     Source: rate limiter, Astrom and Hagglund 2006, "Advanced PID control";
@@ -183,36 +168,29 @@ class SpeedLimit(ServoNumber):
 
     name = "speed_limit"
     native = False
-    array = "setpoint_speed_rad_s"
-    combined = np.minimum
     threshold = True
+    quantity = "setpoint_speed_rad_s"
+    combined = np.minimum
     words = EffectWords(
         "speed limit",
         "the servo of {joint} moves its target no faster than {speed}, unlike {usual}",
         "A setting in the servo's firmware that slows its target down.",
     )
 
-    def places(self, plant: "Plant", traces: Sequence["Trace"]) -> tuple[str, ...]:
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints with a servo, if a recording has position commands."""
         if all(trace.command_rad is None for trace in traces):
             return ()
         return super().places(plant, traces)
 
-    def parameters(self, plant: "Plant", place: str) -> tuple[Parameter, ...]:
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The limit [rad/s]: 1 % to 4 times the motor's no-load speed."""
         scale = speed_rad_s(plant, place)
-        return (
-            Parameter(
-                "speed", "rad/s", 0.01 * scale, 4 * scale, np.inf, 0.4 * scale, True
-            ),
-        )
+        low, typical, high = 0.01 * scale, 0.4 * scale, 4 * scale
+        return (Parameter("speed", "rad/s", low, high, np.inf, typical, True),)
 
     def first_tries(
-        self,
-        plant: "Plant",
-        place: str,
-        usage: "Usage",
-        intervals: Sequence[Interval],
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
     ) -> list[Values]:
         """Limits at 80, 50 and 25 % of the commands' speed in the recordings."""
         speed = usage.command_speed_rad_s[plant.joints.index(place)]

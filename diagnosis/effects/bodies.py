@@ -1,0 +1,169 @@
+"""Effects at bodies: mass and centre of mass, drag, and pushes from outside."""
+
+from collections.abc import Sequence
+
+from diagnosis.effects.bases import BodyEffect, NumberEffect
+from diagnosis.effects.parts import EffectWords, Parameter
+from diagnosis.effects.scales import mass_kg, weight_n
+from diagnosis.effects.variants import Push, Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray
+
+_ABOUT_ITS_CENTRE = 1
+"""MuJoCo's `body_simple` for a simple body that can rotate; 2 is for one that only
+slides."""
+
+_EARLIEST_S, _LONGEST_S = -2.0, 600.0
+"""Bounds of a push: earliest start, in the recording's time, and longest duration. A
+push may have begun before the recording."""
+
+
+class PayloadMass(NumberEffect, BodyEffect):
+    """A point mass m at a body's centre of mass.
+
+    Centre of mass and inertia about it stay as they are, since a point mass at distance
+    r adds m r^2 (Featherstone 2008, "Rigid body dynamics algorithms", section 2.13). In
+    MuJoCo `body_mass`.
+    """
+
+    name = "payload_mass"
+    native = True
+    by_inverse_dynamics = True
+    quantity = "body_mass"
+    words = EffectWords(
+        "extra mass",
+        "{body} carries {mass} {lacking}",
+        "A load, a battery or a cable that the model does not know of.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The mass [kg], up to the body's own or 30 % of the robot's if larger."""
+        own = float(plant.model.body(place).mass[0])
+        high = max(own, 0.3 * mass_kg(plant))
+        return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
+
+
+class ComOffset(NumberEffect, BodyEffect):
+    """The centre of mass is shifted by (x, y, z) in the body's frame.
+
+    Mass and inertia about the centre stay as they are.
+
+    Source: first moments among the inertial parameters, Atkeson, An and Hollerbach
+    1986, "Estimation of inertial parameters of manipulator loads and links". In MuJoCo
+    `body_ipos`.
+    """
+
+    name = "com_offset"
+    native = True
+    components = 3
+    by_inverse_dynamics = True
+    rarity_nats = 1.0
+    quantity = "body_ipos"
+    usual = tuple(Parameter(axis, "m", -0.1, 0.1, 0.0, 0.01) for axis in "xyz")
+    words = EffectWords(
+        "shifted centre of mass",
+        "the centre of mass of {body} is shifted from its place {usual} by {x} in x, "
+        "{y} in y and {z} in z",
+        "The mass is right, but sits elsewhere in the body.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of bodies, except those that MuJoCo's compiler has made simple.
+
+        A simple body rotates about its centre of mass, so MuJoCo's mass matrix has no
+        entries for the coupling that an offset causes. `simple="false"` in the model
+        avoids this.
+        """
+        return tuple(
+            name
+            for name in super().places(plant, traces)
+            if plant.model.body(name).simple[0] != _ABOUT_ITS_CENTRE
+        )
+
+
+class Drag(NumberEffect, BodyEffect):
+    """Force -c v at a body's centre of mass, with v the velocity of that point.
+
+    Source: drag at low speed, linear as Stokes 1851 found for a sphere.
+    """
+
+    name = "drag"
+    native = False
+    at_tips = True
+    rarity_nats = 3.0
+    quantity = "drag_n_s_m"
+    words = EffectWords(
+        "drag",
+        "{body} meets a drag of {coefficient} {lacking}",
+        "A force against the body's velocity, as of air, water or a trailing cable.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of bodies that move, except those that only slide along one line.
+
+        Drag of those is the same as viscous friction of their sliding joint.
+        """
+        every = super().places(plant, traces)
+        return tuple(name for name in every if not _slides(plant, name))
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The coefficient c [N s/m], typically 10 % of the robot's weight at 1 m/s."""
+        scale = weight_n(plant)
+        return (Parameter("coefficient", "N s/m", 0.0, 2 * scale, 0.0, 0.1 * scale),)
+
+
+class ExternalForce(BodyEffect):
+    """A constant force (x, y, z) at a body's centre of mass for some time.
+
+    The force is in the world frame; `start` is in the recording's time. Its joint
+    torques are J^T f, J the Jacobian of the centre of mass (Haddadin, De Luca and
+    Albu-Schaffer 2017, "Robot collisions: a survey on detection, isolation, and
+    identification").
+    """
+
+    name = "external_force"
+    native = False
+    components = 3
+    timed = True
+    at_tips = True
+    rarity_nats = 3.0
+    main_parameters = ("x", "y", "z")
+    words = EffectWords(
+        "push from outside",
+        "{body} was pushed with {x} in x, {y} in y and {z} in z",
+        "A hand, a cable or a collision pushes a body for some time.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """Force x, y, z [N], each up to the robot's weight; start and duration [s]."""
+        weight = weight_n(plant)
+        force = (Parameter(a, "N", -weight, weight, 0.0, 0.05 * weight) for a in "xyz")
+        return (
+            *force,
+            Parameter("start", "s", _EARLIEST_S, _LONGEST_S, 0.0, 0.2),
+            Parameter("duration", "s", 0.0, _LONGEST_S, 0.0, 0.2),
+        )
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Add the push to one variant of the model; overlapping forces add up."""
+        x, y, z, start_s, duration_s = (float(value) for value in values)
+        if duration_s > 0 and any((x, y, z)):
+            push = Push(place, (x, y, z), start_s, duration_s)
+            variants.outside.pushes[row].append(push)
+
+
+def _slides(plant: Plant, name: str) -> bool:
+    """Whether a body can only slide along one line."""
+    import mujoco
+
+    model = plant.model
+    body = int(model.body(name).id)
+    joints = []
+    while body > 0:
+        first = int(model.body_jntadr[body])
+        joints += list(model.jnt_type[first : first + int(model.body_jntnum[body])])
+        body = int(model.body_parentid[body])
+    return joints == [mujoco.mjtJoint.mjJNT_SLIDE.value]

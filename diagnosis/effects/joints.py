@@ -1,0 +1,309 @@
+"""Effects of a joint's mechanics: inertia, play, springs, stops and its encoder."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.effects.bases import JointEffect, NumberEffect, ServoEffect
+from diagnosis.effects.parts import (
+    EffectWords,
+    Interval,
+    JointMotion,
+    Parameter,
+    PlacedEffect,
+    Values,
+)
+from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
+from groundwalk.arrays import FloatArray
+
+PLAY_RAD = 0.005
+"""Servo error [rad] at which `Backlash.torque_column` takes a gear's play as 76 %
+crossed. Small, since the sign of the error decides on which side the teeth touch."""
+
+_FAR_RAD = 1e6
+"""Bound of the angle of a joint without a range: so large that it acts as no bound."""
+
+_STIFF = (0.005, 1.0)
+"""MuJoCo's `solref` of an end stop, time constant [s] and damping ratio: hard, without
+bouncing."""
+
+
+class Armature(NumberEffect, JointEffect):
+    """Torque -J a against a joint's acceleration a; J = (gear ratio)^2 rotor inertia.
+
+    Source: gears in Featherstone 2008, "Rigid body dynamics algorithms", section 9.6.
+    In MuJoCo `dof_armature`.
+    """
+
+    name = "armature"
+    native = True
+    quantity = "dof_armature"
+    words = EffectWords(
+        "rotor inertia",
+        "{joint} has {inertia} of rotor inertia {lacking}",
+        "The motor's rotor, geared up, resists acceleration as a flywheel does.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The inertia J [kg m^2], in addition to that of the nominal model."""
+        scale = inertia_kg_m2(plant, place)
+        return (Parameter("inertia", "kg m^2", 0.0, 10 * scale, 0.0, 0.5 * scale),)
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """(rows,) joint acceleration: the torque of an inertia of 1 kg m^2."""
+        return motion.acceleration_rad_s2
+
+
+class EncoderOffset(NumberEffect, JointEffect):
+    """An encoder with a wrong zero: the servo acts on measured = true + offset.
+
+    Source: joint offset of kinematic calibration, Hollerbach, Khalil and Gautier
+    2016, "Model identification", Springer Handbook of Robotics.
+    """
+
+    name = "encoder_offset"
+    native = False
+    joint_by_joint = False
+    by_inverse_dynamics = True
+    quantity = "offset_rad"
+    usual = (Parameter("offset", "rad", -0.3, 0.3, 0.0, 0.03),)
+    words = EffectWords(
+        "encoder offset",
+        "the encoder of {joint} is off by {offset}",
+        "Measured angle less true angle, as after mounting a servo horn one tooth "
+        "aside; the servo acts on the wrong angle, too.",
+    )
+
+
+class Backlash(NumberEffect, ServoEffect):
+    """A gap in the gear, within which no torque passes from motor to joint.
+
+    The servo controls the motor's angle; the recorded encoder sits at the joint. Within
+    the gap, whose size is the total play, the motor moves freely, slowed only by its
+    damping; at the gap's edges it pushes the joint. See `diagnosis.replay.gaps`. Cheap
+    gears have a gap of some hundredths of a radian.
+
+    Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
+    survey", the dead-zone model.
+    """
+
+    name = "backlash"
+    native = False
+    quantity = "gap_rad"
+    usual = (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
+    words = EffectWords(
+        "play (backlash)",
+        "{joint} has play of {gap} {lacking}",
+        "Gears with a gap between their teeth: after each reversal the motor turns "
+        "before the joint follows.",
+    )
+
+    def first_tries(
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
+    ) -> list[Values]:
+        """A small and a large gap [rad]: the effect is not linear in its size."""
+        return [(0.01,), (0.03,)]
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """(rows,) servo torque lost for a gap of 1 rad: kp / 2 sign(command - q)."""
+        error = motion.command_rad - motion.position_rad
+        return np.asarray(motion.kp_nm_rad * np.tanh(error / PLAY_RAD) / 2)
+
+
+class JointElasticity(JointEffect):
+    """A spring from motor theta to link q: torque k (theta - q) + d (theta' - q').
+
+    The joint's rotor inertia is on the motor's side, and so is the encoder.
+
+    Source: Spong 1987, "Modeling and control of elastic joint robots", equations of
+    motion with diagonal rotor inertia; damping beside the spring as in De Luca and
+    Book 2016, "Robots with flexible elements".
+    """
+
+    name = "joint_elasticity"
+    native = False
+    stiff = True
+    joint_by_joint = False
+    on_every_servo = False
+    main_parameters = ("stiffness",)
+    words = EffectWords(
+        "elastic joint",
+        "{joint} is elastic between motor and link, with a stiffness of {stiffness} "
+        "and a damping of {damping}, {lacking}",
+        "A gear or shaft that winds up like a spring, so that the link lags behind its "
+        "motor and rings.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """Stiffness k [N m/rad] and damping d [N m s/rad].
+
+        A typical spring twists by 0.05 rad under a large torque for the joint, and has
+        3 % of critical damping; at the bounds it twists by 1 rad and by 0.5 mrad.
+        """
+        scale = torque_nm(plant, place)
+        typical, high = scale / 0.05, scale / 0.0005
+        critical = 2 * float(np.sqrt(typical * inertia_kg_m2(plant, place)))
+        return (
+            Parameter("stiffness", "N m/rad", scale, high, np.inf, typical, True),
+            Parameter("damping", "N m s/rad", 0.0, critical, 0.0, 0.03 * critical),
+        )
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Put the spring in series with any other at the joint: compliances add.
+
+        With s the Laplace variable, springs k_i + d_i s in series give
+        1 / sum 1/(k_i + d_i s), to first order in s a damping d = k^2 sum d_i / k_i^2.
+        """
+        stiffness, damping = values
+        if np.isinf(stiffness):
+            return
+        joints, at = variants.joints, (row, variants.column(place))
+        before = joints.spring_nm_rad[at]
+        total = 1 / (1 / before + 1 / stiffness)
+        joints.spring_damping_nm_s_rad[at] *= (total / before) ** 2
+        joints.spring_damping_nm_s_rad[at] += damping * (total / stiffness) ** 2
+        joints.spring_nm_rad[at] = total
+
+    def first_tries(
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
+    ) -> list[Values]:
+        """A soft and a stiff spring: the effect is not linear in its size."""
+        stiffness, damping = (one.typical for one in self.parameters(plant, place))
+        return [(stiffness * k, damping * k) for k in (1.0, 5.0)]
+
+
+class JointSpring(JointEffect):
+    """Torque -k (q - rest) at joint angle q.
+
+    Source: Hooke 1678. In MuJoCo `jnt_stiffness` and `qpos_spring`.
+    """
+
+    name = "joint_spring"
+    native = True
+    main_parameters = ("stiffness",)
+    words = EffectWords(
+        "spring at a joint",
+        "{joint} has a spring of {stiffness} that pulls to {rest}, {lacking}",
+        "A cable, a hose or a return spring pulls the joint to one angle.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """Stiffness k [N m/rad] and rest angle [rad], first the reference pose's."""
+        scale = torque_nm(plant, place)
+        low, high = range_rad(plant, place)
+        reference = plant.model.qpos0[plant.qpos[plant.joints.index(place)]]
+        rest = float(np.clip(reference, low, high))
+        return (
+            Parameter("stiffness", "N m/rad", 0.0, 5 * scale, 0.0, 0.2 * scale),
+            Parameter("rest", "rad", low, high, rest, rest),
+        )
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Merge the spring with any other at the joint in one variant of the model.
+
+        Stiffnesses are added; rest angles are averaged, weighted by stiffness.
+        """
+        stiffness, rest = values
+        if stiffness == 0:
+            return
+        joint = variants.plant.model.joint(place).id
+        qpos = variants.plant.qpos[variants.column(place)]
+        stiffnesses = variants.field("jnt_stiffness")
+        rests = variants.field("qpos_spring")
+        total = stiffnesses[row, joint] + stiffness
+        rests[row, qpos] += stiffness / total * (rest - rests[row, qpos])
+        stiffnesses[row, joint] = total
+
+    def first_tries(
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
+    ) -> list[Values]:
+        """Springs with rest angles in the middle and at both ends of the motion."""
+        column = plant.joints.index(place)
+        low, high = usage.low_rad[column], usage.high_rad[column]
+        stiffness = self.parameters(plant, place)[0].typical
+        return [(stiffness, rest) for rest in ((low + high) / 2, low, high)]
+
+    def torque_column(self, motion: JointMotion) -> FloatArray:
+        """(rows,) joint angle; the rest angle adds a constant torque of its own."""
+        return motion.position_rad
+
+
+class EndStop(JointEffect):
+    """A hard stop: joint angle q <= angle (side +1) or q >= angle (side -1).
+
+    The stop pushes the joint back, critically damped, with a time constant of 5 ms, or
+    of two physics steps if that is longer, as MuJoCo demands.
+
+    Source: complementarity between distance and force, Brogliato 2016, "Nonsmooth
+    mechanics". In MuJoCo `jnt_range`.
+    """
+
+    name = "end_stop"
+    native = True
+    threshold = True
+    on_every_servo = False
+    main_parameters = ("angle",)
+    words = EffectWords(
+        "end stop",
+        "{joint} hits a stop at {angle} {lacking}",
+        "Something stops the joint before the end of its nominal range.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """Angle of the stop [rad], and side, whose sign says which way it blocks."""
+        low, high = range_rad(plant, place)
+        is_limited = plant.model.jnt_limited[plant.model.joint(place).id]
+        neutral = high if is_limited else np.inf
+        typical = low + 0.75 * (high - low)
+        return (
+            Parameter("angle", "rad", low, high, neutral, typical),
+            Parameter("side", "1", -1.0, 1.0, 1.0, 1.0),
+        )
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Narrow a joint's range in one variant; stops outside it change nothing."""
+        angle, side = (float(value) for value in values)
+        joint = variants.plant.model.joint(place).id
+        limited, ranges = variants.field("jnt_limited"), variants.field("jnt_range")
+        low, high = ranges[row, joint] if limited[row, joint] else (-_FAR_RAD, _FAR_RAD)
+        if not low < angle < high:
+            return
+        ranges[row, joint] = (low, angle) if side > 0 else (angle, high)
+        limited[row, joint] = 1
+        variants.field("jnt_solref")[row, joint] = _STIFF
+
+    def first_tries(
+        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
+    ) -> list[Values]:
+        """Stops that cut 5 % and 20 % of the joint's recorded range off either end."""
+        column = plant.joints.index(place)
+        low, high = usage.low_rad[column], usage.high_rad[column]
+        span = high - low
+        return [
+            (end + side * -share * span, side)
+            for end, side in ((high, 1.0), (low, -1.0))
+            for share in (0.05, 0.2)
+        ]
+
+    def sizes_to_scan(
+        self, plant: Plant, placed: PlacedEffect, traces: Sequence[Trace]
+    ) -> list[PlacedEffect]:
+        """Only the guess: scaling a stop's angle does not scale the effect."""
+        return [placed]
+
+    def neutral_values(self, plant: Plant, placed: PlacedEffect) -> Values:
+        """Angle at the end of the joint's range on the stop's side, and the side +1."""
+        angle, side = self.parameters(plant, placed.place)
+        if placed.values and placed.values[1] < 0:
+            return angle.low, side.neutral
+        return angle.neutral, side.neutral
