@@ -48,13 +48,14 @@ def is_number(value: Any) -> bool:
         return False
 
 
-def _is_whole(value: Any) -> bool:
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number; True and False do not count as one."""
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
 _SCALARS: Mapping[type, tuple[str, Callable[[Any], bool]]] = {
     float: ("a finite number", is_number),
-    int: ("a whole number", _is_whole),
+    int: ("a whole number", is_whole),
     str: ("text", lambda value: isinstance(value, str)),
     bool: ("true or false", lambda value: isinstance(value, bool)),
     Path: ("text", lambda value: isinstance(value, str)),

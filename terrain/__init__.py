@@ -10,28 +10,17 @@ Example:
   (161, 241)
 """
 
-from terrain.bumps import Bumps
 from terrain.catalog import configuration, make, names
-from terrain.flat import Flat
-from terrain.ground import Ground
 from terrain.heightfield import Heightfield
 from terrain.lumps import Lumps
-from terrain.slope import Slope
-from terrain.spec import TerrainSpec
-from terrain.stairs import Stairs
-from terrain.text_form import parse
-from terrain.waves import Waves
+from terrain.regular import Flat
+from terrain.spec import TerrainSpec, parse
 
 __all__ = [
-    "Bumps",
     "Flat",
-    "Ground",
     "Heightfield",
     "Lumps",
-    "Slope",
-    "Stairs",
     "TerrainSpec",
-    "Waves",
     "configuration",
     "make",
     "names",

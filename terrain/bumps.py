@@ -1,17 +1,14 @@
 """Terrain: round bumps at random places of flat ground."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
-from terrain.ground import Ground
-from terrain.ladder import Ladder
+from terrain.ground import Ground, Ladder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,21 +30,16 @@ class Bumps(Ground):
       True
     """
 
-    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
-        {
-            "bumps": Ladder(
-                "height",
-                "m",
-                0.016,
-                0.16,
-                lambda height_m, leg_m: {
-                    "height_m": height_m,
-                    "radius_m": 0.32 * leg_m,
-                    "density_per_m2": 2.5 / leg_m**2,
-                },
-            )
-        }
-    )
+    ladders: ClassVar[dict[str, Ladder]] = {
+        "bumps": Ladder(
+            *("height", "m", 0.016, 0.16),
+            lambda height_m, leg_m: {
+                "height_m": height_m,
+                "radius_m": 0.32 * leg_m,
+                "density_per_m2": 2.5 / leg_m**2,
+            },
+        )
+    }
 
     height_m: float = bounded(0.015, 0.0, 0.5)
     radius_m: float = bounded(0.08, 0.01, 10.0)

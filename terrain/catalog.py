@@ -2,31 +2,24 @@
 
 import dataclasses
 from collections.abc import Mapping
-from types import MappingProxyType
 
 from groundwalk.errors import UnknownNameError
 from terrain.bumps import Bumps
-from terrain.flat import Flat
-from terrain.ground import Ground
+from terrain.ground import Ground, Seed
 from terrain.heightfield import Heightfield
 from terrain.lumps import Lumps
-from terrain.seeds import Seed
-from terrain.slope import Slope
-from terrain.stairs import Stairs
-from terrain.waves import Waves
+from terrain.regular import Flat, Slope, Stairs, Waves
 
-FAMILIES: Mapping[str, type[Ground]] = MappingProxyType(
-    {
-        "flat": Flat,
-        "lumps": Lumps,
-        "bumps": Bumps,
-        "slope": Slope,
-        "stairs": Stairs,
-        "waves": Waves,
-    }
-)
+FAMILIES: Mapping[str, type[Ground]] = {
+    "flat": Flat,
+    "lumps": Lumps,
+    "bumps": Bumps,
+    "slope": Slope,
+    "stairs": Stairs,
+    "waves": Waves,
+}
 """Every family of terrain by name, in the order in which terrain-stress lists them. To
-add a family, write its class in a file of its own and add it here."""
+add a family, write its class and add it here."""
 
 
 def names() -> tuple[str, ...]:

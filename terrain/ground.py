@@ -3,9 +3,8 @@
 import dataclasses
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
@@ -14,12 +13,45 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from terrain.bounds import bounded, checked
 from terrain.heightfield import Heightfield
-from terrain.ladder import Ladder
-from terrain.seeds import Seed, generator_of
 
 MOST_SAMPLES = 1_000_000
 """Largest number of height samples of one ground. PyBullet 3.2.7 silently loads nothing
 from 2^21 samples on; half of that keeps a safe distance."""
+
+
+Seed = int | np.random.SeedSequence
+Parameters = Callable[[float, float], Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """A quantity that makes ground hard to walk on, with its mildest and hardest value.
+
+    Attributes:
+      quantity: the quantity's name, such as "step height".
+      unit: the quantity's unit: "m", "rad" or "1".
+      mildest: mildest value; if the unit is "m", as a share of the robot's leg length.
+      hardest: hardest value, given like `mildest`; smaller than it for quantities such
+        as friction.
+      parameters: function of a value of the quantity (SI units) and the robot's leg
+        length [m] that returns the parameters of the terrain.
+    """
+
+    quantity: str
+    unit: str
+    mildest: float
+    hardest: float
+    parameters: Parameters = lambda severity, leg_m: {}
+
+    def severities(self, rungs: int, leg_m: float) -> FloatArray:
+        """(rungs,) values of the quantity in SI units, mildest first, in equal ratios.
+
+        Args:
+          rungs: number of values.
+          leg_m: length of the robot's legs [m].
+        """
+        scale = leg_m if self.unit == "m" else 1.0
+        return np.geomspace(self.mildest * scale, self.hardest * scale, rungs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +79,7 @@ class Ground(ABC):
       (-1.0, 5.0)
     """
 
-    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType({})
+    ladders: ClassVar[dict[str, Ladder]] = {}
 
     x_range_m: tuple[float, float] = bounded((-1.0, 5.0), -1000.0, 1000.0)
     y_range_m: tuple[float, float] = bounded((-2.0, 2.0), -1000.0, 1000.0)
@@ -131,3 +163,17 @@ class Ground(ABC):
         """Number of grid samples, 2 or more, that cover a range [m] along one axis."""
         cells = math.ceil((range_m[1] - range_m[0]) / self.spacing_m - 1e-6)
         return max(cells, 1) + 1
+
+
+def generator_of(seed: Seed) -> np.random.Generator:
+    """Make a PCG64 generator from a seed, which is checked and not changed."""
+    if not isinstance(seed, np.random.SeedSequence):
+        seed = np.random.SeedSequence(checked_seed(seed))
+    return np.random.Generator(np.random.PCG64(seed))
+
+
+def checked_seed(seed: object) -> int:
+    """Convert a seed to an int; BadValueError unless it is a whole number >= 0."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise BadValueError(f"seed must be a whole number of 0 or more, not {seed!r}")
+    return int(seed)

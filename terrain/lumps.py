@@ -1,17 +1,14 @@
 """Terrain: smooth random lumps, like foam under artificial turf."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain.bounds import bounded
-from terrain.ground import Ground
-from terrain.ladder import Ladder
+from terrain.ground import Ground, Ladder
 
 WAVES = 256  # plane waves in the sum; heights are then Gaussian: kurtosis -1.5 / 256
 DEVIATIONS_WITHIN_99_PERCENT = 2.5758293035489004  # +- these hold 99 % of a Gaussian
@@ -43,20 +40,15 @@ class Lumps(Ground):
       >>> ground = Lumps(amplitude_m=0.012).make(seed=7)
     """
 
-    ladders: ClassVar[Mapping[str, Ladder]] = MappingProxyType(
-        {
-            "lumps": Ladder(
-                "amplitude",
-                "m",
-                0.008,
-                0.08,
-                lambda height_m, leg_m: {
-                    "amplitude_m": height_m,
-                    "wavelength_m": 0.8 * leg_m,
-                },
-            )
-        }
-    )
+    ladders: ClassVar[dict[str, Ladder]] = {
+        "lumps": Ladder(
+            *("amplitude", "m", 0.008, 0.08),
+            lambda height_m, leg_m: {
+                "amplitude_m": height_m,
+                "wavelength_m": 0.8 * leg_m,
+            },
+        )
+    }
 
     amplitude_m: float = bounded(0.008, 0.0, 0.5)
     wavelength_m: float = bounded(0.2, 0.01, 100.0)

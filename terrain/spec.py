@@ -1,14 +1,15 @@
-"""Name, parameters and seed of a terrain, from which its ground can be made again."""
+"""A terrain by name, parameters and seed: as a value, in JSON, on a command line."""
 
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from groundwalk.errors import BadValueError
 from groundwalk.json_data import from_plain, to_plain
 from terrain.bounds import Parameter
 from terrain.catalog import configuration
+from terrain.ground import checked_seed
 from terrain.heightfield import Heightfield
-from terrain.seeds import checked_seed
 
 
 @dataclass(frozen=True)
@@ -59,3 +60,47 @@ class TerrainSpec:
           BadValueError: the data has another shape, or holds an impossible value.
         """
         return from_plain(cls, data, "terrain")
+
+
+def parse(text: str) -> tuple[str, dict[str, Parameter]]:
+    """Read a terrain such as `lumps:amplitude_m=0.012,x_range_m=-1:8`.
+
+    Args:
+      text: a name, or a name, a colon and parameters separated by commas; the two
+        ends of a range are separated by a colon.
+
+    Returns:
+      The name and the parameters in the text, for `terrain.make` and `TerrainSpec`.
+
+    Raises:
+      UnknownNameError: there is no such terrain, or it has no such parameter.
+      BadValueError: the text has another form, or holds an impossible value.
+
+    Example:
+      >>> terrain.parse("stairs:steps=3")
+      ('stairs', {'steps': 3})
+    """
+    name, colon, rest = text.partition(":")
+    parameters: dict[str, Parameter] = {}
+    for item in rest.split(",") if colon else ():
+        parameter, equals, value = item.partition("=")
+        if not equals:
+            raise BadValueError(f"{item!r} in terrain {text!r} must be parameter=value")
+        if parameter in parameters:
+            raise BadValueError(f"{parameter} is given twice in terrain {text!r}")
+        parameters[parameter] = _value(parameter, value)
+    configuration(name, **parameters)
+    return name, parameters
+
+
+def _value(parameter: str, text: str) -> Parameter:
+    """Read a parameter's value: a whole number, a number, or a range low:high."""
+    try:
+        if ":" in text:
+            low, high = text.split(":")
+            return float(low), float(high)
+        return int(text) if text.lstrip("+-").isdecimal() else float(text)
+    except ValueError:
+        raise BadValueError(
+            f"{parameter} must be a number or low:high, not {text!r}"
+        ) from None

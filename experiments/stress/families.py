@@ -14,7 +14,7 @@ from groundwalk.errors import UnknownNameError
 from robots import Description, biped
 from terrain import TerrainSpec
 from terrain.catalog import FAMILIES as GROUNDS
-from terrain.ladder import Ladder
+from terrain.ground import Ladder
 from worlds import WorldOptions
 
 FLAT = "flat"

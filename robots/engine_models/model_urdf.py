@@ -3,20 +3,25 @@
 Only moving bodies become links, because PyBullet would give a massless link 1 kg.
 """
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
-from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
+from robots.engine_models.urdf_elements import (
+    add_hinge,
+    add_link,
+    add_sphere,
+    numbers,
+    text_of,
+)
 from robots.rigid_body import Inertial
 
 if TYPE_CHECKING:
     import mujoco
 
 BASE = "base"
-Element = ElementTree.Element
 _LIMIT_RAD_S = "100"
 
 
@@ -41,7 +46,7 @@ def model_urdf(
     robot = Element("robot", name=name)
     root = free_body(model)
     if root is None:
-        ElementTree.SubElement(robot, "link", name=BASE)
+        SubElement(robot, "link", name=BASE)
     else:
         _add_link(robot, model, root, _inertial(model, root))
     for joint in hinges(model):
@@ -50,8 +55,7 @@ def model_urdf(
         _add_link(robot, model, body, inertial)
     for joint in hinges(model):
         _add_joint(robot, model, data, joint, effort_nm)
-    ElementTree.indent(robot)
-    return ElementTree.tostring(robot, encoding="unicode") + "\n"
+    return text_of(robot, declared=False)
 
 
 def free_body(model: "mujoco.MjModel") -> int | None:
@@ -82,35 +86,17 @@ def _matrix(quaternion: FloatArray) -> FloatArray:
     return flat.reshape(3, 3)
 
 
-def _numbers(values: Iterable[float]) -> str:
-    return " ".join(repr(float(value)) for value in values)
-
-
 def _add_link(
     robot: Element, model: "mujoco.MjModel", body: int, inertial: Inertial
 ) -> None:
     import mujoco
 
-    link = ElementTree.SubElement(robot, "link", name=model.body(body).name)
-    element = ElementTree.SubElement(link, "inertial")
-    place = _numbers(inertial.com_m)
-    ElementTree.SubElement(element, "origin", xyz=place, rpy="0 0 0")
-    ElementTree.SubElement(element, "mass", value=repr(inertial.mass_kg))
-    names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-    moments = inertial.inertia_kg_m2[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    values = dict(zip(names, map(repr, moments.tolist()), strict=True))
-    ElementTree.SubElement(element, "inertia", values)
-    for geom in np.flatnonzero(model.geom_bodyid == body):
-        if model.geom_contype[geom] == 0:
-            continue
-        if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_SPHERE:
-            continue
-        shape = ElementTree.SubElement(link, "collision")
-        place = _numbers(model.geom_pos[geom])
-        ElementTree.SubElement(shape, "origin", xyz=place, rpy="0 0 0")
-        geometry = ElementTree.SubElement(shape, "geometry")
-        radius = repr(float(model.geom_size[geom, 0]))
-        ElementTree.SubElement(geometry, "sphere", radius=radius)
+    link = add_link(robot, model.body(body).name, inertial)
+    is_sphere = model.geom_type == mujoco.mjtGeom.mjGEOM_SPHERE
+    of_body = (model.geom_bodyid == body) & (model.geom_contype != 0) & is_sphere
+    for geom in np.flatnonzero(of_body):
+        radius_m = float(model.geom_size[geom, 0])
+        add_sphere(link, "collision", model.geom_pos[geom], radius_m)
 
 
 def _add_joint(
@@ -123,29 +109,15 @@ def _add_joint(
     body = int(model.jnt_bodyid[joint])
     parent = int(model.body_parentid[body])
     place, turn = model.body_pos[body], _matrix(model.body_quat[body])
-    moves = model.body_weldid[parent] != 0
-    if not moves:
-        world = data.xmat[parent].reshape(3, 3)
+    above = model.body(parent).name
+    if model.body_weldid[parent] == 0:
+        above, world = BASE, data.xmat[parent].reshape(3, 3)
         place, turn = data.xpos[parent] + world @ place, world @ turn
-    element = ElementTree.SubElement(
-        robot, "joint", name=model.joint(joint).name, type="revolute"
-    )
-    above = model.body(parent).name if moves else BASE
-    ElementTree.SubElement(element, "parent", link=above)
-    ElementTree.SubElement(element, "child", link=model.body(body).name)
-    ElementTree.SubElement(
-        element, "origin", xyz=_numbers(place), rpy=_numbers(_roll_pitch_yaw(turn))
-    )
-    ElementTree.SubElement(element, "axis", xyz=_numbers(model.jnt_axis[joint]))
+    names = model.joint(joint).name, above, model.body(body).name
     lower, upper = model.jnt_range[joint].tolist()
-    ElementTree.SubElement(
-        element,
-        "limit",
-        lower=repr(lower),
-        upper=repr(upper),
-        effort=repr(effort_nm),
-        velocity=_LIMIT_RAD_S,
-    )
+    limit = lower, upper, repr(effort_nm), _LIMIT_RAD_S
+    rpy = numbers(_roll_pitch_yaw(turn))
+    add_hinge(robot, names, place, rpy, model.jnt_axis[joint], limit)
 
 
 def _roll_pitch_yaw(turn: FloatArray) -> tuple[float, float, float]:

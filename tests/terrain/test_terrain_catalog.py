@@ -4,6 +4,7 @@ import pytest
 
 import terrain
 from groundwalk.errors import BadValueError, UnknownNameError
+from terrain import ground
 from terrain.catalog import FAMILIES
 
 
@@ -63,6 +64,6 @@ def test_bad_values_are_named():
 @pytest.mark.parametrize("name", terrain.names())
 def test_every_parameter_is_documented(name):
     family = type(terrain.configuration(name))
-    told = (family.__doc__ or "") + (terrain.Ground.__doc__ or "")
+    told = (family.__doc__ or "") + (ground.Ground.__doc__ or "")
     for field in dataclasses.fields(family):
         assert f"{field.name}:" in told
