@@ -15,7 +15,7 @@ from diagnosis.residuals.channels import Channels, shared_channels
 from diagnosis.traces.pulses import pulses_of, without_pulses
 from diagnosis.traces.stalls import said_of_stalls, steady
 from diagnosis.traces.trace import DriveBy, Trace, driven_by_torques
-from diagnosis.verdict.verdict import Pulse
+from diagnosis.verdict import Pulse
 from groundwalk.errors import BadRecordingError
 
 

@@ -44,7 +44,7 @@ from diagnosis.search.result import SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict.verdict import Amount, Fit, PlacedEffect, Verdict, VerdictKind
+from diagnosis.verdict import Amount, Fit, PlacedEffect, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 
 MORE_FLOATING = 4

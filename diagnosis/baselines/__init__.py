@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from diagnosis.baselines import bic, sparse, sysid
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.verdict import Verdict
 
 __all__ = ["BASELINES"]
 

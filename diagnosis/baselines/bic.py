@@ -13,7 +13,7 @@ from diagnosis.search.screening import Screen
 from diagnosis.search.signatures import signatures
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
-from diagnosis.verdict.verdict import Recordings, Verdict
+from diagnosis.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray
 
 CANDIDATES = 8

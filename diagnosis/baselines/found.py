@@ -8,7 +8,7 @@ from scipy.stats import norm
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.verdict.verdict import Estimate, Found
+from diagnosis.verdict import Estimate, Found
 
 NORMAL_80 = float(norm.ppf(0.9))
 """Half width of an 80 % interval of a normal distribution, in standard deviations."""

@@ -12,7 +12,7 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Recordings, Verdict
+from diagnosis.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray, IntArray
 
 THRESHOLD = 0.1

@@ -26,7 +26,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import WARM_UP_S
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Recordings, Verdict
+from diagnosis.verdict import Recordings, Verdict
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
 

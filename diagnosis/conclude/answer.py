@@ -12,7 +12,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict.verdict import Found, VerdictKind, When
+from diagnosis.verdict import Found, VerdictKind, When
 
 LEAST_CLOSED = 0.95
 """Share of the nominal sim's energy (half the sum of squared residuals) above the noise

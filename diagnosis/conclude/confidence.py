@@ -6,7 +6,7 @@ from diagnosis.effects.library import effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict.verdict import VerdictKind
+from diagnosis.verdict import VerdictKind
 
 TIED_NATS = 10.0
 """Models that are less plausible than the best one by at most this [nats] may be the

@@ -8,7 +8,7 @@ from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import Coordinates
 from diagnosis.search.signatures import Signature
-from diagnosis.verdict.verdict import Amount
+from diagnosis.verdict import Amount
 
 
 def smallest_detectable(

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
-from diagnosis.verdict.verdict import Estimate
+from diagnosis.verdict import Estimate
 from groundwalk.arrays import FloatArray, IntArray
 
 Z_80 = 1.2815515655446004

@@ -8,7 +8,7 @@ from diagnosis.conclude.flexible_regression import flexible_regression_errors
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict.verdict import ChannelFit, Fit
+from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
 
 SURPRISE = 2.0

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.verdict.verdict import Fit
+from diagnosis.verdict import Fit
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 

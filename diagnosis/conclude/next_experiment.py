@@ -13,7 +13,7 @@ from diagnosis.search.result import SearchResult
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.traces.windows import Run
-from diagnosis.verdict.verdict import NextExperiment
+from diagnosis.verdict import NextExperiment
 from groundwalk.arrays import FloatArray
 
 DURATION_S = 6.0

@@ -21,7 +21,7 @@ from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
-from diagnosis.verdict.verdict import When
+from diagnosis.verdict import When
 from groundwalk.arrays import FloatArray
 
 STRETCHES = (0.4, 1.0, 2.5)

@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from diagnosis.verdict.parts import PlacedEffect as PlacedEffect
+from diagnosis.verdict import PlacedEffect as PlacedEffect
 from groundwalk.arrays import FloatArray
 
 PlaceKind = Literal[

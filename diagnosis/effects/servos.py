@@ -19,7 +19,7 @@ from diagnosis.effects.scales import speed_rad_s, torque_nm
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
-from diagnosis.verdict.verdict import When
+from diagnosis.verdict import When
 from groundwalk.arrays import FloatArray
 
 WEAKER = (0.65, 0.8, 0.9, 0.96)

@@ -10,7 +10,7 @@ from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.traces.shorten import LEAST_FLOATING_S, LEAST_S, shortened
 from diagnosis.traces.split import Split, split
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Recordings
+from diagnosis.verdict import Recordings
 from groundwalk.errors import BadRecordingError
 
 TOO_SHORT = (

@@ -8,7 +8,7 @@ from diagnosis.residuals.bursts import bursts_of
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.smoothing import moving_mean
-from diagnosis.verdict.verdict import MismatchCell
+from diagnosis.verdict import MismatchCell
 from groundwalk.arrays import BoolArray, FloatArray
 
 FAST, SLOW = 0.7, 0.2

@@ -5,7 +5,7 @@ import numpy as np
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.smoothing import moving_mean
-from diagnosis.verdict.verdict import Unexplained
+from diagnosis.verdict import Unexplained
 from groundwalk.arrays import FloatArray
 
 BINS = 16

@@ -12,7 +12,7 @@ from diagnosis.plant.inverse_dynamics import inverse_dynamics
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.smoothing import smooth
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.parts import PulseSource
+from diagnosis.verdict import PulseSource
 from groundwalk.arrays import BoolArray, FloatArray
 
 Stretch = tuple[int, int]

@@ -22,7 +22,7 @@ from diagnosis.traces.pulse_sources import (
 )
 from diagnosis.traces.smoothing import smooth
 from diagnosis.traces.trace import Trace, filled, stretches
-from diagnosis.verdict.parts import Pulse
+from diagnosis.verdict import Pulse
 from groundwalk.arrays import FloatArray
 
 FILTER_S = 0.01

@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from diagnosis.verdict.errors import ChannelFit, Errors, Fit
+from diagnosis.verdict.errors import Fit
 from diagnosis.verdict.parts import (
     Amount,
-    Estimate,
     Found,
     MismatchCell,
     NextExperiment,
@@ -16,28 +15,9 @@ from diagnosis.verdict.parts import (
     Pulse,
     Recordings,
     Unexplained,
-    When,
 )
 from groundwalk.errors import BadValueError
 from groundwalk.json_data import check_number, from_plain, parse_object, to_plain
-
-__all__ = [
-    "Amount",
-    "ChannelFit",
-    "Errors",
-    "Estimate",
-    "Fit",
-    "Found",
-    "MismatchCell",
-    "NextExperiment",
-    "PlacedEffect",
-    "Pulse",
-    "Recordings",
-    "Unexplained",
-    "Verdict",
-    "VerdictKind",
-    "When",
-]
 
 FORMAT = 1
 VerdictKind = Literal["effects", "none", "unknown", "not_identifiable"]

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 import tyro
 
 from diagnosis import Verdict
-from diagnosis.verdict.verdict import Found
+from diagnosis.verdict import Found
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, CASES
 from experiments.concealed.scoring.figure import draw_score

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from diagnosis import PlacedEffect, Verdict
-from diagnosis.verdict.verdict import Fit, Found
+from diagnosis.verdict import Fit, Found
 from experiments.diagnosis_report.findings import (
     at_many,
     parameter_rows,

@@ -9,7 +9,7 @@ from diagnosis.conclude.held_out_series import (
     HeldOutSeries,
     rms,
 )
-from diagnosis.verdict.verdict import Fit, Unexplained
+from diagnosis.verdict import Fit, Unexplained
 from experiments.diagnosis_report.figure_style import (
     CONTROL,
     CORRECTED,

@@ -7,7 +7,7 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from diagnosis.effects import effect as kind_of
-from diagnosis.verdict.verdict import Found, Pulse
+from diagnosis.verdict import Found, Pulse
 from experiments.diagnosis_report.numbers import estimate_text, percent
 from experiments.diagnosis_report.place_words import place_words
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.verdict.verdict import MismatchCell
+from diagnosis.verdict import MismatchCell
 from experiments.diagnosis_report.figure_style import (
     FAINT,
     REAL,

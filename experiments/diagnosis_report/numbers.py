@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from diagnosis.verdict.verdict import Amount, Estimate
+from diagnosis.verdict import Amount, Estimate
 
 DASH = "\N{EN DASH}"
 

@@ -21,7 +21,7 @@ from diagnosis.conclude.held_out_series import (
     HeldOutSeries,
     by_error,
 )
-from diagnosis.verdict.verdict import Fit
+from diagnosis.verdict import Fit
 from experiments.diagnosis_report.numbers import error_unit, unit_text
 from experiments.seeing.scenes import scene_names
 from robots.description import Description

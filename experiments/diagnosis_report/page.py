@@ -14,7 +14,7 @@ from diagnosis.residuals.channels import (
     LEAST_RATE_RAD_S,
     LEAST_TORQUE,
 )
-from diagnosis.verdict.verdict import Errors, Fit, Found
+from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
     View,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from diagnosis import PlacedEffect
 from diagnosis.effects import effect as kind_of
-from diagnosis.verdict.verdict import Found
+from diagnosis.verdict import Found
 from worlds.recordings.columns import JOINT_QUANTITIES
 
 _SIDED = re.compile(r"([LR])([A-Z][a-z]+(?:[A-Z][a-z]+)*)")

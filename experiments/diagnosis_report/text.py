@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from diagnosis import Verdict
-from diagnosis.verdict.verdict import Fit
+from diagnosis.verdict import Fit
 from experiments.diagnosis_report.findings import findings, pulse_sentences
 from experiments.diagnosis_report.numbers import error_unit, errors_text, percent
 from experiments.diagnosis_report.place_words import (

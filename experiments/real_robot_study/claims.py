@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from diagnosis import Verdict
-from diagnosis.verdict.verdict import Estimate, Pulse
+from diagnosis.verdict import Estimate, Pulse
 from experiments.diagnosis_report.findings import pulse_sentences
 from experiments.diagnosis_report.numbers import estimate_text
 from experiments.real_robot_study.cases import Published, RealRobot

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from diagnosis import Verdict
-from diagnosis.verdict.verdict import Found
+from diagnosis.verdict import Found
 from experiments.diagnosis_report.numbers import estimate_text, percent
 from experiments.diagnosis_report.text import answer, badge, next_step
 from experiments.real_robot_study.cases import RealRobot

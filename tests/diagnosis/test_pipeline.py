@@ -10,7 +10,7 @@ from known_arms import LEAN, NOISE_RAD, measured
 from made_up_traces import arm, arm_command
 
 from diagnosis.pipeline import diagnose
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.verdict import Verdict
 from groundwalk.errors import BadRecordingError
 
 SEED = np.random.SeedSequence(0)

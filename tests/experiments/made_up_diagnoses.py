@@ -3,7 +3,7 @@
 import numpy as np
 
 from diagnosis.conclude.held_out_series import ChannelSeries, HeldOutSeries
-from diagnosis.verdict.verdict import (
+from diagnosis.verdict import (
     Amount,
     ChannelFit,
     Estimate,

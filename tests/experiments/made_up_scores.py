@@ -1,6 +1,6 @@
 """Made-up truths, answers and oracles of concealed cases."""
 
-from diagnosis.verdict.verdict import (
+from diagnosis.verdict import (
     Estimate,
     Found,
     PlacedEffect,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.verdict import Verdict
 from experiments.diagnose import Diagnose, main
 from experiments.record import Record
 from experiments.record import main as record

@@ -4,7 +4,7 @@ import pytest
 from made_up_diagnoses import KINDS
 
 from diagnosis.effects import all_effects
-from diagnosis.verdict.verdict import Estimate, Found, Pulse, Recordings
+from diagnosis.verdict import Estimate, Found, Pulse, Recordings
 from experiments import real_robots
 from experiments.diagnosis_report.console import console_lines
 from experiments.diagnosis_report.text import answer

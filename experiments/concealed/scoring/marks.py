@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from diagnosis.effects import all_effects
-from diagnosis.verdict.verdict import Found, Verdict
+from diagnosis.verdict import Found, Verdict
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase
 from worlds.hidden.effects import Hidden

@@ -15,7 +15,7 @@ import numpy as np
 from diagnosis.conclude.oracle import fit_structure
 from diagnosis.effects import PlacedEffect, all_effects, effect
 from diagnosis.plant.plant import Plant
-from diagnosis.verdict.verdict import Found
+from diagnosis.verdict import Found
 from experiments.concealed.reading import read_case
 from experiments.concealed.scoring.truth import TrueCase
 from experiments.concealed.size_by_information import level_of

@@ -18,7 +18,7 @@ from diagnosis.plant.load import load_plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Estimate, Verdict
+from diagnosis.verdict import Estimate, Verdict
 from groundwalk.errors import GroundwalkError
 from worlds.recordings.metadata import ServoGains
 

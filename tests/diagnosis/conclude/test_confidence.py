@@ -12,7 +12,7 @@ from diagnosis.conclude.confidence import (
     probability,
 )
 from diagnosis.search.result import VALUE_NATS, SearchResult
-from diagnosis.verdict.verdict import PlacedEffect
+from diagnosis.verdict import PlacedEffect
 
 ARM = arm()
 VISCOUS, COULOMB = "viscous_friction@elbow", "coulomb_friction@elbow"

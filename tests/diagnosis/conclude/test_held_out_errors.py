@@ -8,7 +8,7 @@ from diagnosis.conclude.held_out_errors import (
     larger_than_learned,
     model_refuted,
 )
-from diagnosis.verdict.verdict import ChannelFit, Fit
+from diagnosis.verdict import ChannelFit, Fit
 
 CHANNELS = SimpleNamespace(names=("position.a", "position.b"))
 LEARNED = SimpleNamespace(

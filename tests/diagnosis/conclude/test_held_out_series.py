@@ -7,7 +7,7 @@ from diagnosis.conclude.held_out_series import (
     by_error,
     rms,
 )
-from diagnosis.verdict.verdict import ChannelFit, Fit
+from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.errors import BadValueError
 
 

@@ -7,7 +7,7 @@ import pytest
 from diagnosis.corrected.effects_json import Correction, load_correction
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
-from diagnosis.verdict.verdict import Estimate, Found, Verdict
+from diagnosis.verdict import Estimate, Found, Verdict
 from groundwalk.errors import BadModelError, GroundwalkError, UnknownNameError
 
 KNEE = "LKneePitch"

@@ -22,7 +22,7 @@ from diagnosis.effects import (
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.judging import Judge
 from diagnosis.search.search import Search
-from diagnosis.verdict.verdict import Estimate, Found
+from diagnosis.verdict import Estimate, Found
 from experiments.diagnosis_report.findings import finding
 
 PLANT = arm()

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.verdict import verdict as verdicts
-from diagnosis.verdict.verdict import (
+from diagnosis import verdict as verdicts
+from diagnosis.verdict import (
     Amount,
     ChannelFit,
     Estimate,

@@ -7,7 +7,7 @@ import pytest
 from diagnosis.plant.servo import Servo
 from diagnosis.traces.split import split
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.verdict import Verdict
 from experiments.concealed import run as concealed_run
 from experiments.concealed.run import ConcealedRun, answer_all, main
 from experiments.concealed.scoring.truth import read_baselines

@@ -17,7 +17,7 @@ from made_up_scores import (
     single,
 )
 
-from diagnosis.verdict.verdict import Estimate, Fit, Found, PlacedEffect, Verdict
+from diagnosis.verdict import Estimate, Fit, Found, PlacedEffect, Verdict
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.reports.statistics import wilson
 from worlds.hidden.effects import Hidden

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from diagnosis.verdict.verdict import Estimate, Found
+from diagnosis.verdict import Estimate, Found
 from experiments.concealed.reading import read_case
 from experiments.concealed.scoring.oracle import (
     Oracle,

@@ -4,7 +4,7 @@ from pathlib import Path
 import made_up_diagnoses as made_up
 import pytest
 
-from diagnosis.verdict.verdict import Verdict
+from diagnosis.verdict import Verdict
 from experiments.diagnosis_report.console import console_lines, print_verdict
 
 FILES = [Path("out/report.html"), Path("out/diagnosis.json"), Path("out/overlay.rrd")]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from html_page import Page
 
-from diagnosis.verdict.verdict import (
+from diagnosis.verdict import (
     ChannelFit,
     Estimate,
     Fit,

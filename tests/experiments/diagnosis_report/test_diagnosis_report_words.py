@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnosis.effects import all_effects, effect
-from diagnosis.verdict.verdict import (
+from diagnosis.verdict import (
     Amount,
     Estimate,
     Found,
