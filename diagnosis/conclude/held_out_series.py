@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from diagnosis.residuals.channels import measured_of
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.verdict import Fit
 from groundwalk.arrays import FloatArray
@@ -75,7 +76,7 @@ def held_out_series(
     names = corrected.channels.names
     series = []
     for k, trace in enumerate(corrected.traces):
-        real = corrected.measured(k)
+        real = measured_of(trace, corrected.channels)
         channels = {
             name: ChannelSeries(real[:, i], sim[k][:, i], after[k][:, i])
             for i, name in enumerate(names)

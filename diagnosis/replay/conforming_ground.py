@@ -93,7 +93,7 @@ def _above(
 
 
 def _stands(runs: Sequence[Run], lowest: FloatArray) -> BoolArray:
-    """(N, feet) whether a foot carries the robot, from heights `lowest` (N, feet) [m]."""
+    """(N, feet) whether a foot carries the robot, from (N, feet) heights `lowest`."""
     found = lowest - lowest.min(axis=1, keepdims=True) <= ABOVE_M
     for row, run in enumerate(runs):
         force = run.trace.foot_force_n

@@ -167,7 +167,7 @@ class BatchLaws:
         return self._qpos[:, self._columns], self._qvel[:, self._dofs]
 
     def encoder_rad(self) -> FloatArray:
-        """(n R, j) angles [rad] of joints, or motors at elastic joints, without offset."""
+        """(n R, j) angles [rad] of joints, or of motors of elastic joints; no offset."""
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 

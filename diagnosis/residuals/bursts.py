@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.trace import stretches
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 BIN_S = 0.05
 """Length of the bins [s] in which squared residuals are summed to find bursts."""
@@ -50,40 +50,25 @@ MEDIAN_OF_NORMAL = 0.6744897501960817
 """Median of the absolute value of a standard normal variable."""
 
 
-def bursts(predictor: Predictor, residual: FloatArray) -> list[tuple[float, float]]:
+def bursts(
+    predictor: Predictor, residual: FloatArray, channel: int | None = None
+) -> list[tuple[float, float]]:
     """Start and end [s] of the strongest bursts of error, at most three.
 
-    Squared residuals of all channels are summed in bins of 50 ms. Neighbouring bins
-    with much more than the median form one burst. An error that is present all the
-    time, or at every motion, raises the median and is no burst.
+    Squared residuals are summed in bins of 50 ms. Neighbouring bins with much more than
+    the median form one burst. An error that is present all the time, or at every
+    motion, raises the median and is no burst.
 
     Args:
       predictor: the predictor that computed `residual`.
       residual: (N,) in units of noise.
+      channel: index of the only channel to look at; None for all channels together.
     """
-    return _strongest(predictor, residual, np.ones(len(residual), bool))
-
-
-def bursts_of(
-    predictor: Predictor, residual: FloatArray, channel: int
-) -> tuple[tuple[float, float], ...]:
-    """Start and end [s] of one channel's strongest bursts of error, in order of time.
-
-    Args:
-      predictor: the predictor that computed `residual`.
-      residual: (N,) in units of noise.
-      channel: index of the channel.
-    """
-    return tuple(sorted(_strongest(predictor, residual, predictor.channel == channel)))
-
-
-def _strongest(
-    predictor: Predictor, residual: FloatArray, chosen: BoolArray
-) -> list[tuple[float, float]]:
-    """Start and end [s] of the strongest bursts in chosen entries of a residual."""
     found: list[tuple[float, float, float]] = []
     for number, trace in enumerate(predictor.traces):
-        rows = (predictor.trace == number) & chosen
+        rows = predictor.trace == number
+        if channel is not None:
+            rows &= predictor.channel == channel
         bins = ((trace.time_s - trace.time_s[0]) / BIN_S).astype(int)
         bins = np.repeat(bins, int(rows.sum()) // trace.ticks)
         energy = np.bincount(bins, residual[rows] ** 2)
@@ -122,14 +107,11 @@ def push_intervals(
 def faint_pushes(
     predictor: Predictor, residual: FloatArray
 ) -> list[tuple[float, float]]:
-    """Windows in which a faint push may have acted, from an (N,) residual [noise].
+    """Windows in which a faint push may have acted: start and end [s], surest first.
 
     There is at most one window of each length (0.1, 0.25, 0.5 s): that with the most
-    significant mean error. A mean error that all windows have, such as that of an
-    unmodelled payload, is ignored.
-
-    Returns:
-      Start and end [s] of each window, the most significant first.
+    significant mean error in an (N,) residual [noise]. A mean error that all windows
+    have, such as that of an unmodelled payload, is ignored.
     """
     c = len(predictor.channels.names)
     own = [
@@ -150,13 +132,8 @@ def _most_biased(
 ) -> tuple[float, float, float]:
     """Find the window of a recording whose mean error differs most from zero.
 
-    Args:
-      time_s: (T,) times of the rows.
-      residual: (T, c) residuals of c channels, in units of noise.
-      window_s: length of the window.
-
-    Returns:
-      The difference in standard deviations, and the window's start and end [s].
+    `residual` (T, c) is in units of noise. Returns the difference in standard
+    deviations, and the window's start and end [s].
     """
     rows = max(int(np.searchsorted(time_s, time_s[0] + window_s)), 1)
     if rows >= len(time_s):

@@ -62,7 +62,8 @@ def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
     least = [LEAST_NOISE_RAD] * len(names)
     if all(trace.torque_nm is not None and not trace.unheld for trace in traces):
         names += [f"torque.{joint}" for joint in plant.joints]
-        least += [LEAST_TORQUE * size for size in _torques(traces)]
+        every = np.concatenate([t.torque_nm for t in traces if t.torque_nm is not None])
+        least += (LEAST_TORQUE * np.sqrt(np.nanmean(every**2, axis=0))).tolist()
     if all(trace.gyroscope_rad_s is not None for trace in traces):
         names += [f"gyroscope.{axis}" for axis in "xyz"]
         least += [LEAST_RATE_RAD_S] * 3
@@ -71,21 +72,12 @@ def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
         names += [f"base.{angle}" for angle in ("roll", "pitch", "yaw")]
         least += [LEAST_NOISE_M] * 3 + [LEAST_NOISE_RAD] * 3
     bare = Channels(tuple(names), np.ones(len(names)))
-    found = np.array([_noise(trace, bare) for trace in traces])
+    found = [
+        [noise_of(trace.time_s, one).total for one in measured_of(trace, bare).T]
+        for trace in traces
+    ]
     noise = np.maximum(np.median(found, axis=0), least)
     return Channels(tuple(names), np.where(noise > 0, noise, 1.0))
-
-
-def _torques(traces: Sequence[Trace]) -> FloatArray:
-    """(j,) rms of the measured torques [N m]."""
-    every = np.concatenate([t.torque_nm for t in traces if t.torque_nm is not None])
-    return np.asarray(np.sqrt(np.nanmean(every**2, axis=0)))
-
-
-def _noise(trace: Trace, channels: Channels) -> FloatArray:
-    """(c,) standard deviation of the noise in each channel of a recording."""
-    measured = measured_of(trace, channels)
-    return np.array([noise_of(trace.time_s, column).total for column in measured.T])
 
 
 def measured_of(trace: Trace, channels: Channels) -> FloatArray:

@@ -78,23 +78,14 @@ class DataSets:
         """
         parts = affordable(plant, split(traces))
         every = [*parts.fit, *parts.select, *parts.test]
-        whole = Predictor(
-            plant, every, channels, threads=threads, noise=noise, on_replay=on_replay
-        )
-        whole = _exact(whole)
+        options = None, threads, noise, on_replay
+        whole = _exact(Predictor(plant, every, channels, *options))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
-        evidence = cls(
-            parts,
-            fit=whole.part(0, first),
-            select=whole.part(first, last),
-            learned=whole.part(0, last),
-            test=whole.part(last, len(every)),
-            _whole=whole,
-        )
-        needed = evidence.fit, evidence.select, evidence.test
-        if not all(part.scored.any() for part in needed):
+        fit, select = whole.part(0, first), whole.part(first, last)
+        learned, test = whole.part(0, last), whole.part(last, len(every))
+        if not all(part.scored.any() for part in (fit, select, test)):
             raise BadRecordingError(TOO_SHORT)
-        return evidence
+        return cls(parts, fit, select, learned, test, whole)
 
     def calibrated(self, model: Model) -> tuple[Predictor, Predictor]:
         """Predictors of `learned` and of `test` data, calibrated at another model."""
@@ -104,8 +95,8 @@ class DataSets:
 
     def recordings(self) -> Recordings:
         """Names of the recordings, or of parts of them, by their use."""
-        parts = self.parts
-        return Recordings(_names(parts.fit), _names(parts.select), _names(parts.test))
+        uses = self.parts.fit, self.parts.select, self.parts.test
+        return Recordings(*(tuple(trace.name for trace in use) for use in uses))
 
 
 def _exact(whole: Predictor, model: Model = ()) -> Predictor:
@@ -124,18 +115,9 @@ def affordable(plant: Plant, parts: Split) -> Split:
     The limits are lower for a floating base.
     """
     floats = plant.base == "floating"
-    longest_s = FLOATING_S if floats else (FIT_S, SELECT_S, TEST_S)
+    most_s = FLOATING_S if floats else (FIT_S, SELECT_S, TEST_S)
     least_s = LEAST_FLOATING_S if floats else LEAST_S
+    uses = zip((parts.fit, parts.select, parts.test), most_s, strict=True)
     return Split(
-        *(
-            tuple(shortened(some, most_s, least_s))
-            for some, most_s in zip(
-                (parts.fit, parts.select, parts.test), longest_s, strict=True
-            )
-        )
+        *(tuple(shortened(use, longest_s, least_s)) for use, longest_s in uses)
     )
-
-
-def _names(traces: Sequence[Trace]) -> tuple[str, ...]:
-    """The names of some traces."""
-    return tuple(trace.name for trace in traces)

@@ -5,7 +5,6 @@ missing physics at an elbow, only that arm needs to be simulated, which is faste
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from diagnosis.effects.parts import PlacedEffect
@@ -69,7 +68,7 @@ def _joint_of(channel: str) -> str | None:
 
 def limbs_of(plant: Plant) -> tuple[Limb, ...]:
     """The limbs of a robot model; the whole model if its parts influence each other."""
-    parts = _Trees(plant.model).parts if plant.base == "fixed" else []
+    parts = _coupled_trees(plant.model) if plant.base == "fixed" else []
     if not parts:
         return (Limb(plant, tuple(range(len(plant.joints))), True, frozenset()),)
     plants = [_with_trees(plant, part) for part in parts]
@@ -85,42 +84,24 @@ def limbs_of(plant: Plant) -> tuple[Limb, ...]:
     )
 
 
-class _Trees:
-    """MuJoCo's kinematic trees of a model, grouped by constraints that couple them."""
+def _coupled_trees(model: "mujoco.MjModel") -> list[set[int]]:
+    """Sets of kinematic trees that constraints couple; empty if contacts may, too."""
+    import mujoco
 
-    def __init__(self, model: "mujoco.MjModel") -> None:
-        self._model = model
-
-    @cached_property
-    def parts(self) -> list[set[int]]:
-        """Sets of coupled trees (indices); empty if contacts or tendons couple any."""
-        import mujoco
-
-        model = self._model
-        touchable = model.geom_contype.any() and model.geom_conaffinity.any()
-        off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONTACT
-        if (touchable and not off) or model.ntendon or model.nflex:
-            return []
-        parts = [{tree} for tree in range(model.ntree)]
-        for tied in self._tied():
-            touched = [part for part in parts if part & tied]
-            rest = [part for part in parts if not part & tied]
-            parts = [*rest, set().union(*touched)] if touched else rest
-        return sorted(parts, key=min)
-
-    def _tied(self) -> list[set[int]]:
-        """For each equality constraint, the indices of the trees that it couples."""
-        import mujoco
-
-        model, ties = self._model, []
-        for i in range(model.neq):
-            ends = [e for e in (model.eq_obj1id[i], model.eq_obj2id[i]) if e >= 0]
-            if model.eq_type[i] == mujoco.mjtEq.mjEQ_JOINT:
-                trees = [int(model.dof_treeid[model.jnt_dofadr[e]]) for e in ends]
-            else:
-                trees = list(range(model.ntree))
-            ties.append({tree for tree in trees if tree >= 0})
-        return ties
+    touchable = model.geom_contype.any() and model.geom_conaffinity.any()
+    off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONTACT
+    if (touchable and not off) or model.ntendon or model.nflex:
+        return []
+    parts = [{tree} for tree in range(model.ntree)]
+    for i in range(model.neq):
+        ends = [e for e in (model.eq_obj1id[i], model.eq_obj2id[i]) if e >= 0]
+        tied = set(range(model.ntree))
+        if model.eq_type[i] == mujoco.mjtEq.mjEQ_JOINT:
+            tied = {int(model.dof_treeid[model.jnt_dofadr[e]]) for e in ends}
+        touched = [part for part in parts if part & tied]
+        rest = [part for part in parts if not part & tied]
+        parts = [*rest, set().union(*touched)] if touched else rest
+    return sorted(parts, key=min)
 
 
 def _with_trees(plant: Plant, kept: set[int]) -> Plant:

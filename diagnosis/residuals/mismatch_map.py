@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from diagnosis.residuals.bursts import bursts_of
+from diagnosis.residuals.bursts import bursts
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.smoothing import moving_mean
@@ -36,10 +36,8 @@ def mismatch_map(
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
     energy = np.maximum(energy, 0.0)
     total = max(float(energy.sum()), 1e-12)
-    cells = [
-        _cell(predictor, residual, i, float(energy[i]) / total)
-        for i in range(len(energy))
-    ]
+    shares = [float(each) / total for each in energy]
+    cells = [_cell(predictor, residual, i, share) for i, share in enumerate(shares)]
     return tuple(sorted(cells, key=lambda cell: -cell.share))
 
 
@@ -59,7 +57,7 @@ def _cell(
         error_rms=rms * noise,
         noise_rms=noise,
         regimes=_regimes(predictor, index, own, scored),
-        bursts=bursts_of(predictor, residual, index),
+        bursts=tuple(sorted(bursts(predictor, residual, index))),
     )
 
 
@@ -69,16 +67,10 @@ def _regimes(
     """Rms error [noise] by kind of motion, such as "fast"; {} unless a position."""
     if index >= len(predictor.plant.joints):
         return {}
-    flags: dict[str, list[BoolArray]] = {}
-    for trace in predictor.traces:
-        own_flags = _flags(trace.time_s, trace.position_rad[:, index])
-        for name, flag in own_flags.items():
-            flags.setdefault(name, []).append(flag)
+    flags = [_flags(t.time_s, t.position_rad[:, index]) for t in predictor.traces]
     found = {}
-    for name, parts in flags.items():
-        if len(parts) < len(predictor.traces):
-            continue
-        rows = np.concatenate(parts) & scored
+    for name in flags[0] if all(flags) else ():
+        rows = np.concatenate([each[name] for each in flags]) & scored
         if rows.sum() >= FEWEST:
             found[name] = float(np.sqrt(np.mean(own[rows] ** 2)))
     return found

@@ -113,13 +113,12 @@ class Predictor:
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
         self.scored = self._scored.reshape(-1)
-        self.block = np.unique(
-            np.repeat(_block_numbers(traces), c), return_inverse=True
-        )[1]
+        blocks = np.repeat(_block_numbers(traces), c)
+        self.block = np.unique(blocks, return_inverse=True)[1]
 
     def part(self, first: int, last: int) -> "Predictor":
         """A predictor of traces `first` to `last - 1`, with the same calibration."""
-        some = self._like(self.traces[first:last], self.step_s)
+        some = self.stepped(self.step_s, self.traces[first:last])
         ends = [0, *self._ends]
         own = slice(ends[first], ends[last])
         some._correction = self._correction[own]
@@ -129,23 +128,19 @@ class Predictor:
             some._doubt = self._doubt.part(*runs)
         return some
 
-    def stepped(self, step_s: float) -> "Predictor":
-        """A predictor of the same traces with another time step [s], not calibrated."""
-        return self._like(self.traces, step_s)
-
-    def _like(self, traces: Sequence[Trace], step_s: float) -> "Predictor":
-        """An uncalibrated predictor of other traces or with another time step."""
+    def stepped(
+        self, step_s: float, traces: Sequence[Trace] | None = None
+    ) -> "Predictor":
+        """An uncalibrated predictor with a time step [s] of given or its own traces."""
         own = self.channels, step_s, self._threads, self._noise, self._on_replay
-        return Predictor(self.plant, traces, *own)
+        return Predictor(self.plant, self.traces if traces is None else traces, *own)
 
     def calibrate(self, model: Model = ()) -> float:
         """Measure the integration error of a model, and what wrong start states change.
 
-        Both are then taken out of the residuals of all models.
-
-        Returns:
-          Rms [noise] of the integration error that remains after its correction; large
-          if the simulation of `model` diverges.
+        Both are then taken out of the residuals of all models. Returns the rms [noise]
+        of the integration error that remains; large if the simulation of `model`
+        diverges.
         """
         coarse, fine, finer = (
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
@@ -172,13 +167,13 @@ class Predictor:
             np.concatenate(stacks[k * count : (k + 1) * count]) for k in range(3)
         )
         changes = [
-            np.where(self._scored, (other - plain) * scale / self.channels.noise, 0.0)
-            for other, scale in (
-                (positions, POSITION_SPREAD_RAD / POSITION_STEP_RAD),
-                (velocities, VELOCITY_SPREAD_RAD_S / VELOCITY_STEP_RAD_S),
-            )
+            (positions - plain) * (POSITION_SPREAD_RAD / POSITION_STEP_RAD),
+            (velocities - plain) * (VELOCITY_SPREAD_RAD_S / VELOCITY_STEP_RAD_S),
         ]
-        changes = [np.nan_to_num(change) for change in changes]
+        changes = [
+            np.nan_to_num(np.where(self._scored, change / self.channels.noise, 0.0))
+            for change in changes
+        ]
         ends = np.cumsum([run.trace.ticks for run in self._runs])
         return StartUncertainty(changes, ends.tolist())
 
@@ -196,16 +191,11 @@ class Predictor:
             flags.append(since_s < WARM_UP_S if whole else (since_s <= 0) | left_over)
         return np.concatenate(flags)
 
-    def measured(self, index: int) -> FloatArray:
-        """(T, c) measured values of the trace with this index."""
-        return measured_of(self.traces[index], self.channels)
-
     def predict(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c) values of c channels as n models predict them.
+        """(n, rows, c) values of c channels as n models predict them, for all traces.
 
-        The rows are those of all traces, one after another. A model with a spring
-        between motor and link is simulated with half the time step: its motor
-        oscillates too fast for the full one.
+        A model with a spring between motor and link is simulated with half the time
+        step: its motor oscillates too fast for the full one.
         """
         stiff = [any(effect(placed.name).stiff for placed in one) for one in models]
         predicted = np.empty((len(models), *self._correction.shape))
@@ -253,8 +243,7 @@ class Predictor:
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values without corrections, limb by limb."""
-        shape = len(models), len(self._measured), len(self.channels.names)
-        predicted = np.empty(shape)
+        predicted = np.empty((len(models), *self._measured.shape))
         for limb in self._limbs:
             felt = [limb.felt(self._given(model)) for model in models]
             rows = {model: i for i, model in enumerate(dict.fromkeys(felt))}

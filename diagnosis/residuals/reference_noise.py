@@ -163,7 +163,7 @@ class ReferenceNoise:
         return np.asarray(white)
 
     def _less(self, rows: int) -> FloatArray:
-        """(waves c, waves c) I - C^(-1/2), with the covariance C of smooth errors.
+        """(waves c, waves c) I - C^(-1/2), with C the covariance of smooth errors.
 
         C is that in a block of `rows` rows; the variances grow with that number.
         """
@@ -179,22 +179,16 @@ def _covariance(smooth: FloatArray) -> tuple[FloatArray, FloatArray]:
     """
     half = len(smooth) // 2
     parts = [smooth[:half], smooth[half:]]
-    best, chosen = np.inf, 1.0
-    for shrinkage in SHRINKAGES if half else ():
-        surprise = sum(
-            _surprise(one, *_shrunk(other, shrinkage))
-            for one, other in (parts, parts[::-1])
-        )
-        if surprise < best:
-            best, chosen = surprise, shrinkage
-    return _shrunk(smooth, chosen)
+
+    def surprise(shrinkage: float) -> float:
+        pairs = (parts, parts[::-1])
+        return sum(_surprise(one, *_shrunk(other, shrinkage)) for one, other in pairs)
+
+    return _shrunk(smooth, min(SHRINKAGES, key=surprise) if half else 1.0)
 
 
 def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArray]:
-    """(k,) variances and (k, k) principal axes of (blocks, k) values.
-
-    They are those of the shrunk second moments: a constant error counts as variance.
-    """
+    """(k,) variances and (k, k) principal axes of the shrunk second moments."""
     moments = smooth.T @ smooth / len(smooth)
     diagonal = np.diag(np.maximum(np.diag(moments), 1.0))
     power, axes = np.linalg.eigh((1 - shrinkage) * moments + shrinkage * diagonal)
@@ -202,9 +196,6 @@ def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArra
 
 
 def _surprise(smooth: FloatArray, power: FloatArray, axes: FloatArray) -> float:
-    """Minus the log-likelihood [nats], up to a constant, of (blocks, k) values.
-
-    They are taken as Gaussian with variances `power` along `axes`.
-    """
+    """Minus the log-likelihood [nats] of (blocks, k) Gaussian values, up to a constant."""
     seen = smooth @ axes
     return float(0.5 * np.sum(seen**2 / power) + 0.5 * len(seen) * np.log(power).sum())

@@ -8,8 +8,8 @@ of a residual that has this course is removed.
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Self
+from copy import copy
+from dataclasses import replace
 
 import numpy as np
 
@@ -57,48 +57,27 @@ class StartUncertainty:
           ends: row after the last one of each window.
         """
         signatures = np.stack(changes)
-        self._runs = [
-            _RunUncertainty.of(signatures[:, first:last])
-            for first, last in itertools.pairwise([0, *ends])
-        ]
+        self._windows = []
+        for first, last in itertools.pairwise([0, *ends]):
+            own = signatures[:, first:last]
+            # 1 on the diagonal is the prior: a standard normal error of the start
+            gram = np.einsum("krc,lrc->ckl", own, own) + np.eye(len(own))
+            self._windows.append((own, np.linalg.inv(gram)))
 
     def part(self, first: int, last: int) -> "StartUncertainty":
         """The start uncertainty of the windows `first` to `last - 1` only."""
-        some = object.__new__(StartUncertainty)
-        some._runs = self._runs[first:last]
+        some = copy(self)
+        some._windows = self._windows[first:last]
         return some
 
     def without(self, residual: FloatArray) -> FloatArray:
         """(n, rows, c) residuals less the part that wrong start states explain."""
-        ends = np.cumsum([run.own.shape[1] for run in self._runs])
-        parts = np.split(residual, ends[:-1], axis=1)
-        cleaned = [
-            run.without(part) for run, part in zip(self._runs, parts, strict=True)
-        ]
+        cleaned, first = [], 0
+        for own, inverse in self._windows:
+            last = first + own.shape[1]
+            part = residual[:, first:last]
+            seen = np.einsum("krc,nrc->nck", own, part)
+            size = np.einsum("ckl,ncl->nck", inverse, seen)
+            cleaned.append(part - np.einsum("krc,nck->nrc", own, size))
+            first = last
         return np.concatenate(cleaned, axis=1)
-
-
-@dataclass(frozen=True, eq=False)
-class _RunUncertainty:
-    """Signatures of wrong start states in one window.
-
-    Attributes:
-      own: (2, rows, c) courses of the error, by position and by velocity.
-      inverse: (c, 2, 2) inverse of their scalar products plus 1 on the diagonal.
-    """
-
-    own: FloatArray
-    inverse: FloatArray
-
-    @classmethod
-    def of(cls, own: FloatArray) -> Self:
-        """Prepare a projection that removes (2, rows, c) signatures of wrong starts."""
-        # 1 on the diagonal is the prior: a standard normal error of the start
-        gram = np.einsum("krc,lrc->ckl", own, own) + np.eye(len(own))
-        return cls(own, np.linalg.inv(gram))
-
-    def without(self, residual: FloatArray) -> FloatArray:
-        """(n, rows, c) residuals of the window without the signatures."""
-        seen = np.einsum("krc,nrc->nck", self.own, residual)
-        size = np.einsum("ckl,ncl->nck", self.inverse, seen)
-        return np.asarray(residual - np.einsum("krc,nck->nrc", self.own, size))

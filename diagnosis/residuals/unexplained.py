@@ -18,7 +18,7 @@ FEWEST = 10
 def unexplained(
     predictor: Predictor, residual: FloatArray, share: float
 ) -> Unexplained | None:
-    """The mean error of the worst joint as a curve over one quantity.
+    """The mean error of the worst joint over one quantity; None if no row counts.
 
     The quantity is the one of the joint's position, velocity and command and of time
     over which the mean error is most significant.
@@ -27,9 +27,6 @@ def unexplained(
       predictor: the predictor that computed `residual`.
       residual: (N,) residual of the best model, in units of noise.
       share: share of the squared error above the noise that the model leaves.
-
-    Returns:
-      The curve; None if no row of the worst joint counts.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
