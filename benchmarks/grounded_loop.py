@@ -26,8 +26,8 @@ from sgat.models.network_config import NetworkConfig
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.block_noise import BlockNoise
 from sgat.walks.gait_cloud import GaitCloud
-from sgat.walks.grounded_world import GroundedWorld
 from sgat.walks.walk_senses import leg_senses
+from sgat.walks.wrapped_worlds import GroundedWorld
 from walk_engine import gaits
 
 ROBOTS = 150

@@ -7,7 +7,6 @@ import numpy as np
 from groundwalk.arrays import BoolArray, FloatArray
 from robots.leg_geometry import Biped
 from walk_engine.batch import select
-from walk_engine.crouch import crouched
 from walk_engine.engine_config import EngineConfig
 from walk_engine.feet import Feet, feet_in_step, resting_feet
 from walk_engine.step_plan import (
@@ -30,6 +29,7 @@ from walk_engine.velocity import Velocity
 from walk_engine.walk_state import (
     StateArray,
     WalkState,
+    crouched,
     is_resting,
     is_stepping,
     on_request,

@@ -13,7 +13,8 @@ from enum import IntEnum
 import numpy as np
 import numpy.typing as npt
 
-from groundwalk.arrays import BoolArray
+from groundwalk.arrays import BoolArray, FloatArray
+from walk_engine.time_profiles import parabolic_step
 
 StateArray = npt.NDArray[np.int8]
 
@@ -57,6 +58,9 @@ _WHEN_OVER: StateArray = np.array(
     [_S.STANDING, _S.READY, _S.READY, _S.WALKING, _S.WALKING, _S.READY, _S.STANDING],
     dtype=np.int8,
 )
+# Depth of the crouch (0 upright, 1 walking) when a state begins; its change in there.
+_DEPTH = np.array([0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+_DEEPENS = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0])
 _RESTING = np.isin(np.arange(len(_S)), (_S.STANDING, _S.READY))
 _STEPPING = np.isin(np.arange(len(_S)), (_S.STARTING, _S.WALKING, _S.STOPPING))
 
@@ -85,3 +89,14 @@ def on_request(state: StateArray, walk: BoolArray, stand: BoolArray) -> StateArr
 def when_over(state: StateArray) -> StateArray:
     """States (n,) that follow when a step, crouching or rising is over."""
     return _WHEN_OVER[state]
+
+
+def crouched(state: StateArray, time_s: FloatArray, duration_s: float) -> FloatArray:
+    """Depth (n,) of each robot's crouch: 0 standing upright, 1 at its walking height.
+
+    Args:
+      state: (n,) states of the robots, `WalkState`.
+      time_s: (n,) time since the current crouching or rising began [s].
+      duration_s: duration of crouching and of rising [s].
+    """
+    return _DEPTH[state] + _DEEPENS[state] * parabolic_step(time_s, duration_s)

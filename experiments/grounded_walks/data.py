@@ -13,7 +13,7 @@ from groundwalk.arrays import FloatArray
 from robots import Description
 from sgat.transitions import Transitions
 from sgat.walks.walk_senses import leg_senses
-from sgat.walks.watched_world import WatchedWorld
+from sgat.walks.wrapped_worlds import WatchedWorld
 
 WALK = TrialRules(limit_s=7.5, start_spread_rad=0.01)
 """Rules of a walk of 7.5 s, as in the SGAT paper. Joint positions at the start vary by

@@ -11,8 +11,8 @@ from experiments.grounded_walks.data import WALK
 from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import FloatArray
 from sgat.transformers.transformer import Transformer
-from sgat.walks.grounded_world import GroundedWorld
 from sgat.walks.walk_senses import leg_senses
+from sgat.walks.wrapped_worlds import GroundedWorld
 
 ROBOT = "nao"
 """Name of the robot that walks in all studies with grounded sims."""

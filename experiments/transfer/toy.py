@@ -15,9 +15,8 @@ from experiments.runs.progress import progress
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.toy_mdps import TOYS, Toy
 from groundwalk.arrays import FloatArray
-from sgat.tabular.grounding import grounded_sim
+from sgat.tabular.grounding import counted_forward_model, grounded_sim
 from sgat.tabular.mdp import FiniteMdp
-from sgat.tabular.models import counted_forward_model
 from sgat.tabular.planning import action_values, policy_iteration
 from sgat.tabular.rollouts import roll_out
 

@@ -46,7 +46,7 @@ class EnvWorld:
         if (self.name == "grounded") != (self.transformer is not None):
             raise BadValueError(
                 "a grounded world, and no other, needs a transformer: an object, or "
-                "the folder that sgat.transformers.transformer_files has written"
+                "the folder that sgat.transformers.catalogue has written"
             )
         terrain = self.terrain or worlds.kind(self.inner).terrain
         if isinstance(terrain, str):
@@ -68,8 +68,8 @@ class EnvWorld:
         world = worlds.make(self.inner, robot, grounds, seeds, self.options)
         if self.transformer is None:
             return world
-        from sgat.walks.grounded_world import GroundedWorld
         from sgat.walks.walk_senses import leg_senses
+        from sgat.walks.wrapped_worlds import GroundedWorld
 
         assert not isinstance(self.transformer, str | Path)
         senses = leg_senses(self.description)
@@ -94,6 +94,6 @@ def episode_seeds(
 def _own(given: "Transformer | str | Path | None") -> "Transformer | None":
     if not isinstance(given, str | Path):
         return copy.deepcopy(given)
-    from sgat.transformers.transformer_files import read_transformer
+    from sgat.transformers.catalogue import read_transformer
 
     return read_transformer(Path(given))

@@ -19,14 +19,19 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError, BadValueError
 from robots.description import Description, Foot, Imu, Joint, Link, Motor, VisualMesh
 from robots.from_urdf.adaptation import Adaptation, urdf_path
-from robots.from_urdf.balance import HIP_PART, ankles_ahead_m, crouch_rad
+from robots.from_urdf.balance import (
+    HIP_PART,
+    ankles_ahead_m,
+    crouch_rad,
+    find_shoulders,
+    hanging_rad,
+)
 from robots.from_urdf.foot_shapes import foot
 from robots.from_urdf.leg_roles import Legs, find_legs
 from robots.from_urdf.package_paths import mesh_path
 from robots.from_urdf.posed_tree import PosedTree
 from robots.from_urdf.round_shapes import round_shapes
 from robots.from_urdf.servo_size import Pendulum, servo
-from robots.from_urdf.shoulders import find_shoulders, hanging_rad
 from robots.from_urdf.urdf_tree import UrdfShape, UrdfTree, read_urdf
 from robots.leg_axes import ANKLE, KNEE, ROLES, roles
 from robots.scale import Scale

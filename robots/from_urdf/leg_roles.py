@@ -14,8 +14,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError, UnknownNameError
 from robots.from_urdf.adaptation import Adaptation
-from robots.from_urdf.placement import Placement
-from robots.from_urdf.urdf_tree import UrdfTree
+from robots.from_urdf.urdf_tree import Placement, UrdfTree
 from robots.leg_axes import KNEE, ROLES
 
 _FACING = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}

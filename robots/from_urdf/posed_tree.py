@@ -8,8 +8,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError
-from robots.from_urdf.placement import Placement
-from robots.from_urdf.urdf_tree import UrdfLink, UrdfTree
+from robots.from_urdf.urdf_tree import Placement, UrdfLink, UrdfTree
 from robots.rigid_body import Inertial, combined
 
 _NOISE = 12

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from sgat.models.heads import FullHead, GaussianHead, Head, LowRankHead
-from sgat.models.mixture_head import MixtureHead
+from sgat.models.heads import FullHead, GaussianHead, Head, LowRankHead, MixtureHead
 from sgat.models.network_config import NetworkConfig
 
 HeadName = Literal["gaussian", "mixture", "low-rank", "full"]

@@ -13,9 +13,8 @@ from groundwalk.errors import BadModelError, BadValueError
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.heads import Head
 from sgat.models.model_file import read_model, write_model
-from sgat.models.network import Float32Array
+from sgat.models.network import Float32Array, Scaling
 from sgat.models.scaled_network import ScaledNetwork
-from sgat.models.scaling import Scaling
 from sgat.models.training import Stage, raw_outputs, squared_error
 from sgat.noise import NoiseStream
 from sgat.transitions import Transitions

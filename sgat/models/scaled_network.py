@@ -10,9 +10,8 @@ from torch import Tensor
 
 from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.errors import BadValueError
-from sgat.models.network import Float32Array, Network
+from sgat.models.network import Float32Array, Network, Scaling
 from sgat.models.network_config import NetworkConfig
-from sgat.models.scaling import Scaling
 from sgat.models.training import Examples, Stage, train
 from sgat.transitions import held_out_rows
 

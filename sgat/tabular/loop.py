@@ -6,9 +6,8 @@ import numpy as np
 
 from groundwalk.arrays import IntArray
 from groundwalk.errors import BadValueError
-from sgat.tabular.grounding import grounded_sim
+from sgat.tabular.grounding import counted_forward_model, grounded_sim
 from sgat.tabular.mdp import FiniteMdp
-from sgat.tabular.models import counted_forward_model
 from sgat.tabular.planning import policy_iteration, policy_values
 from sgat.tabular.rollouts import roll_out
 

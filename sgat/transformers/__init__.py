@@ -4,7 +4,11 @@ A grounding is a method, such as SGAT, that learns a transformer from data; a ne
 one file in this folder. See `sgat.transformers.catalogue`.
 """
 
-from sgat.transformers.catalogue import grounding, groundings
-from sgat.transformers.transformer_files import read_transformer, write_transformer
+from sgat.transformers.catalogue import (
+    grounding,
+    groundings,
+    read_transformer,
+    write_transformer,
+)
 
 __all__ = ["grounding", "groundings", "read_transformer", "write_transformer"]

@@ -14,9 +14,9 @@ from groundwalk.errors import BadModelError, BadValueError
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.model_file import read_model, write_model
+from sgat.models.network import Scaling
 from sgat.models.network_config import NetworkConfig
 from sgat.models.scaled_network import ScaledNetwork
-from sgat.models.scaling import Scaling
 from sgat.models.training import Examples, Loss, Stage, train
 from sgat.noise import child_of
 from sgat.transformers.catalogue import add_grounding, file_kind

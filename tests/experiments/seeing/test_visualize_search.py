@@ -7,8 +7,12 @@ from rerun.chunk import RrdReader
 
 from experiments.optimize_gait import OptimizeGait
 from experiments.runs.folder import RunFolder
-from experiments.seeing.search_walks import search_plan, walk_again
-from experiments.seeing.visualize_search import read_history, visualize_search
+from experiments.seeing.visualize_search import (
+    read_history,
+    search_plan,
+    visualize_search,
+    walk_again,
+)
 from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadModelError, RunFolderError, UnknownNameError
 from terrain import TerrainSpec

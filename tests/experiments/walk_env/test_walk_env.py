@@ -28,7 +28,7 @@ from sgat.models.inverse_model import InverseModel
 from sgat.models.network_config import NetworkConfig
 from sgat.noise import WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
-from sgat.transformers.transformer_files import write_transformer
+from sgat.transformers.catalogue import write_transformer
 from sgat.transitions import Transitions
 from walk_engine import gaits
 from walk_engine.gait import to_unit

@@ -5,8 +5,14 @@ import pytest
 import torch
 from scipy import stats
 
-from sgat.models.heads import LOG_VARIANCE, FullHead, GaussianHead, LowRankHead, bounded
-from sgat.models.mixture_head import MixtureHead
+from sgat.models.heads import (
+    LOG_VARIANCE,
+    FullHead,
+    GaussianHead,
+    LowRankHead,
+    MixtureHead,
+    bounded,
+)
 
 D = 3
 HEADS = [GaussianHead(D), FullHead(D), LowRankHead(D, 2), MixtureHead(D, 4)]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sgat.models.scaling import Scaling
+from sgat.models.network import Scaling
 
 VALUES = np.random.default_rng(0).normal([5, -3e4, 2e-7], [2, 1e3, 1e-9], (500, 3))
 

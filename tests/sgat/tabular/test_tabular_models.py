@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError
+from sgat.tabular.grounding import NONE, counted_forward_model, inverse_model
 from sgat.tabular.mdp import FiniteMdp
-from sgat.tabular.models import NONE, counted_forward_model, inverse_model
 
 
 def steps(targets):

@@ -145,7 +145,7 @@ import sgat.transformers
 sgat.transformers.__path__.append({str(shelf)!r})
 import numpy as np
 from sgat.transformers.catalogue import grounding
-from sgat.transformers.transformer_files import read_transformer, write_transformer
+from sgat.transformers.catalogue import read_transformer, write_transformer
 class Data: low, high = np.full(2, -1.0), np.full(2, 1.0)
 made = grounding("mirrored actions").transformer(Data)
 write_transformer(pathlib.Path({str(tmp_path / "kept")!r}), made)

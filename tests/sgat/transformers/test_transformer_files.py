@@ -13,8 +13,8 @@ from sgat.models.network_config import NetworkConfig
 from sgat.noise import WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.block_noise import BlockNoise
+from sgat.transformers.catalogue import read_transformer, write_transformer
 from sgat.transformers.direct_transformer import DirectTransformer
-from sgat.transformers.transformer_files import read_transformer, write_transformer
 from sgat.transitions import Transitions
 
 TINY = {"hidden": (4,), "epochs": 1}

@@ -4,8 +4,8 @@ import pytest
 import robots
 import terrain
 import worlds
-from sgat.walks.grounded_world import GroundedWorld
 from sgat.walks.walk_senses import HISTORY_TICKS, WalkSenses
+from sgat.walks.wrapped_worlds import GroundedWorld
 from walk_engine import Velocity, WalkEngine, gaits
 from worlds import TICK_S, WorldOptions
 

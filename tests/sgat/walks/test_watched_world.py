@@ -7,8 +7,12 @@ import worlds
 from experiments.walking.trials import TrialRules, walk_trials
 from groundwalk.errors import BadValueError
 from sgat.walks.walk_senses import HISTORY_TICKS, WalkSenses
-from sgat.walks.watched_world import EXPLORATION_MEMORY, SETTLING_TICKS, WatchedWorld
-from sgat.walks.world_wrapper import WorldWrapper
+from sgat.walks.wrapped_worlds import (
+    EXPLORATION_MEMORY,
+    SETTLING_TICKS,
+    WatchedWorld,
+    WorldWrapper,
+)
 from walk_engine import gaits
 from worlds import End, WorldOptions
 

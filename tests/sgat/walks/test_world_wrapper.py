@@ -7,7 +7,7 @@ import robots
 import terrain
 import worlds
 from experiments.walking.trials import TrialRules, walk_trials
-from sgat.walks.world_wrapper import WorldWrapper
+from sgat.walks.wrapped_worlds import WorldWrapper
 from walk_engine import gaits
 from worlds import World, WorldOptions
 

@@ -1,13 +1,122 @@
-"""A world that records transitions for the models of a grounding."""
+"""Worlds around another world, which transform commands or record transitions."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
+from robots import Description
+from sgat.transformers.transformer import Transformer
 from sgat.transitions import Transitions
 from sgat.walks.walk_senses import WalkSenses
-from sgat.walks.world_wrapper import WorldWrapper
-from worlds import End, Observation, World
+from worlds import End, Observation, Truth, World, WorldOptions
+
+
+class WorldWrapper:
+    """A world that passes every call on to the world inside; subclasses change some.
+
+    Example:
+      See `GroundedWorld`.
+    """
+
+    def __init__(self, world: World) -> None:
+        """Choose the world inside."""
+        self.world = world
+
+    @property
+    def description(self) -> Description:
+        """The robot; all n are alike."""
+        return self.world.description
+
+    @property
+    def n(self) -> int:
+        """Number of robots."""
+        return self.world.n
+
+    @property
+    def options(self) -> WorldOptions:
+        """Options of the world inside."""
+        return self.world.options
+
+    @property
+    def ended(self) -> list[End]:
+        """Why each robot's rollout ended."""
+        return self.world.ended
+
+    @property
+    def active(self) -> BoolArray:
+        """(n,) whether each robot's rollout continues."""
+        return self.world.active
+
+    def reset(self, pose_rad: FloatArray) -> Observation:
+        """Put every robot on its ground, in poses (n, joints) [rad]."""
+        return self.world.reset(pose_rad)
+
+    def step(self, command_rad: FloatArray) -> Observation:
+        """Advance the active robots by one tick with commands (n, joints) [rad]."""
+        return self.world.step(command_rad)
+
+    def stop(self, robots: BoolArray) -> None:
+        """End the rollouts of the robots in a mask (n,)."""
+        self.world.stop(robots)
+
+    def truth(self) -> Truth:
+        """True poses, velocities and contacts of the robots, which no gait sees."""
+        return self.world.truth()
+
+    def close(self) -> None:
+        """Release the resources of the world inside."""
+        self.world.close()
+
+
+class GroundedWorld(WorldWrapper):
+    """A sim that behaves like the real world, because its commands are transformed.
+
+    Each command passes through an action transformer before the sim gets it.
+
+    Example:
+      >>> senses = leg_senses(robots.get("nao"))
+      >>> world = GroundedWorld(sim, senses, transformer, seeds)
+    """
+
+    def __init__(
+        self,
+        world: World,
+        senses: WalkSenses,
+        transformer: Transformer,
+        seeds: Sequence[np.random.SeedSequence],
+    ) -> None:
+        """Put a transformer before a world.
+
+        Args:
+          world: the sim, with n robots.
+          senses: makes the states and actions that the transformer sees.
+          transformer: changes the actions.
+          seeds: n seeds of the transformer's noise, one for each robot.
+        """
+        super().__init__(world)
+        self._senses, self._transformer = senses, transformer
+        self._seeds = list(seeds)
+
+    def reset(self, pose_rad: FloatArray) -> Observation:
+        """Put every robot on its ground, in poses (n, joints) [rad]."""
+        observation = self.world.reset(pose_rad)
+        self._senses.reset(observation)
+        self._transformer.reset(self._seeds)
+        return observation
+
+    def step(self, command_rad: FloatArray) -> Observation:
+        """Transform commands (n, joints) [rad], then advance the sim by one tick."""
+        senses = self._senses
+        action = self._transformer(senses.state(), senses.action(command_rad))
+        transformed_rad = senses.command(action, command_rad)
+        # In the data of the real world, too, past commands are those of the gait.
+        senses.remember(command_rad)
+        observation = self.world.step(transformed_rad)
+        senses.observe(observation)
+        return observation
+
 
 EXPLORATION_MEMORY = 0.9
 """Correlation of the exploration noise from one tick to the next: it lasts about ten
