@@ -7,13 +7,11 @@ sinks in by weight / K, and by half of that on two.
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
-from robots.sole import contact_points
 
 if TYPE_CHECKING:
     import mujoco
@@ -77,32 +75,3 @@ def soften_mujoco(
             -scale * spring.damping_n_s_m,
         )
         model.geom_solimp[own, :2] = impedance
-
-
-def soften_bullet(
-    bullet: Any,
-    client: dict[str, int],
-    body: int,
-    links: Sequence[int],
-    description: Description,
-    spring: FootSpring,
-) -> None:
-    """Give the soles of a robot in PyBullet soft contacts.
-
-    Args:
-      bullet: the module `pybullet`.
-      client: the keyword argument `physicsClientId` of its functions, as a dict.
-      body: PyBullet's id of the robot.
-      links: PyBullet's link indices, in the order of the description's joints.
-      description: the robot.
-      spring: the ground under a whole foot; its contact points share it evenly.
-    """
-    for foot in description.feet:
-        points = len(contact_points(foot))
-        bullet.changeDynamics(
-            body,
-            links[foot.joint],
-            contactStiffness=spring.stiffness_n_m / points,
-            contactDamping=spring.damping_n_s_m / points,
-            **client,
-        )

@@ -4,7 +4,6 @@ import contextlib
 import os
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +11,10 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from robots.description import Description
-from robots.sole import sensor_shares
+from robots.sole import contact_points, sensor_shares
 from terrain import Heightfield
 from worlds.real.ground import load_ground
-from worlds.soft_ground import FootSpring, soften_bullet
+from worlds.soft_ground import FootSpring
 
 _GEAR_NM, _GEAR_ERP = 1e3, 0.2
 """Largest torque [N m] of PyBullet's gear between two joints of one motor, and the
@@ -24,7 +23,7 @@ joints together, soft enough for PyBullet's solver."""
 
 
 @contextlib.contextmanager
-def silent() -> Iterator[None]:
+def _silent() -> Iterator[None]:
     """Discard output to stdout and stderr in a `with` block, that of C code as well."""
     kept = [os.dup(1), os.dup(2)]
     with open(os.devnull, "w") as nowhere:
@@ -38,139 +37,134 @@ def silent() -> Iterator[None]:
             os.close(copy)
 
 
-def import_bullet() -> Any:
-    """Import the module `pybullet` without the banner that it prints from C."""
-    with silent():
+def bullet_client() -> Any:
+    """A new PyBullet client, without graphics, with PyBullet's functions as methods."""
+    with _silent():  # PyBullet prints a banner when it is imported
         import pybullet
-    return pybullet
-
-
-@dataclass(frozen=True, eq=False)
-class BodySetup:
-    """Everything that a PyBullet client needs to load one robot and its ground.
-
-    Attributes:
-      urdf: text of the robot's URDF; besides the base, a link for each joint.
-      joints: names of the joints, in the order of all arrays.
-      floating: whether the base can move.
-      step_s: physics step.
-      gravity_m_s2: (3,) gravity in the world frame, which may be tilted.
-      friction: coefficient between soles and ground.
-      description: gives the feet, the inertial sensor and the joints that share a
-        motor; None for a robot without them, such as an arm.
-      springs: soft ground under a whole foot; the last one applies, empty for hard.
-      ground: the ground under a floating robot; None for no ground.
-    """
-
-    urdf: str
-    joints: Sequence[str]
-    floating: bool
-    step_s: float
-    gravity_m_s2: FloatArray
-    friction: float
-    description: Description | None
-    springs: Sequence[FootSpring] = ()
-    ground: Heightfield | None = None
+        from pybullet_utils.bullet_client import BulletClient
+    return BulletClient(pybullet.DIRECT)
 
 
 class BulletBody:
     """One robot and its ground in a PyBullet client of its own, moved by joint torques.
 
     Attributes:
-      setup: the robot and ground that were loaded.
-      client: the keyword argument `physicsClientId` of PyBullet's functions, as a dict.
+      bullet: the client.
       number: PyBullet's id of the robot.
       position_rad, velocity_rad_s: (joints,) state of the joints after the last step.
     """
 
-    def __init__(self, setup: BodySetup) -> None:
-        """Connect a PyBullet client, and load the robot and its ground into it."""
-        self._bullet = bullet = import_bullet()
-        self.setup = setup
-        self.client = {"physicsClientId": bullet.connect(bullet.DIRECT)}
-        bullet.setGravity(*setup.gravity_m_s2.tolist(), **self.client)
-        bullet.setTimeStep(setup.step_s, **self.client)
-        self.number = self._load()
-        self._name_parts()
-        self._make_passive()
-        self._couple()
-        for spring in setup.springs:
-            if setup.description is not None:
-                links = self._links
-                soften_bullet(
-                    bullet, self.client, self.number, links, setup.description, spring
-                )
-        if setup.ground is not None:
-            floor = load_ground(self.client["physicsClientId"], setup.ground)
-            bullet.changeDynamics(
-                floor, -1, lateralFriction=1.0, restitution=0.0, **self.client
-            )
-        place, turn = bullet.getDynamicsInfo(self.number, -1, **self.client)[3:5]
+    def __init__(
+        self,
+        urdf: str,
+        joints: Sequence[str],
+        description: Description | None,
+        *,
+        floating: bool,
+        step_s: float,
+        gravity_m_s2: FloatArray,
+        friction: float,
+        spring: FootSpring | None,
+        ground: Heightfield | None,
+    ) -> None:
+        """Connect a PyBullet client, and load the robot and its ground into it.
+
+        Args:
+          urdf: text of the robot's URDF; besides the base, a link for each joint.
+          joints: names of the joints, in the order of all arrays.
+          description: gives the feet, the inertial sensor and the joints that share a
+            motor; None for a robot without them, such as an arm.
+          floating: whether the base can move.
+          step_s: physics step.
+          gravity_m_s2: (3,) gravity in the world frame, which may be tilted.
+          friction: coefficient between soles and ground.
+          spring: soft ground under a whole foot; None for hard ground.
+          ground: the ground under a floating robot; None for no ground.
+        """
+        self.bullet = bullet = bullet_client()
+        self._description, self._floating = description, floating
+        self._gravity_m_s2, self._step_s = gravity_m_s2, step_s
+        bullet.setGravity(*gravity_m_s2.tolist())
+        bullet.setTimeStep(step_s)
+        self.number = self._load(urdf)
+        self._name_parts(joints)
+        self._make_passive(friction)
+        if description is not None:
+            self._couple(description)
+            if spring is not None:
+                self._soften(description, spring)
+        if ground is not None:
+            floor = load_ground(bullet, ground)
+            bullet.changeDynamics(floor, -1, lateralFriction=1.0, restitution=0.0)
+        place, turn = bullet.getDynamicsInfo(self.number, -1)[3:5]
         self._com_m, self._principal = np.array(place), turn
 
-    def _load(self) -> int:
-        with tempfile.TemporaryDirectory() as folder, silent():
+    def _load(self, urdf: str) -> int:
+        with tempfile.TemporaryDirectory() as folder, _silent():
             path = Path(folder, "robot.urdf")
-            path.write_text(self.setup.urdf)
-            return int(
-                self._bullet.loadURDF(
-                    str(path),
-                    useFixedBase=not self.setup.floating,
-                    flags=self._bullet.URDF_USE_INERTIA_FROM_FILE,
-                    **self.client,
-                )
-            )
+            path.write_text(urdf)
+            flags = self.bullet.URDF_USE_INERTIA_FROM_FILE
+            fixed = not self._floating
+            return int(self.bullet.loadURDF(str(path), useFixedBase=fixed, flags=flags))
 
-    def _name_parts(self) -> None:
+    def _name_parts(self, joints: Sequence[str]) -> None:
         """Look up PyBullet's indices of joints and links by name; the base's is -1."""
-        bullet, client = self._bullet, self.client
-        count = bullet.getNumJoints(self.number, **client)
-        rows = [bullet.getJointInfo(self.number, i, **client) for i in range(count)]
+        count = self.bullet.getNumJoints(self.number)
+        rows = [self.bullet.getJointInfo(self.number, i) for i in range(count)]
         number = {row[1].decode(): int(row[0]) for row in rows}
-        self._links = [number[name] for name in self.setup.joints]
+        self._links = [number[name] for name in joints]
         self._link_of = {row[12].decode(): int(row[0]) for row in rows}
-        base = bullet.getBodyInfo(self.number, **client)[0].decode()
-        self._link_of[base] = -1
+        self._link_of[self.bullet.getBodyInfo(self.number)[0].decode()] = -1
 
-    def _make_passive(self) -> None:
+    def _make_passive(self, friction: float) -> None:
         """Switch off PyBullet's default damping and joint motors; set the friction."""
-        bullet, client = self._bullet, self.client
         for link in (-1, *self._links):
-            bullet.changeDynamics(
+            self.bullet.changeDynamics(
                 self.number,
                 link,
                 linearDamping=0,
                 angularDamping=0,
                 jointDamping=0,
-                lateralFriction=self.setup.friction,
+                lateralFriction=friction,
                 spinningFriction=0,
                 rollingFriction=0,
                 restitution=0,
-                **client,
             )
         # Bullet's joints come with velocity motors that hold them still.
-        still = [0] * len(self._links)
-        bullet.setJointMotorControlArray(
-            self.number, self._links, bullet.VELOCITY_CONTROL, forces=still, **client
+        self._drive(self.bullet.VELOCITY_CONTROL, [0] * len(self._links))
+
+    def _drive(self, mode: int, forces: Sequence[float]) -> None:
+        """Set what drives the joints from now on: torques, or forces of motors."""
+        self.bullet.setJointMotorControlArray(
+            self.number, self._links, mode, forces=forces
         )
 
-    def _couple(self) -> None:
+    def _couple(self, description: Description) -> None:
         """Keep joints that share a motor at the same angle, with a PyBullet gear."""
-        description = self.setup.description
-        for first, second in description.coupled if description else ():
-            gear = self._bullet.createConstraint(
+        for first, second in description.coupled:
+            gear = self.bullet.createConstraint(
                 parentBodyUniqueId=self.number,
                 parentLinkIndex=self._links[first],
                 childBodyUniqueId=self.number,
                 childLinkIndex=self._links[second],
-                jointType=self._bullet.JOINT_GEAR,
+                jointType=self.bullet.JOINT_GEAR,
                 jointAxis=[0, 1, 0],
                 parentFramePosition=[0] * 3,
                 childFramePosition=[0] * 3,
-                **self.client,
             )
-            self._bullet.changeConstraint(
-                gear, gearRatio=-1, maxForce=_GEAR_NM, erp=_GEAR_ERP, **self.client
+            self.bullet.changeConstraint(
+                gear, gearRatio=-1, maxForce=_GEAR_NM, erp=_GEAR_ERP
+            )
+
+    def _soften(self, description: Description, spring: FootSpring) -> None:
+        """Give the soles soft contacts; a foot's contact points share its spring."""
+        for foot in description.feet:
+            points = len(contact_points(foot))
+            self.bullet.changeDynamics(
+                self.number,
+                self._links[foot.joint],
+                contactStiffness=spring.stiffness_n_m / points,
+                contactDamping=spring.damping_n_s_m / points,
             )
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
@@ -180,77 +174,64 @@ class BulletBody:
           pose_rad: (joints,) joint positions.
           height_m: height of the torso frame above the origin; unused on a fixed base.
         """
-        if self.setup.floating:
+        if self._floating:
             place = self._com_m + np.array([0, 0, height_m])
-            self._bullet.resetBasePositionAndOrientation(
-                self.number, place.tolist(), self._principal, **self.client
+            self.bullet.resetBasePositionAndOrientation(
+                self.number, place.tolist(), self._principal
             )
-            self._bullet.resetBaseVelocity(self.number, [0] * 3, [0] * 3, **self.client)
+            self.bullet.resetBaseVelocity(self.number, [0] * 3, [0] * 3)
         for link, angle in zip(self._links, pose_rad.tolist(), strict=True):
-            self._bullet.resetJointState(self.number, link, angle, 0.0, **self.client)
+            self.bullet.resetJointState(self.number, link, angle, 0.0)
         self._read()
 
     def step(self, torque_nm: FloatArray) -> None:
         """Advance one physics step under torques (joints,) and the preceding pushes."""
-        bullet, client = self._bullet, self.client
-        bullet.setJointMotorControlArray(
-            self.number,
-            self._links,
-            bullet.TORQUE_CONTROL,
-            forces=torque_nm.tolist(),
-            **client,
-        )
-        bullet.stepSimulation(**client)
+        self._drive(self.bullet.TORQUE_CONTROL, torque_nm.tolist())
+        self.bullet.stepSimulation()
         self._read()
 
     def _read(self) -> None:
-        states = self._bullet.getJointStates(self.number, self._links, **self.client)
+        states = self.bullet.getJointStates(self.number, self._links)
         self.position_rad = np.array([state[0] for state in states])
         self.velocity_rad_s = np.array([state[1] for state in states])
 
     def push(self, body: str, force_n: FloatArray) -> None:
         """Push a link at its centre of mass (3,) [N, world frame] in the next step."""
-        link = self._link_of[body]
-        bullet, client = self._bullet, self.client
+        link, bullet = self._link_of[body], self.bullet
         if link < 0:
-            place = bullet.getBasePositionAndOrientation(self.number, **client)[0]
+            place = bullet.getBasePositionAndOrientation(self.number)[0]
         else:
             place = self._link(link)[0]
         bullet.applyExternalForce(
-            self.number, link, force_n.tolist(), place, bullet.WORLD_FRAME, **client
+            self.number, link, force_n.tolist(), place, bullet.WORLD_FRAME
         )
 
     def body_velocity(self, body: str) -> FloatArray:
         """(3,) velocity of a link's centre of mass in the world frame [m/s]."""
         link = self._link_of[body]
         if link < 0:
-            return np.array(self._bullet.getBaseVelocity(self.number, **self.client)[0])
+            return np.array(self.bullet.getBaseVelocity(self.number)[0])
         return np.array(self._link(link)[6])
 
     def _link(self, link: int) -> Any:
-        return self._bullet.getLinkState(
-            self.number,
-            link,
-            computeLinkVelocity=1,
-            computeForwardKinematics=1,
-            **self.client,
+        return self.bullet.getLinkState(
+            self.number, link, computeLinkVelocity=1, computeForwardKinematics=1
         )
 
     def base_motion(self) -> tuple[FloatArray, FloatArray]:
         """Pose (7,) and velocity (6,) of the torso frame.
 
-        PyBullet gives those of the torso's centre of mass and principal axes instead;
-        they are converted here.
+        PyBullet's own are those of the torso's centre of mass and principal axes.
 
         Returns:
           Position [m] and quaternion w, x, y, z; linear velocity [m/s] in the world
           frame and angular velocity [rad/s] in the torso frame.
         """
-        bullet, client = self._bullet, self.client
-        place, turn = bullet.getBasePositionAndOrientation(self.number, **client)
-        linear, angular = bullet.getBaseVelocity(self.number, **client)
+        place, turn = self.bullet.getBasePositionAndOrientation(self.number)
+        linear, angular = self.bullet.getBaseVelocity(self.number)
         x, y, z, w = self._principal
-        turn = bullet.multiplyTransforms([0] * 3, turn, [0] * 3, [-x, -y, -z, w])[1]
+        back = [-x, -y, -z, w]
+        turn = self.bullet.multiplyTransforms([0] * 3, turn, [0] * 3, back)[1]
         torso = self._rotation(turn)
         arm, spin = torso @ self._com_m, np.array(angular)
         origin = np.array(linear) - _cross(spin, arm)
@@ -268,13 +249,12 @@ class BulletBody:
           now: (6,) current velocity of the torso.
           seconds: time between both velocities.
         """
-        description = self.setup.description
         lever = np.zeros(3)
-        if description is not None:
-            lever = np.array(description.imu.accelerometer_m)
+        if self._description is not None:
+            lever = np.array(self._description.imu.accelerometer_m)
         torso = self._rotation([*pose[4:], pose[3]])
         change, spin = (now - before) / seconds, now[3:]
-        linear = torso.T @ (change[:3] - self.setup.gravity_m_s2)
+        linear = torso.T @ (change[:3] - self._gravity_m_s2)
         turning = _cross(change[3:], lever) + _cross(spin, _cross(spin, lever))
         return np.asarray(linear + turning)
 
@@ -284,12 +264,10 @@ class BulletBody:
         A contact beyond the sensors of a foot can make a force negative.
         """
         forces = np.zeros((2, 4))
-        description = self.setup.description
-        for side, foot in enumerate(description.feet if description else ()):
+        feet = self._description.feet if self._description else ()
+        for side, foot in enumerate(feet):
             link = self._links[foot.joint]
-            contacts = self._bullet.getContactPoints(
-                bodyA=self.number, linkIndexA=link, **self.client
-            )
+            contacts = self.bullet.getContactPoints(bodyA=self.number, linkIndexA=link)
             if not contacts:
                 continue
             state = self._link(link)
@@ -300,12 +278,12 @@ class BulletBody:
         return forces.ravel()
 
     def _rotation(self, quaternion_xyzw: Any) -> FloatArray:
-        flat = self._bullet.getMatrixFromQuaternion(quaternion_xyzw)
+        flat = self.bullet.getMatrixFromQuaternion(quaternion_xyzw)
         return np.array(flat).reshape(3, 3)
 
     def close(self) -> None:
         """Disconnect the PyBullet client; the robot cannot be used afterwards."""
-        self._bullet.disconnect(**self.client)
+        self.bullet.disconnect()
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from worlds.hidden.engine import BodySense, HiddenEngine, check_engine
 from worlds.hidden.model import hidden_model
 from worlds.hidden.mujoco_engine import HiddenMujoco
 from worlds.hidden.plant import HiddenPlant
-from worlds.real.body import BodySetup, BulletBody
+from worlds.real.body import BulletBody
 
 if TYPE_CHECKING:
     import mujoco
@@ -62,24 +62,21 @@ class HiddenBullet(BulletBody):
     ) -> None:
         """Load robot and ground from the model; soft ground comes from the effects."""
         soles = np.flatnonzero(model.geom_contype == 1)
-        description = plant.description
-        springs = []
-        if description is not None:
-            mass_kg = description.mass_kg
-            found = [e.kind.foot_spring(e.values, mass_kg) for e in effects]
-            springs = [spring for spring in found if spring is not None]
+        spring = None
+        if plant.description is not None:
+            for effect in effects:
+                found = effect.kind.foot_spring(effect.values, plant.description)
+                spring = found or spring
         super().__init__(
-            BodySetup(
-                urdf=model_urdf(model, plant.name),
-                joints=plant.joints,
-                floating=plant.floating,
-                step_s=float(model.opt.timestep),
-                gravity_m_s2=model.opt.gravity.copy(),
-                friction=float(model.geom_friction[soles[0], 0]) if soles.size else 0.0,
-                description=description,
-                springs=springs,
-                ground=ground,
-            )
+            model_urdf(model, plant.name),
+            plant.joints,
+            plant.description,
+            floating=plant.floating,
+            step_s=float(model.opt.timestep),
+            gravity_m_s2=model.opt.gravity.copy(),
+            friction=float(model.geom_friction[soles[0], 0]) if soles.size else 0.0,
+            spring=spring,
+            ground=ground,
         )
         self._forget()
 
@@ -89,7 +86,7 @@ class HiddenBullet(BulletBody):
 
     def watch(self) -> None:
         """Add this step's foot forces to the mean that `sense` will return."""
-        if not self.setup.floating:
+        if not self._floating:
             return
         if self._earlier is None:
             self._earlier = self.base_motion()[1]
@@ -98,13 +95,13 @@ class HiddenBullet(BulletBody):
 
     def sense(self) -> BodySense:
         """Read the sensors, averaged over the watched steps; forget those steps."""
-        if not self.setup.floating:
+        if not self._floating:
             zero, up = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
-            felt = -self.setup.gravity_m_s2 if self.setup.description else zero
+            felt = -self._gravity_m_s2 if self._description else zero
             return BodySense(zero, felt, np.zeros(8), zero, up, zero, zero)
         pose, now = self.base_motion()
         earlier = now if self._earlier is None else self._earlier
-        seconds = max(self._watched - 1, 1) * self.setup.step_s
+        seconds = max(self._watched - 1, 1) * self._step_s
         felt = self.specific_force(pose, earlier, now, seconds)
         feet = np.maximum(self._feet / max(self._watched, 1), 0.0)
         self._forget()

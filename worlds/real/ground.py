@@ -1,17 +1,18 @@
 """Loads a heightfield as ground into a PyBullet client."""
 
 import math
+from typing import Any
 
 import numpy as np
 
 from terrain import Heightfield
 
-QUARTER_TURN = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
+_QUARTER_TURN = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
 """Quaternion x, y, z, w of a turn by +90 degrees about the vertical."""
 
 
-def load_ground(client_id: int, field: Heightfield) -> int:
-    """Load ground into PyBullet as a static body, a plane if it is flat.
+def load_ground(bullet: Any, field: Heightfield) -> int:
+    """Load ground into a PyBullet client as a static body, a plane if it is flat.
 
     PyBullet cuts a cell of a heightfield into triangles along the diagonal from
     [row, column + 1] to [row + 1, column], MuJoCo and `Heightfield` along the other
@@ -21,14 +22,12 @@ def load_ground(client_id: int, field: Heightfield) -> int:
     agree with `field.height_at` to 1e-8 m.
 
     Args:
-      client_id: PyBullet's `physicsClientId`.
+      bullet: a `pybullet_utils.bullet_client.BulletClient`.
       field: heights in the world frame.
 
     Returns:
       PyBullet's id of the body.
     """
-    import pybullet
-
     (x_low, x_high), (y_low, y_high) = field.x_range_m, field.y_range_m
     lowest_m, highest_m = float(field.heights_m.min()), float(field.heights_m.max())
     middle = (
@@ -37,31 +36,21 @@ def load_ground(client_id: int, field: Heightfield) -> int:
         (lowest_m + highest_m) / 2.0,
     )
     if field.is_flat:
-        plane = pybullet.createCollisionShape(
-            pybullet.GEOM_PLANE, planeNormal=(0.0, 0.0, 1.0), physicsClientId=client_id
-        )
-        return int(
-            pybullet.createMultiBody(
-                0.0, plane, basePosition=middle, physicsClientId=client_id
-            )
-        )
+        up = (0.0, 0.0, 1.0)
+        plane = bullet.createCollisionShape(bullet.GEOM_PLANE, planeNormal=up)
+        return int(bullet.createMultiBody(0.0, plane, basePosition=middle))
     turned_m = np.rot90(field.heights_m)
-    shape = pybullet.createCollisionShape(
-        pybullet.GEOM_HEIGHTFIELD,
+    shape = bullet.createCollisionShape(
+        bullet.GEOM_HEIGHTFIELD,
         meshScale=(field.spacing_m, field.spacing_m, 1.0),
         heightfieldData=turned_m.ravel().tolist(),
         numHeightfieldRows=turned_m.shape[1],
         numHeightfieldColumns=turned_m.shape[0],
         # Without this flag feet stumble over edges between coplanar triangles.
-        flags=pybullet.GEOM_CONCAVE_INTERNAL_EDGE,
-        physicsClientId=client_id,
+        flags=bullet.GEOM_CONCAVE_INTERNAL_EDGE,
     )
     return int(
-        pybullet.createMultiBody(
-            0.0,
-            shape,
-            basePosition=middle,
-            baseOrientation=QUARTER_TURN,
-            physicsClientId=client_id,
+        bullet.createMultiBody(
+            0.0, shape, basePosition=middle, baseOrientation=_QUARTER_TURN
         )
     )

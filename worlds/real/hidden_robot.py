@@ -15,7 +15,7 @@ from worlds.hidden.joints import HiddenJoints
 from worlds.hidden.model import hidden_model
 from worlds.hidden.plant import described_hidden_plant
 from worlds.real.engines import hidden_engine
-from worlds.real.robot import OUT_OF_REACH_M, BulletState
+from worlds.real.robot import BulletState, restart
 from worlds.world import WorldOptions
 
 FINE_STEP_S = 0.0005
@@ -46,11 +46,8 @@ class HiddenRobot:
         self._bias_rad_s = surroundings(options.hidden).gyroscope_bias_rad_s
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> BulletState:
-        """Put the robot at rest and upright at the origin, its torso at a height."""
-        # One step out of reach first: contacts of the last rollout would linger.
-        self._world.reset(pose_rad, height_m + OUT_OF_REACH_M)
-        self._world.step(np.zeros(len(pose_rad)))
-        self._world.reset(pose_rad, height_m)
+        """Put the robot at rest in a pose (joints,), its torso upright at a height."""
+        restart(self._world, pose_rad, height_m)
         self._drive = HiddenDrive(
             self._plant, self._effects, self._world, self._step_s, pose_rad
         )
@@ -76,11 +73,11 @@ class HiddenRobot:
         return BulletState(
             base_pose=np.concatenate([sense.position_m, sense.orientation]),
             base_velocity=np.concatenate([sense.linear_m_s, sense.angular_rad_s]),
-            position_rad=self._drive.encoders(),
-            velocity_rad_s=self._world.velocity_rad_s.copy(),
             gyroscope_rad_s=sense.gyroscope_rad_s + self._bias_rad_s,
             accelerometer_m_s2=sense.accelerometer_m_s2,
             foot_force_n=sense.foot_force_n,
+            position_rad=self._drive.encoders(),
+            velocity_rad_s=self._world.velocity_rad_s.copy(),
         )
 
 

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pybullet
 import pytest
+from pybullet_utils.bullet_client import BulletClient
 
 import terrain
 from terrain import Heightfield
@@ -54,16 +55,15 @@ def mujoco_heights(ground, x, y):
 
 
 def bullet_heights(ground, x, y):
-    client = pybullet.connect(pybullet.DIRECT)
+    bullet = BulletClient(pybullet.DIRECT)
     try:
-        body = load_ground(client, ground)
-        hits = pybullet.rayTestBatch(
+        body = load_ground(bullet, ground)
+        hits = bullet.rayTestBatch(
             np.c_[x, y, np.full(len(x), ABOVE_M)].tolist(),
             np.c_[x, y, np.full(len(x), BELOW_M)].tolist(),
-            physicsClientId=client,
         )
     finally:
-        pybullet.disconnect(client)
+        bullet.disconnect()
     assert {hit[0] for hit in hits} == {body}
     return np.array([hit[3][2] for hit in hits])
 

@@ -9,7 +9,6 @@ import textwrap
 import threading
 
 import numpy as np
-import pybullet
 import pytest
 from scipy.spatial.transform import Rotation
 
@@ -139,9 +138,7 @@ def test_pose_is_that_of_the_torso_frame(robot, nao, crouch):
     state = robot.reset(crouch, 0.5)
     np.testing.assert_allclose(state.base_pose, [0, 0, 0.5, 1, 0, 0, 0], atol=1e-12)
     np.testing.assert_allclose(state.base_velocity, 0, atol=1e-12)
-    place, _ = pybullet.getBasePositionAndOrientation(
-        robot.body.number, **robot.body.client
-    )
+    place, _ = robot.body.bullet.getBasePositionAndOrientation(robot.body.number)
     np.testing.assert_allclose(
         np.array(place) - [0, 0, 0.5], nao.root.inertial.com_m, atol=1e-12
     )
@@ -150,10 +147,7 @@ def test_pose_is_that_of_the_torso_frame(robot, nao, crouch):
 def test_velocity_is_that_of_the_torso_frame(robot, crouch):
     """Flung into the air, its path and its turning say how fast it is."""
     robot.reset(crouch, 0.9)
-    bullet = robot.body
-    pybullet.resetBaseVelocity(
-        bullet.number, [0.3, -0.2, 2], [2, 3, 4], **bullet.client
-    )
+    robot.body.bullet.resetBaseVelocity(robot.body.number, [0.3, -0.2, 2], [2, 3, 4])
     robot.step([(crouch, 100)])
     states = [robot.step([(crouch, 1)]) for _ in range(3)]
     poses = np.array([state.base_pose for state in states])
@@ -173,7 +167,7 @@ def test_limbs_pass_through_each_other(robot, nao, crouch):
         pose[nao.joints.index(f"{side}HipRoll")] = roll
     robot.reset(pose, 0.6)
     robot.step([(pose, 5)])
-    assert pybullet.getContactPoints(bodyA=robot.body.number, **robot.body.client) == ()
+    assert robot.body.bullet.getContactPoints(bodyA=robot.body.number) == ()
 
 
 def test_a_robot_that_blew_up_starts_again_as_new(nao, crouch, lumpy):
@@ -185,7 +179,7 @@ def test_a_robot_that_blew_up_starts_again_as_new(nao, crouch, lumpy):
     try:
         expected = roll(fresh)
         used.reset(crouch, 0.316)
-        pybullet.resetBaseVelocity(used.body.number, [1e300, 0, 0], **used.body.client)
+        used.body.bullet.resetBaseVelocity(used.body.number, [1e300, 0, 0])
         assert [used.step([(crouch, 5)]) for _ in range(2)] == [None, None]
         np.testing.assert_array_equal(roll(used), expected)
     finally:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from robots.description import Description
 from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Setting
@@ -46,12 +47,12 @@ class ContactCompliance(_UnderFeet):
     engines = ("bullet",)
     sizes = (3000.0, 40000.0)
 
-    def foot_spring(self, values: Values, mass_kg: float) -> FootSpring:
+    def foot_spring(self, values: Values, robot: Description) -> FootSpring:
         """Spring and damper under each foot; damping is 10 % of critical by default."""
         stiffness, damping = values["stiffness"], values["damping"]
         if math.isnan(damping):
             # Each foot carries half of the robot.
-            damping = DAMPING_RATIO * 2 * np.sqrt(stiffness * (mass_kg / 2))
+            damping = DAMPING_RATIO * 2 * np.sqrt(stiffness * (robot.mass_kg / 2))
         return FootSpring(stiffness, float(damping))
 
 

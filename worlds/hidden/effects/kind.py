@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from groundwalk.arrays import FloatArray
+from robots.description import Description
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Servos
 from worlds.hidden.setting import Scales, Setting, Spot
@@ -148,8 +149,8 @@ class HiddenKind:
         """Friction coefficient between soles and ground; None leaves it unchanged."""
         return None
 
-    def foot_spring(self, values: Values, mass_kg: float) -> FootSpring | None:
-        """Soft ground under each foot of a robot of this mass; None for hard ground."""
+    def foot_spring(self, values: Values, robot: Description) -> FootSpring | None:
+        """Soft ground under each foot of a robot; None for hard ground."""
         return None
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
