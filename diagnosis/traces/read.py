@@ -169,7 +169,7 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
     return Trace(
         name=name,
         time_s=recording.time_s,
-        position_rad=recording.positions(plant.joints),
+        position_rad=recording.joint_values("position", plant.joints),
         servo=with_gains(plant.servo, plant.joints, recording.metadata.servo),
         **{
             field: _of_joints(recording, quantity, plant.joints)

@@ -147,12 +147,12 @@ def asked_share(signals: Signals) -> FloatArray:
     is 0 where these ask for torques of different signs.
     """
     recording, robot = signals.scene.recording, signals.scene.description
-    commands = recording.commands(robot.joints)
+    commands = recording.joint_values("command", robot.joints)
     servo = [recording.metadata.servo[joint] for joint in robot.joints]
     scale = np.array([gains.kp / gains.max_torque for gains in servo])
     late = np.arange(signals.ticks_in(LATENCY_S) + 1)
     rows = np.maximum(np.arange(len(commands)) - late[:, None], 0)
-    error = scale * (commands[rows] - recording.positions(robot.joints))
+    error = scale * (commands[rows] - recording.joint_values("position", robot.joints))
     agree = (np.sign(error) == np.sign(error[0])).all(axis=0)
     return np.where(agree, np.abs(error).min(axis=0), 0.0)
 

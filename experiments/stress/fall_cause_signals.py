@@ -83,7 +83,7 @@ class Signals:
         base = LinkPoses(
             recording.vector("base.position"), recording.vector("base.orientation")
         )
-        poses = link_poses(robot, recording.commands(robot.joints), base)
+        poses = link_poses(robot, recording.joint_values("command", robot.joints), base)
         return self._soles(poses)
 
     @cached_property

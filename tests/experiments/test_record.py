@@ -24,7 +24,9 @@ def test_a_recording_says_what_it_is(tmp_path):
 def test_hidden_friction_shows_and_the_same_seed_gives_the_same_numbers(tmp_path):
     hidden = ("coulomb_friction@swing:torque=0.4",)
     rough, same, smooth = (
-        record(tmp_path / f"{name}.parquet", hidden=effects).positions(["swing"])
+        record(tmp_path / f"{name}.parquet", hidden=effects).joint_values(
+            "position", ["swing"]
+        )
         for name, effects in (("rough", hidden), ("same", hidden), ("smooth", ()))
     )
     assert np.array_equal(rough, same)
@@ -33,7 +35,9 @@ def test_hidden_friction_shows_and_the_same_seed_gives_the_same_numbers(tmp_path
 
 def test_both_worlds_record_the_same_robot(tmp_path):
     one, other = (
-        record(tmp_path / f"{world}.parquet", world=world).positions(["swing"])
+        record(tmp_path / f"{world}.parquet", world=world).joint_values(
+            "position", ["swing"]
+        )
         for world in ("sim", "real")
     )
     assert np.std(one - other) < 0.001

@@ -4,7 +4,7 @@ Example:
   >>> from pathlib import Path
   >>> from worlds.recordings import read_recording
   >>> recording = read_recording(Path("runs/walk/recordings/sim_tuned.parquet"))
-  >>> recording.positions(["LKneePitch"]).shape == (recording.ticks, 1)
+  >>> recording.joint_values("position", ["LKneePitch"]).shape == (recording.ticks, 1)
   True
 """
 

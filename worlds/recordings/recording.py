@@ -52,10 +52,10 @@ from worlds.recordings.values import check_values, frozen_columns
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """One rollout as columns of equal length, with metadata about its origin.
+    """One rollout as read-only columns of equal length, with metadata on its origin.
 
     The constructor checks all columns and metadata against format 1, and raises
-    `BadRecordingError` at the first fault. The arrays are read-only.
+    `BadRecordingError` with column and row of the first fault.
 
     Example:
       >>> columns = {"time": time_s, "position.swing": measured_rad,
@@ -69,12 +69,7 @@ class Recording:
     metadata: RecordingMetadata
 
     def __post_init__(self) -> None:
-        """Check the columns' names and values, and the joints in the metadata.
-
-        Raises:
-          BadRecordingError: they are not those of format 1; the message names the
-            column and the row of the first fault.
-        """
+        """Check the columns' names and values, and the joints in the metadata."""
         check_names(list(self.columns))
         object.__setattr__(self, "columns", frozen_columns(self.columns))
         check_values(self.columns)
@@ -108,8 +103,7 @@ class Recording:
     def joints_with(self, quantity: str) -> tuple[str, ...]:
         """The joints that have a column of a quantity, in the order of the columns.
 
-        Args:
-          quantity: "position", "velocity", "command", "command_torque" or "torque".
+        Quantities are position, velocity, command, command_torque and torque.
 
         Raises:
           UnknownNameError: there is no such quantity.
@@ -118,55 +112,26 @@ class Recording:
             raise UnknownNameError("joint quantity", quantity, JOINT_QUANTITIES)
         return joints_with(quantity, self.columns)
 
-    def positions(self, joints: Sequence[str]) -> FloatArray:
-        """Measured positions [rad; m if sliding], shape (ticks, joints).
+    def joint_values(self, quantity: str, joints: Sequence[str]) -> FloatArray:
+        """(ticks, joints) values of a quantity of some joints, in SI units.
 
         Args:
+          quantity: as in `joints_with`.
           joints: names of joints, in the order of the result's columns.
 
         Raises:
-          UnknownNameError: a joint was not recorded.
+          UnknownNameError: a joint has no column "<quantity>.<joint>".
         """
-        return self._of_joints(POSITION, joints)
-
-    def velocities(self, joints: Sequence[str]) -> FloatArray:
-        """Measured velocities [rad/s; m/s if sliding], shape (ticks, joints).
-
-        Args:
-          joints: names of joints, in the order of the result's columns.
-
-        Raises:
-          UnknownNameError: a joint has no column "velocity.<joint>".
-        """
-        return self._of_joints("velocity", joints)
-
-    def commands(self, joints: Sequence[str]) -> FloatArray:
-        """Position targets [rad; m if sliding], shape (ticks, joints).
-
-        Args:
-          joints: names of joints, in the order of the result's columns.
-
-        Raises:
-          UnknownNameError: a joint has no column "command.<joint>".
-        """
-        return self._of_joints("command", joints)
-
-    def torques(self, joints: Sequence[str]) -> FloatArray:
-        """Measured torques [N m; N if sliding], shape (ticks, joints).
-
-        Args:
-          joints: names of joints, in the order of the result's columns.
-
-        Raises:
-          UnknownNameError: a joint has no column "torque.<joint>".
-        """
-        return self._of_joints("torque", joints)
+        known = self.joints_with(quantity)
+        for joint in joints:
+            if joint not in known:
+                raise UnknownNameError(f"joint with a {quantity}", joint, known)
+        if not joints:
+            return np.empty((self.ticks, 0))
+        return np.stack([self.columns[f"{quantity}.{joint}"] for joint in joints], 1)
 
     def has(self, vector: str) -> bool:
-        """Whether a vector was recorded.
-
-        Args:
-          vector: for example "base.orientation" or "foot_force".
+        """Whether a vector, such as "foot_force", was recorded.
 
         Raises:
           UnknownNameError: format 1 has no such vector.
@@ -176,11 +141,7 @@ class Recording:
         return vector_columns(vector)[0] in self.columns
 
     def vector(self, vector: str) -> FloatArray:
-        """The values of a vector in SI units, shape (ticks, components).
-
-        Args:
-          vector: for example "base.orientation" (components w, x, y, z), "gyroscope"
-            (x, y, z) or "foot_force" (left, right).
+        """(ticks, components) values of a vector, such as "gyroscope", in SI units.
 
         Raises:
           UnknownNameError: there is no such vector, or it was not recorded.
@@ -190,28 +151,3 @@ class Recording:
                 "vector of this recording", vector, filter(self.has, VECTORS)
             )
         return np.stack([self.columns[name] for name in vector_columns(vector)], axis=1)
-
-    def slice(self, start: int, stop: int | None = None) -> "Recording":
-        """The part of the recording from row `start` to before row `stop`.
-
-        Negative rows count from the end. The times stay the same.
-
-        Raises:
-          BadRecordingError: no row is left.
-        """
-        rows = slice(start, stop)
-        return Recording(
-            {name: values[rows] for name, values in self.columns.items()},
-            self.metadata,
-        )
-
-    def _of_joints(self, quantity: str, joints: Sequence[str]) -> FloatArray:
-        names = [f"{quantity}.{joint}" for joint in joints]
-        for name, joint in zip(names, joints, strict=True):
-            if name not in self.columns:
-                raise UnknownNameError(
-                    f"joint with a {quantity}", joint, self.joints_with(quantity)
-                )
-        if not names:
-            return np.empty((self.ticks, 0))
-        return np.stack([self.columns[name] for name in names], axis=1)

@@ -76,7 +76,7 @@ class Scene:
         recorded, joints = self.recording.joints, self.description.joints
         position_rad = np.zeros((self.recording.ticks, len(joints)))
         columns = [joints.index(joint) for joint in recorded]
-        position_rad[:, columns] = self.recording.positions(recorded)
+        position_rad[:, columns] = self.recording.joint_values("position", recorded)
         base = LinkPoses(
             self._vector("base.position", (0.0, 0.0, 0.0)),
             self._vector(ORIENTATION, (1.0, 0.0, 0.0, 0.0)),

@@ -43,16 +43,16 @@ def test_the_log_begins_in_the_middle(robot):
 
 def test_positions_are_whole_quanta_and_speeds_their_differences(robot):
     recording = recorded(robot, quantum_rad=0.0015)
-    quanta = recording.positions(["LKneePitch"]) / 0.0015
+    quanta = recording.joint_values("position", ["LKneePitch"]) / 0.0015
     assert np.allclose(quanta, np.round(quanta))
-    change = np.diff(recording.positions(["LKneePitch"]), axis=0) / 0.01
-    assert np.allclose(recording.velocities(["LKneePitch"])[1:], change)
+    change = np.diff(recording.joint_values("position", ["LKneePitch"]), axis=0) / 0.01
+    assert np.allclose(recording.joint_values("velocity", ["LKneePitch"])[1:], change)
 
 
 def test_noise_is_as_strong_as_said(robot):
     _, run = robot
     recording = recorded(robot, quantum_rad=0.0, encoder_rad=0.001)
-    noise = recording.positions(recording.joints) - run.encoder_rad[50:]
+    noise = recording.joint_values("position", recording.joints) - run.encoder_rad[50:]
     assert np.std(noise) == pytest.approx(0.001, rel=0.05)
 
 

@@ -36,21 +36,23 @@ def test_sizes(recording):
 
 def test_values_come_in_the_order_that_is_asked_for(recording):
     np.testing.assert_array_equal(
-        recording.positions(["hip", "knee"]), [[5, 1], [6, 2], [7, 3], [8, 4]]
+        recording.joint_values("position", ["hip", "knee"]),
+        [[5, 1], [6, 2], [7, 3], [8, 4]],
     )
     np.testing.assert_array_equal(
-        recording.commands(["knee", "hip"]), [[13, 9], [14, 10], [15, 11], [16, 12]]
+        recording.joint_values("command", ["knee", "hip"]),
+        [[13, 9], [14, 10], [15, 11], [16, 12]],
     )
     np.testing.assert_array_equal(
-        recording.velocities(["hip"]), [[0.1], [0.2], [0.3], [0.4]]
+        recording.joint_values("velocity", ["hip"]), [[0.1], [0.2], [0.3], [0.4]]
     )
     np.testing.assert_array_equal(
-        recording.torques(["knee"]), [[21], [22], [23], [np.nan]]
+        recording.joint_values("torque", ["knee"]), [[21], [22], [23], [np.nan]]
     )
 
 
 def test_no_joints_give_no_columns(recording):
-    assert recording.positions([]).shape == (4, 0)
+    assert recording.joint_values("position", []).shape == (4, 0)
 
 
 def test_joints_with_a_quantity(recording):
@@ -62,9 +64,9 @@ def test_joints_with_a_quantity(recording):
 
 def test_a_joint_without_the_column_is_an_error(recording):
     with pytest.raises(UnknownNameError, match="'kne': did you mean 'knee'"):
-        recording.positions(["hip", "kne"])
+        recording.joint_values("position", ["hip", "kne"])
     with pytest.raises(UnknownNameError, match="joint with a velocity 'knee'"):
-        recording.velocities(["knee"])
+        recording.joint_values("velocity", ["knee"])
 
 
 def test_vectors(recording):
@@ -77,19 +79,6 @@ def test_vectors(recording):
         recording.vector("gyroscope")
     with pytest.raises(UnknownNameError, match="did you mean 'gyroscope'"):
         recording.has("gyroscop")
-
-
-def test_a_slice_keeps_its_times(recording):
-    part = recording.slice(1, 3)
-    np.testing.assert_array_equal(part.time_s, [0.5, 2.0])
-    np.testing.assert_array_equal(part.positions(["knee"]), [[2], [3]])
-    assert part.metadata is recording.metadata
-    assert recording.slice(-1).ticks == 1
-
-
-def test_an_empty_slice_is_refused(recording):
-    with pytest.raises(BadRecordingError, match="no rows"):
-        recording.slice(2, 2)
 
 
 @pytest.mark.parametrize(

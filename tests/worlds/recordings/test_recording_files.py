@@ -45,14 +45,20 @@ def test_a_csv_file_written_by_hand(tmp_path):
     path = csv_file(tmp_path, '0,1e-1,\r\n\r\n"2",nan,-3', header="\ufeff" + HEADER)
     read = read_recording(path)
     np.testing.assert_array_equal(read.time_s, [0.0, 2.0])
-    np.testing.assert_array_equal(read.positions(["knee"]), [[0.1], [np.nan]])
-    np.testing.assert_array_equal(read.commands(["knee"]), [[np.nan], [-3.0]])
+    np.testing.assert_array_equal(
+        read.joint_values("position", ["knee"]), [[0.1], [np.nan]]
+    )
+    np.testing.assert_array_equal(
+        read.joint_values("command", ["knee"]), [[np.nan], [-3.0]]
+    )
     assert read.metadata == BY_HAND
 
 
 def test_a_good_parquet_file_of_another_program(tmp_path):
     read = read_recording(parquet_file(tmp_path, table()))
-    np.testing.assert_array_equal(read.commands(["knee"]), [[3.0], [4.0]])
+    np.testing.assert_array_equal(
+        read.joint_values("command", ["knee"]), [[3.0], [4.0]]
+    )
     assert read.metadata == BY_HAND
 
 
@@ -64,10 +70,18 @@ def test_a_parquet_file_with_other_kinds_of_numbers(tmp_path):
         torque__knee=pa.array(["1.25", "2.50"]).cast(pa.decimal128(5, 2)),
     )
     read = read_recording(parquet_file(tmp_path, other))
-    np.testing.assert_array_equal(read.positions(["knee"]), [[0.5], [np.nan]])
-    np.testing.assert_array_equal(read.commands(["knee"]), [[2.0**60], [np.nan]])
-    np.testing.assert_array_equal(read.velocities(["knee"]), [[np.nan], [np.nan]])
-    np.testing.assert_array_equal(read.torques(["knee"]), [[1.25], [2.5]])
+    np.testing.assert_array_equal(
+        read.joint_values("position", ["knee"]), [[0.5], [np.nan]]
+    )
+    np.testing.assert_array_equal(
+        read.joint_values("command", ["knee"]), [[2.0**60], [np.nan]]
+    )
+    np.testing.assert_array_equal(
+        read.joint_values("velocity", ["knee"]), [[np.nan], [np.nan]]
+    )
+    np.testing.assert_array_equal(
+        read.joint_values("torque", ["knee"]), [[1.25], [2.5]]
+    )
 
 
 def test_an_argument_stands_in_for_missing_metadata(tmp_path):

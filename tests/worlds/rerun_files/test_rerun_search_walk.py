@@ -94,7 +94,9 @@ def test_links_stand_where_the_recording_puts_them(file, walks, link_frames):
         base = recording.vector("base.orientation")[rows]
         base = Rotation.from_quat(base, scalar_first=True)
         base_m = recording.vector("base.position")[rows]
-        turns, places_m = link_frames(NAO, recording.positions(NAO.joints)[rows])
+        turns, places_m = link_frames(
+            NAO, recording.joint_values("position", NAO.joints)[rows]
+        )
         expected = {NAO.root.name: (base.as_matrix(), base_m)}
         for joint, turn, place_m in zip(NAO.links, turns, places_m, strict=True):
             turned = base * Rotation.from_matrix(turn)

@@ -50,7 +50,7 @@ def test_the_centre_of_mass_is_that_of_mujoco():
     for tick in (0, 7, TICKS - 1):
         data.qpos[:3] = recording.vector("base.position")[tick]
         data.qpos[3:7] = recording.vector("base.orientation")[tick]
-        data.qpos[7:] = recording.positions(NAO.joints)[tick]
+        data.qpos[7:] = recording.joint_values("position", NAO.joints)[tick]
         mujoco.mj_forward(model, data)
         np.testing.assert_allclose(centre_m[tick], data.subtree_com[1], atol=1e-6)
 
