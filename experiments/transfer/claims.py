@@ -1,13 +1,19 @@
-"""Claims that a study checks, most of them the SGAT paper's, and the study's page."""
+"""Claims that a study checks, most of them the SGAT paper's, and what it writes."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from experiments.reports.figure_file import write_figure
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report
+from experiments.reports.tables import print_folder, print_json, print_table
+from experiments.runs.extras import extra
 from experiments.runs.folder import RunFolder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -27,6 +33,32 @@ class Claim:
     def to_json(self) -> dict[str, Any]:
         """The attributes by name."""
         return dataclasses.asdict(self)
+
+
+def write_picture(
+    folder: RunFolder, name: str, draw: Callable[..., "Figure"], *results: Any
+) -> None:
+    """Write the figure `draw(*results)`, or print why not: the results are kept."""
+    with extra(name):
+        write_figure(draw(*results), folder.path / name)
+
+
+def print_study(
+    as_json: bool,
+    folder: RunFolder,
+    result: Mapping[str, Any],
+    headings: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    claims: Sequence[Claim] = (),
+) -> None:
+    """Print a study's result as JSON, or its table, its claims and the run's folder."""
+    if as_json:
+        print_json(result)
+        return
+    print_table(headings, rows)
+    if claims:
+        print(*claim_lines(claims), sep="\n")
+    print_folder(folder.path)
 
 
 def write_transfer_page(

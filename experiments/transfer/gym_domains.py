@@ -1,32 +1,28 @@
 """The verbs `transfer inverted-pendulum` and `transfer half-cheetah`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from experiments.reports.figure_file import write_figure
-from experiments.reports.tables import print_folder, print_json, print_table
-from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
-from experiments.transfer.claims import claim_lines
+from experiments.transfer.claims import print_study, write_picture
 from experiments.transfer.gym_studies.environments import (
     HALF_CHEETAH,
     INVERTED_PENDULUM,
     Domain,
 )
 from experiments.transfer.gym_studies.figure import returns_figure
-from experiments.transfer.gym_studies.grounding import GroundingConfig
 from experiments.transfer.gym_studies.page import write_gym_page
 from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
 from experiments.transfer.gym_studies.sizes import SIZES, SizeName
-from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, Job, do_job
+from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, do_job
 
 
 @dataclass(frozen=True)
 class TransferGym(RunOptions):
-    """Options of a Gymnasium study; a subclass sets its domain and its page's title.
+    """Options of a Gymnasium study; a subclass sets its domain.
 
     Attributes:
       size: size of the study, which sets all options that are not given.
@@ -40,7 +36,6 @@ class TransferGym(RunOptions):
     """
 
     domain: ClassVar[Domain]
-    title: ClassVar[str]
 
     size: SizeName = "reduced"
     seeds: int | None = None
@@ -58,21 +53,13 @@ class TransferGym(RunOptions):
 
     def study(self) -> GymStudy:
         """The study that these options describe."""
+        given = {
+            name: value
+            for name in ("seeds", "noises", "timesteps", "episodes")
+            if (value := getattr(self, name)) is not None
+        }
         size = SIZES[self.domain.name][self.size]
-        return GymStudy(
-            self.domain,
-            self.domain.settings,
-            size.noises if self.noises is None else self.noises,
-            self.methods,
-            size.seeds if self.seeds is None else self.seeds,
-            size.timesteps if self.timesteps is None else self.timesteps,
-            size.episodes if self.episodes is None else self.episodes,
-            size.trpo,
-            GroundingConfig(size.real_steps, size.sim_steps),
-            size.envelopes,
-            size.search_episodes,
-            self.seed,
-        )
+        return replace(size, methods=self.methods, seed=self.seed, **given)
 
 
 @dataclass(frozen=True)
@@ -80,9 +67,6 @@ class TransferInvertedPendulum(TransferGym):
     """Compare groundings and baselines for a noisy pendulum with a heavier pole."""
 
     domain: ClassVar[Domain] = INVERTED_PENDULUM
-    title: ClassVar[str] = (
-        "Inverted pendulum: from the sim to a noisy world with a heavier pole"
-    )
 
 
 @dataclass(frozen=True)
@@ -90,9 +74,6 @@ class TransferHalfCheetah(TransferGym):
     """Compare groundings and baselines for noisy cheetahs, some of them heavier."""
 
     domain: ClassVar[Domain] = HALF_CHEETAH
-    title: ClassVar[str] = (
-        "Half cheetah: from the sim to noisy worlds, one of them heavier"
-    )
 
 
 def main(config: TransferGym) -> None:
@@ -111,15 +92,10 @@ def main(config: TransferGym) -> None:
         "cells": cells,
     }
     folder.write_json(RESULT, result)
-    with extra(figure):
-        write_figure(returns_figure(rows), folder.path / figure)
-    write_gym_page(folder, config.title, figure, (config.size, study), result)
-    if config.json:
-        print_json(result)
-    else:
-        print_table(*returns_table(rows, "deterministic"))
-        print(*claim_lines(claims), sep="\n")
-        print_folder(folder.path)
+    write_picture(folder, figure, returns_figure, rows)
+    write_gym_page(folder, figure, config.size, study, rows, claims)
+    table = returns_table(rows, "deterministic")
+    print_study(config.json, folder, result, *table, claims)
 
 
 def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
@@ -138,11 +114,7 @@ def _compute(study: GymStudy, folder: RunFolder, threads: int) -> list[Cell]:
                 if not folder.has(job.file)
             }
             for job, call in as_done(calls):
-                _keep(folder, job, call.result())
+                if (cell := call.result()) is not None:
+                    folder.write_json(job.file, cell)
                 bar.advance()
     return [folder.read_json(job.file) for job in stages[-1]]
-
-
-def _keep(folder: RunFolder, job: Job, cell: Cell | None) -> None:
-    if cell is not None:
-        folder.write_json(job.file, cell)

@@ -10,12 +10,10 @@ import worlds
 from experiments.command_line import run_verb
 from experiments.grounded_walks.courses import Places, RealCourse
 from experiments.grounded_walks.sim import ROBOT
-from experiments.reports.figure_file import write_figure
-from experiments.reports.tables import print_folder, print_json, print_table
-from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
+from experiments.transfer.claims import print_study, write_picture
 from experiments.transfer.nao_studies.figure import FIGURE, cells_figure
 from experiments.transfer.nao_studies.page import (
     CELLS,
@@ -146,11 +144,8 @@ def main(config: TransferNao) -> None:
                 study.compute(method, step)
                 bar.advance(f"{method}, step {step} done")
                 _write(folder, config, study.cells)
-    if config.json:
-        print_json({CELLS: study.cells})
-    else:
-        print_table(HEADINGS, table_of(study.cells))
-        print_folder(folder.path)
+    result, table = {CELLS: study.cells}, table_of(study.cells)
+    print_study(config.json, folder, result, HEADINGS, table)
 
 
 def _write(
@@ -158,8 +153,7 @@ def _write(
 ) -> None:
     """Write the results so far, since a study takes hours."""
     folder.write_json(RESULT, {CELLS: cells})
-    with extra(FIGURE):
-        write_figure(cells_figure(cells), folder.path / FIGURE)
+    write_picture(folder, FIGURE, cells_figure, cells)
     write_nao_page(folder, cells, len(config.plan), config.places.real)
 
 

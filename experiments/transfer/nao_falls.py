@@ -13,12 +13,10 @@ from experiments.grounded_walks.data import walk
 from experiments.grounded_walks.models import WalkModels
 from experiments.grounded_walks.records import record_real, record_walks
 from experiments.grounded_walks.sim import ROBOT, walk_in_sim
-from experiments.reports.figure_file import write_figure
-from experiments.reports.tables import print_folder, print_json, print_table
-from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, open_run
 from experiments.runs.options import RunOptions
 from experiments.runs.progress import progress
+from experiments.transfer.claims import print_study, write_picture
 from experiments.transfer.nao_studies.falls_figure import FIGURE, falls_figure
 from experiments.transfer.nao_studies.falls_measures import (
     GROUNDINGS,
@@ -78,17 +76,12 @@ def main(config: TransferNaoFalls) -> None:
             folder.write_json(HISTORY, state)
             bar.advance(f"{stage} done")
     rows = prediction_rows(state)
-    folder.write_json(RESULT, {"predictions": rows, MEASURES: state[MEASURES]})
-    with extra(MEASURES_FIGURE):
-        write_figure(measures_figure(state[MEASURES]), folder.path / MEASURES_FIGURE)
-    with extra(FIGURE):
-        write_figure(falls_figure(state), folder.path / FIGURE)
+    result = {"predictions": rows, MEASURES: state[MEASURES]}
+    folder.write_json(RESULT, result)
+    write_picture(folder, MEASURES_FIGURE, measures_figure, state[MEASURES])
+    write_picture(folder, FIGURE, falls_figure, state)
     write_falls_page(folder, rows, state, config.trials)
-    if config.json:
-        print_json(folder.read_json(RESULT))
-    else:
-        print_table(HEADINGS, table_of(rows))
-        print_folder(folder.path)
+    print_study(config.json, folder, result, HEADINGS, table_of(rows))
 
 
 def _stages(

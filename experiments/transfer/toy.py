@@ -8,11 +8,10 @@ import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.reports.report import markdown_table
-from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.folder import RESULT, open_run
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
-from experiments.transfer.claims import Claim, write_transfer_page
+from experiments.transfer.claims import Claim, print_study, write_transfer_page
 from experiments.transfer.toy_mdps import TOYS, Toy
 from groundwalk.arrays import FloatArray
 from sgat.tabular.grounding import counted_forward_model, grounded_sim
@@ -69,11 +68,7 @@ def main(config: TransferToy) -> None:
     notes = [line.format(episodes=config.episodes) for line in NOTES]
     body = [*markdown_table(COLUMNS, rows), "", *notes]
     write_transfer_page(folder, TITLE, claims, body, [_answer(result["toys"])])
-    if config.json:
-        print_json(result)
-    else:
-        print_table(COLUMNS, rows)
-        print_folder(folder.path)
+    print_study(config.json, folder, result, COLUMNS, rows)
 
 
 def _answer(toys: Mapping[str, Any]) -> str:

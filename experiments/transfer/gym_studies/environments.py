@@ -9,7 +9,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from robots.engine_models.heavier_bodies import scale_mass
 from robots.engine_models.mjcf import quiet_mujoco
-from sgat.gym.grounded_env import GroundedEnv, RewardOf
+from sgat.gym.grounded_env import GroundedEnv
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.transformer import Transformer
 
@@ -25,6 +25,7 @@ class Domain:
 
     Attributes:
       name: name of the domain on the command line.
+      title: heading of its page.
       environment: id of the environment in Gymnasium.
       mass_factor: mass and inertia of the real world's heavier bodies over the sim's.
       heavy_bodies: names of those bodies; all bodies if empty.
@@ -33,6 +34,7 @@ class Domain:
     """
 
     name: str
+    title: str
     environment: str
     mass_factor: float
     heavy_bodies: tuple[str, ...] = ()
@@ -46,24 +48,20 @@ class Domain:
         """
         return self._behind(transformer, self._plain())
 
-    def noisy_sim(self, noise: float) -> Environment:
-        """The sim with noise on actions, in fractions of half of the action's range."""
-        return self._behind(self._noise(noise), self._plain())
-
     def real(self, setting: str, noise: float) -> Environment:
-        """A world that plays the role of the real one.
+        """A world that plays the role of the real one, `NOISY_SIM` or `NOISY_REAL`.
 
-        Args:
-          setting: `NOISY_SIM` or `NOISY_REAL`.
-          noise: standard deviation of the Gaussian noise on actions, as a fraction of
-            half of the action's range. The noisy action is clipped to the range.
+        The standard deviation of the Gaussian noise on actions is a fraction of half of
+        the action's range; the noisy action is clipped to the range.
         """
         env = self._plain()
         if setting == NOISY_REAL:
             inside = env.unwrapped
             model, data = getattr(inside, "model"), getattr(inside, "data")  # noqa: B009
             scale_mass(model, data, self.mass_factor, self.heavy_bodies)
-        return self._behind(self._noise(noise), env)
+        low, high = self.bounds()
+        spread = noise * float((high - low).max()) / 2
+        return self._behind(ActionNoise(spread, low, high), env)
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """(a,) least and (a,) largest action, in the environment's unit."""
@@ -75,32 +73,29 @@ class Domain:
         quiet_mujoco()  # no warnings about attributes that MuJoCo 4 deprecates
         return gym.make(self.environment, disable_env_checker=True)
 
-    def _noise(self, noise: float) -> ActionNoise:
-        low, high = self.bounds()
-        return ActionNoise(noise * float((high - low).max()) / 2, low, high)
-
     def _behind(self, transformer: Transformer | None, env: Environment) -> Environment:
         if transformer is None:
             return env
-        return GroundedEnv(env, transformer, self._reward_of())
-
-    def _reward_of(self) -> RewardOf | None:
-        """A function that makes the reward charge for the policy's own action."""
-        if not self.control_cost:
-            return None
 
         def charged(reward: float, asked: FloatArray, given: FloatArray) -> float:
             more = np.square(given, dtype=float).sum() - np.square(asked).sum()
             return reward + self.control_cost * float(more)
 
-        return charged
+        return GroundedEnv(env, transformer, charged if self.control_cost else None)
 
 
-INVERTED_PENDULUM = Domain("inverted-pendulum", "InvertedPendulum-v5", 10.0, ("pole",))
+INVERTED_PENDULUM = Domain(
+    "inverted-pendulum",
+    "Inverted pendulum: from the sim to a noisy world with a heavier pole",
+    "InvertedPendulum-v5",
+    10.0,
+    ("pole",),
+)
 """The SGAT paper's real pendulum: its pole weighs ten times as much (50.186 kg)."""
 
 HALF_CHEETAH = Domain(
     "half-cheetah",
+    "Half cheetah: from the sim to noisy worlds, one of them heavier",
     "HalfCheetah-v5",
     20 / 14,
     control_cost=0.1,

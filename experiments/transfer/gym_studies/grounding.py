@@ -1,14 +1,14 @@
 """One grounding step on a Gymnasium environment: data, models, transformers."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from experiments.transfer.gym_studies.environments import Domain, Environment
-from experiments.transfer.gym_studies.training import exploring
+from groundwalk.arrays import FloatArray
 from sgat.gym.collect import collect
 from sgat.models.inverse_model import InverseModel
 from sgat.transformers.action_transformer import ActionTransformer
@@ -34,59 +34,34 @@ STRETCH = 50
 """Number of consecutive steps that are held out together."""
 
 
-@dataclass(frozen=True)
-class GroundingConfig:
-    """Number of transitions that a grounding step collects.
-
-    Attributes:
-      real_steps: number of transitions of the real world.
-      sim_steps: number of transitions of the sim.
-    """
-
-    real_steps: int
-    sim_steps: int
-
-
-@dataclass(frozen=True, eq=False)
-class GroundedStep:
-    """The result of a grounding step.
-
-    Attributes:
-      transformer: makes a new action transformer from the fitted models.
-      measures: numbers on how good the models and the transformed actions are, on real
-        data that were held out.
-    """
-
-    transformer: Callable[[], KeptTransformer]
-    measures: dict[str, float]
-
-
 def ground(
     model: "TRPO",
     domain: Domain,
     real: tuple[str, float],
-    config: GroundingConfig,
+    steps: tuple[int, int],
     name: str,
     seed: np.random.SeedSequence,
-) -> GroundedStep:
+) -> tuple[Callable[[], KeptTransformer], dict[str, float]]:
     """Collect data in both worlds with a policy, and fit the models.
 
     Args:
       model: the policy, which was trained in the sim.
       domain: the environment.
       real: setting and noise of the real world; see `Domain.real`.
-      config: number of transitions to collect.
+      steps: numbers of transitions to collect in the real world and in the sim.
       name: name of a grounding in `sgat.transformers`.
       seed: seed of everything except the policy's own random actions.
+
+    Returns:
+      A function that makes a new action transformer from the fitted models, and numbers
+      on how good models and transformed actions are, on real data that were held out.
     """
     low, high = domain.bounds()
     of_real, of_sim, of_forward, of_inverse, of_look, of_more = seed.spawn(6)
     seen, held_out = _collect(
-        model, domain.real(*real), config.real_steps, REAL_EXPLORATION, of_real
+        model, domain.real(*real), steps[0], REAL_EXPLORATION, of_real
     )
-    tried, spare = _collect(
-        model, domain.sim(), config.sim_steps, SIM_EXPLORATION, of_sim
-    )
+    tried, spare = _collect(model, domain.sim(), steps[1], SIM_EXPLORATION, of_sim)
     data = GroundingData(seen, tried, low, high, of_inverse, of_forward, of_more)
     transformer = partial(grounding(name).transformer, data)
     one, inverse = transformer(), data.inverse()
@@ -97,7 +72,7 @@ def ground(
     measures |= _actions(one, held_out, of_look)
     if isinstance(one, ActionTransformer) and one.noise is not None:
         measures["noise_ratio"] = noise_ratio(one, inverse, held_out, of_look)
-    return GroundedStep(transformer, measures)
+    return transformer, measures
 
 
 def _collect(
@@ -109,11 +84,17 @@ def _collect(
 ) -> tuple[Transitions, Transitions]:
     """Run a policy; give transitions to learn from, and transitions that are held out.
 
-    `exploration` is the share of random actions, from 0 to 1.
+    A share of its actions, `exploration`, is replaced by uniformly random ones.
     """
     rng = np.random.default_rng(seed)
-    policy = exploring(model, env.action_space, exploration, rng)
-    return in_stretches(collect(env, policy, steps, rng)).split(HELD_OUT, rng)
+    env.action_space.seed(int(rng.integers(2**31)))
+
+    def act(observation: FloatArray) -> FloatArray:
+        if rng.random() < exploration:
+            return np.asarray(env.action_space.sample(), float)
+        return np.asarray(model.predict(observation)[0], float)
+
+    return in_stretches(collect(env, act, steps, rng)).split(HELD_OUT, rng)
 
 
 def in_stretches(transitions: Transitions) -> Transitions:

@@ -1,12 +1,17 @@
 """The page of a Gymnasium study."""
 
-from typing import Any
+from collections.abc import Sequence
 
 from experiments.reports.report import markdown_table
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.gym_studies.grounding import REAL_EXPLORATION, SIM_EXPLORATION
-from experiments.transfer.gym_studies.rows import WAYS, measures_table, returns_table
+from experiments.transfer.gym_studies.rows import (
+    WAYS,
+    Row,
+    measures_table,
+    returns_table,
+)
 from experiments.transfer.gym_studies.study import GymStudy
 
 NOTES = """
@@ -46,19 +51,17 @@ unit.
 
 def write_gym_page(
     folder: RunFolder,
-    title: str,
     figure: str,
-    what: tuple[str, GymStudy],
-    result: dict[str, Any],
+    size: str,
+    study: GymStudy,
+    rows: Sequence[Row],
+    claims: Sequence[Claim],
 ) -> None:
     """Write `result.md` and `report.html` into the run's folder.
 
-    `figure` is the name of a file that is in the folder already, `what` the name of the
-    study's size and the study, `result` the rows and claims as in `result.json`.
+    `figure` is the name of a file that is in the folder already, `size` the name of the
+    study's size.
     """
-    size, study = what
-    rows = result["rows"]
-    claims = [Claim(**claim) for claim in result["claims"]]
     grid = f"{study.seeds} seeds, {len(study.noises)} noise values"
     body = [f"The grid is {size}: {grid}, {study.timesteps} steps in each training."]
     body += ["", f"![Returns on real]({figure})", ""]
@@ -67,7 +70,7 @@ def write_gym_page(
         body += ["", *markdown_table(*returns_table(rows, way)), ""]
     body += ["Cost and quality of each method (means over seeds):", ""]
     body += [*markdown_table(*measures_table(rows)), "", _notes(study)]
-    write_transfer_page(folder, title, claims, body)
+    write_transfer_page(folder, study.domain.title, claims, body)
 
 
 def _notes(study: GymStudy) -> str:
@@ -78,8 +81,8 @@ def _notes(study: GymStudy) -> str:
         factor=study.domain.mass_factor,
         unit=(high - low).max() / 2,
         timesteps=study.timesteps,
-        real_steps=study.grounding.real_steps,
-        sim_steps=study.grounding.sim_steps,
+        real_steps=study.real_steps,
+        sim_steps=study.sim_steps,
         real_exploration=REAL_EXPLORATION,
         sim_exploration=SIM_EXPLORATION,
         envelopes=", ".join(f"{level:g}" for level in study.envelopes),

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from experiments.runs.options import check_at_least
-from experiments.transfer.gym_studies.environments import Domain
-from experiments.transfer.gym_studies.grounding import GroundingConfig, ground
+from experiments.transfer.gym_studies.environments import NOISY_SIM, Domain
+from experiments.transfer.gym_studies.grounding import ground
 from experiments.transfer.gym_studies.training import (
     MakeEnvironment,
     TrpoConfig,
@@ -47,32 +47,32 @@ class GymStudy:
     of half of the action's range.
 
     Attributes:
-      domain: the environment.
-      settings: how real worlds differ from the sim; see `Domain.real`.
+      domain: the environment; its settings say how real worlds differ from the sim.
       noises: noise of each real world.
-      methods: methods to compare, some of `KNOWN`.
       seeds: number of trainings of each method, at least 2.
       timesteps: environment steps in each training.
       episodes: real episodes in which each policy is tried, at least 2.
       trpo: parameters of the training algorithm.
-      grounding: number of transitions that a grounding collects.
+      real_steps: transitions of the real world that a grounding collects.
+      sim_steps: transitions of the sim that a grounding collects.
       envelopes: noise levels that the action noise envelope (ANE) chooses from.
       search_episodes: real episodes by which ANE judges a level.
+      methods: methods to compare, some of `KNOWN`.
       seed: number from which all random numbers follow.
     """
 
     domain: Domain
-    settings: tuple[str, ...]
     noises: tuple[float, ...]
-    methods: tuple[str, ...]
     seeds: int
     timesteps: int
     episodes: int
     trpo: TrpoConfig
-    grounding: GroundingConfig
+    real_steps: int
+    sim_steps: int
     envelopes: tuple[float, ...]
     search_episodes: int
-    seed: int
+    methods: tuple[str, ...] = METHODS
+    seed: int = 1
 
     def __post_init__(self) -> None:
         """Refuse settings with which nothing can run."""
@@ -84,15 +84,11 @@ class GymStudy:
         check_at_least(self, timesteps=1, seed=0)
         if not self.noises or not all(0 <= noise < np.inf for noise in self.noises):
             raise BadValueError(f"noises is {self.noises}; give values from 0 up")
-        for kind, given, known in (
-            ("method", self.methods, KNOWN),
-            ("setting", self.settings, self.domain.settings),
-        ):
-            for name in given:
-                if name not in known:
-                    raise UnknownNameError(kind, name, known)
-            if not given:
-                raise BadValueError(f"no {kind} is given; known are {known}")
+        for method in self.methods:
+            if method not in KNOWN:
+                raise UnknownNameError("method", method, KNOWN)
+        if not self.methods:
+            raise BadValueError(f"no method is given; known are {KNOWN}")
 
     def stages(self) -> list[list["Job"]]:
         """All jobs in three stages: policies of the sim, policies of ANE, all results.
@@ -103,7 +99,7 @@ class GymStudy:
         sims = [Job(k, NONE) for k in every]
         levels = self.envelopes if ANE in self.methods else ()
         around = [Job(k, ANE, level) for k in every for level in levels]
-        grid = itertools.product(every, self.settings, self.noises, self.methods)
+        grid = itertools.product(every, self.domain.settings, self.noises, self.methods)
         cells = [Job(k, m, noise, setting) for k, setting, noise, m in grid]
         return [sims, around, cells]
 
@@ -114,13 +110,10 @@ class GymStudy:
 
 @dataclass(frozen=True)
 class Job:
-    """One piece of work, which writes one file.
+    """One piece of work, which writes one file: training `k` of a method.
 
-    Attributes:
-      k: number of the training, from 0.
-      method: one of `KNOWN`.
-      noise: noise on actions of the real world, or of ANE's sim if `setting` is empty.
-      setting: kind of real world; empty for a policy that never sees it.
+    `setting` is the kind of real world, and `noise` its noise on actions. For a policy
+    that never sees the real world `setting` is empty, and the noise is that of the sim.
     """
 
     k: int
@@ -152,7 +145,7 @@ def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
         else:
             seed = study.seed_of(job.k, OF_TRAINING)
             start = folder / Job(job.k, NONE).file
-            make = partial(study.domain.noisy_sim, job.noise)
+            make = partial(study.domain.real, NOISY_SIM, job.noise)
         model = train(make, study.trpo, study.timesteps, number(seed), start)
         save(model, folder / job.file)
     return None
@@ -161,21 +154,14 @@ def do_job(study: GymStudy, folder: Path, job: Job) -> Cell | None:
 def _cell(study: GymStudy, folder: Path, job: Job) -> Cell:
     """Find a method's policy; try its mean and its random actions in the real world."""
     found, facts = _policy(study, folder, job)
-    cell: Cell = {
-        "setting": job.setting,
-        "noise": job.noise,
-        "method": job.method,
-        "seed": job.k,
-    }
+    cell: Cell = {"setting": job.setting, "noise": job.noise}
+    cell |= {"method": job.method, "seed": job.k}
     seed = number(study.seed_of(job.k, OF_TRIALS))
     for way in ("deterministic", "stochastic"):
-        trials = evaluate(
+        returns, _ = evaluate(
             found, _real(study, job), study.episodes, seed, way == "deterministic"
         )
-        cell[way] = {
-            "mean": float(trials.returns.mean()),
-            "std": float(trials.returns.std(ddof=1)),
-        }
+        cell[way] = {"mean": float(returns.mean()), "std": float(returns.std(ddof=1))}
     return cell | facts
 
 
@@ -192,22 +178,22 @@ def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, flo
         return model, {"real_steps": model.num_timesteps}
     model = load(start)
     model.set_random_seed(seed)
-    grounding = ground(
+    transformer, measures = ground(
         model,
         study.domain,
         (job.setting, job.noise),
-        study.grounding,
+        (study.real_steps, study.sim_steps),
         job.method,
         study.seed_of(job.k, OF_DATA),
     )
     model = train(
-        lambda: study.domain.sim(grounding.transformer()),
+        lambda: study.domain.sim(transformer()),
         study.trpo,
         study.timesteps,
         seed,
         start,
     )
-    return model, {"real_steps": study.grounding.real_steps, **grounding.measures}
+    return model, {"real_steps": study.real_steps, **measures}
 
 
 def _best_envelope(
@@ -218,10 +204,10 @@ def _best_envelope(
     found, steps = [], 0
     for level in study.envelopes:
         model = load(folder / Job(job.k, ANE, level).file)
-        make = _real(study, job)
-        trials = evaluate(model, make, study.search_episodes, seed, True)
-        found.append((float(trials.returns.mean()), level, model))
-        steps += trials.steps
+        real = _real(study, job)
+        returns, taken = evaluate(model, real, study.search_episodes, seed, True)
+        found.append((float(returns.mean()), level, model))
+        steps += taken
     _, level, model = max(found, key=lambda entry: entry[0])
     return model, {"real_steps": steps, "envelope": level}
 

@@ -10,12 +10,9 @@ import numpy as np
 
 from experiments.transfer.gym_studies.environments import Environment
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError
 from groundwalk.files import write_bytes
-from sgat.gym.collect import Policy
 
 if TYPE_CHECKING:
-    from gymnasium import Space
     from sb3_contrib import TRPO
 
 MakeEnvironment: TypeAlias = Callable[[], Environment]
@@ -49,14 +46,6 @@ class TrpoConfig:
     value_epochs: int
     value_rate: float
     value_batch: int
-
-    def __post_init__(self) -> None:
-        """Refuse batches that cannot be divided evenly."""
-        if self.batch % ENVIRONMENTS or self.batch % self.value_batch:
-            raise BadValueError(
-                f"batch is {self.batch}; {ENVIRONMENTS} environments and minibatches "
-                f"of {self.value_batch} must divide it"
-            )
 
     def to_keywords(self) -> dict[str, Any]:
         """The parameters under the names of sb3-contrib's TRPO."""
@@ -118,30 +107,20 @@ def load(path: Path) -> "TRPO":
     return TRPO.load(path, device="cpu")
 
 
-@dataclass(frozen=True, eq=False)
-class Trials:
-    """Returns of episodes, and their number of steps.
-
-    Attributes:
-      returns: (episodes,) undiscounted sums of rewards.
-      steps: number of steps in all episodes together.
-    """
-
-    returns: FloatArray
-    steps: int
-
-
 def evaluate(
     model: "TRPO",
     make: MakeEnvironment,
     episodes: int,
     seed: int,
     deterministic: bool,
-) -> Trials:
+) -> tuple[FloatArray, int]:
     """Try a policy in episodes that run side by side.
 
     The seed is that of the environments and of the policy's random actions; if
     `deterministic`, the policy takes its mean action instead.
+
+    Returns:
+      (episodes,) undiscounted sums of rewards, and the number of steps of all episodes.
     """
     from stable_baselines3.common.utils import set_random_seed
 
@@ -159,24 +138,4 @@ def evaluate(
             ended[row] = terminated or truncated
         steps += len(active)
         active = active[~ended]
-    return Trials(returns, steps)
-
-
-def exploring(
-    model: "TRPO",
-    space: "Space[FloatArray]",
-    exploration: float,
-    rng: np.random.Generator,
-) -> Policy:
-    """A policy whose own random actions are partly replaced by uniformly random ones.
-
-    `exploration` is the share that is replaced, from 0 to 1.
-    """
-    space.seed(int(rng.integers(2**31)))
-
-    def act(observation: FloatArray) -> FloatArray:
-        if rng.random() < exploration:
-            return np.asarray(space.sample(), float)
-        return np.asarray(model.predict(observation)[0], float)
-
-    return act
+    return returns, steps

@@ -6,10 +6,11 @@ import pytest
 from matplotlib.image import imread
 
 from experiments.transfer import cliff as transfer_cliff
-from experiments.transfer.cliff import TransferCliff, main
-from experiments.transfer.cliff_study.claims import check_claims
+from experiments.transfer.cliff import main
 from experiments.transfer.cliff_study.figure import cliff_figure
 from experiments.transfer.cliff_study.grid import MOVES, cliff_walking, intended_path
+from experiments.transfer.cliff_study.page import check_claims
+from experiments.transfer.cliff_study.study import TransferCliff
 from groundwalk.errors import BadValueError
 from sgat.tabular.planning import expected_return, policy_iteration
 

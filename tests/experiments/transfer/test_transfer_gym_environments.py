@@ -104,7 +104,7 @@ def test_rewards_charge_the_cheetah_for_its_own_action():
 
 
 def test_without_noise_the_noisy_sim_is_the_sim():
-    plain, noiseless = INVERTED_PENDULUM.sim(), INVERTED_PENDULUM.noisy_sim(0.0)
+    plain, noiseless = INVERTED_PENDULUM.sim(), INVERTED_PENDULUM.real(NOISY_SIM, 0.0)
     starts = [env.reset(seed=5)[0] for env in (plain, noiseless)]
     np.testing.assert_array_equal(*starts)
     action = np.array([0.7], np.float32)
