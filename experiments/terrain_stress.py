@@ -97,7 +97,8 @@ def main(config: TerrainStress) -> None:
     gaits = load_gaits(config.gaits)
     cells = _walk_cells(folder, config, gaits)
     curves = curves_of(cells)
-    result = {"curves": curves, "worst": write_worst(folder, config, gaits, cells)}
+    worst = write_worst(folder, gaits, cells, config.worst, config.seed, config.threads)
+    result = {"curves": curves, "worst": worst}
     folder.write_json(RESULT, result)
     with extra("the pictures"):
         draw_comparison(curves, folder.path)
@@ -127,7 +128,7 @@ def _walk_cells(
             walks = walk_at(
                 place, gaits, rows, config.seed, config.threads, bar.advance
             )
-            trials = [dataclasses.asdict(walk.trial) for walk in walks]
+            trials = [dataclasses.asdict(trial) for trial, _ in walks]
             cells.append({**dataclasses.asdict(place), "trials": trials})
             folder.write_json(HISTORY, state)
     return cells

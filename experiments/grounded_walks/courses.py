@@ -49,7 +49,7 @@ class RealCourse:
     def grounds(self, seeds: Sequence[np.random.SeedSequence]) -> list[Heightfield]:
         """One ground for each seed; flat grounds are one shared object."""
         name, parameters = terrain.parse(self.terrain)
-        if self.flat:
+        if name == "flat":
             return [terrain.make(name, 0, **parameters)] * len(seeds)
         return [terrain.make(name, seed, **parameters) for seed in seeds]
 
@@ -91,15 +91,13 @@ class SimPlace:
         """One ground for each seed: flat, or lumps of the real world's wavelength."""
         if not self.lumps_m:
             return [terrain.make("flat", 0)] * len(seeds)
-        return [self._lumps(seed) for seed in seeds]
-
-    def _lumps(self, seed: np.random.SeedSequence) -> Heightfield:
         amplitudes = np.atleast_1d(self.lumps_m)
-        which = 0
-        if len(amplitudes) > 1:
-            which = int(np.random.default_rng(seed).integers(len(amplitudes)))
-        sizes = {"amplitude_m": amplitudes[which], "start_radius_m": self.start_m}
-        return terrain.make("lumps", seed, **sizes)
+        grounds = []
+        for seed in seeds:
+            which = np.random.default_rng(seed).integers(len(amplitudes))
+            sizes = {"amplitude_m": amplitudes[which], "start_radius_m": self.start_m}
+            grounds.append(terrain.make("lumps", seed, **sizes))
+        return grounds
 
     @property
     def options(self) -> WorldOptions:

@@ -16,8 +16,7 @@ from sgat.noise import child_of
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.catalogue import grounding
 from sgat.transformers.grounding_base import GroundingData
-from sgat.transformers.transformer import Transformer
-from sgat.walks.walk_senses import WalkSenses, leg_senses
+from sgat.walks.walk_senses import leg_senses
 
 NONE = "no grounding"
 GAT, SGAT = "GAT", "SGAT"
@@ -53,9 +52,9 @@ class WalkModels:
     @cached_property
     def data(self) -> GroundingData:
         """The walks as the data that every grounding in `sgat` learns from."""
-        senses, bound = _senses(), _bound()
+        senses, bound = leg_senses(robots.get(ROBOT)), _bound()
         return GroundingData(
-            real=self.records.real,
+            real=self.records.real.noted,
             sim=self.records.sim,
             low=-bound,
             high=bound,
@@ -74,12 +73,13 @@ class WalkModels:
 
         The sim is grounded by `UNEVEN`; shares of falls are interpolated in `LUMPS_M`.
         """
-        vectors = self.records.vectors[-LOOKED_AT:]
-        fell = self.records.fell[-LOOKED_AT:]
+        real = self.records.real
+        vectors, fell = real.vectors[-LOOKED_AT:], real.fell[-LOOKED_AT:]
+        transformer = grounding(UNEVEN).transformer
         shares = []
         for lumps_m in LUMPS_M:
             place = self.places.sim(lumps_m, START_M)
-            sim = GroundedSim(self._transformer(UNEVEN), place)
+            sim = GroundedSim(transformer(self.data), place)
             seed = child_of(self.seed, 5)
             trials = walk_in_sim(sim, vectors, 1, seed, ON_COURSE, True)
             shares.append(trials.fell.mean())
@@ -87,11 +87,7 @@ class WalkModels:
         return float(np.interp(fell.mean(), rising, LUMPS_M))
 
     def grounded(self, name: str) -> GroundedSim:
-        """The sim, grounded by one of the groundings.
-
-        Args:
-          name: name or title of a grounding in `sgat.transformers`, or `NONE` for the
-            sim as it is.
+        """The sim grounded by a name or title of `sgat.transformers`, or `NONE`.
 
         Raises:
           UnknownNameError: there is no such grounding.
@@ -102,21 +98,13 @@ class WalkModels:
             place = self.places.sim(self.lumps_m, START_M)
         else:
             place = self.places.sim()
-        return GroundedSim(self._transformer(name), place)
-
-    def _transformer(self, name: str) -> Transformer:
-        return grounding(name).transformer(self.data)
+        return GroundedSim(grounding(name).transformer(self.data), place)
 
 
 def action_envelope(deviation_rad: float) -> ActionNoise:
     """Action noise envelope (ANE): white noise on the legs' commands."""
-    bound = _bound()
-    return ActionNoise(deviation_rad, -bound, bound)
-
-
-def _senses() -> WalkSenses:
-    return leg_senses(robots.get(ROBOT))
+    return ActionNoise(deviation_rad, -_bound(), _bound())
 
 
 def _bound() -> FloatArray:
-    return np.full(len(_senses().joints), LARGEST_ACTION_RAD)
+    return np.full(len(leg_senses(robots.get(ROBOT)).joints), LARGEST_ACTION_RAD)

@@ -1,6 +1,5 @@
 """The walks of both worlds that a grounding learns from."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -37,33 +36,27 @@ class RealWalks(NamedTuple):
     fell: BoolArray
 
 
-@dataclass(frozen=True, eq=False)
-class WalkRecords:
-    """Walks of both worlds.
+class WalkRecords(NamedTuple):
+    """Walks of the real world, and transitions of the flat and of the uneven sim.
 
-    Attributes:
-      real: transitions of the real world, without the flat ground around the start.
-      sim: transitions of the flat sim.
-      uneven: transitions of the sim on lumps of all sizes, with sensors as noisy as the
-        real world's.
-      vectors: (n, 16) gaits of the real walks without noise on commands.
-      fell: (n,) whether each of these fell.
+    The uneven sim has lumps of all sizes, and sensors as noisy as the real world's.
     """
 
-    real: Transitions
+    real: RealWalks
     sim: Transitions
     uneven: Transitions
-    vectors: FloatArray
-    fell: BoolArray
 
     def joined(self, other: "WalkRecords") -> "WalkRecords":
         """These walks, followed by those of another step."""
+        real, more = self.real, other.real
         return WalkRecords(
-            self.real.joined(other.real),
+            RealWalks(
+                real.noted.joined(more.noted),
+                np.vstack([real.vectors, more.vectors]),
+                np.concatenate([real.fell, more.fell]),
+            ),
             self.sim.joined(other.sim),
             self.uneven.joined(other.uneven),
-            np.vstack([self.vectors, other.vectors]),
-            np.concatenate([self.fell, other.fell]),
         )
 
 
@@ -87,8 +80,6 @@ def record_walks(
 ) -> WalkRecords:
     """Let gaits (n, 16) walk in the flat and the uneven sim, and add the real walks."""
     robot, in_sim, on_uneven = robots.get(ROBOT), child_of(seed, 1), child_of(seed, 2)
-    flat, uneven = (
-        walk(place, robot, of_sim, child, EXPLORATION_RAD)[1]
-        for place, child in ((places.sim(), in_sim), (places.sim(LUMPS_M), on_uneven))
-    )
-    return WalkRecords(real.noted, flat, uneven, real.vectors, real.fell)
+    _, flat = walk(places.sim(), robot, of_sim, in_sim, EXPLORATION_RAD)
+    _, uneven = walk(places.sim(LUMPS_M), robot, of_sim, on_uneven, EXPLORATION_RAD)
+    return WalkRecords(real, flat, uneven)

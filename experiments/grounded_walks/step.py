@@ -1,20 +1,21 @@
 """A grounding step: walks in both worlds, models learned from them, a grounded sim."""
 
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
 from experiments.grounded_walks.courses import SHORT_START_M, Places
-from experiments.grounded_walks.data import ON_COURSE
+from experiments.grounded_walks.data import ON_COURSE, WALK
 from experiments.grounded_walks.models import WalkModels
-from experiments.grounded_walks.raters import RATED, GroundedRater
+from experiments.grounded_walks.raters import rate_in_sim
 from experiments.grounded_walks.records import (
     RealWalks,
     WalkRecords,
     record_real,
     record_walks,
 )
+from experiments.walking.tuning import Rater
 from sgat.noise import child_of
 from sgat.transformers.catalogue import grounding
 from sgat.walks.gait_cloud import GaitCloud
@@ -80,15 +81,11 @@ class GroundingStep:
         """Models of both worlds, learned from `records`."""
         return WalkModels(self.records, self._seeds[3], self._places)
 
-    def rater(self, name: str, repeats: int) -> GroundedRater:
-        """A rater of gaits in the sim, grounded by one of the groundings.
+    def rater(self, name: str, repeats: int) -> Rater:
+        """A rater of gaits in the grounded sim, with several walks of each gait.
 
-        Args:
-          name: name or title of a grounding in `sgat.transformers`.
-          repeats: number of walks of each gait.
-
-        Raises:
-          UnknownNameError: there is no such grounding; raised before any walk.
+        The grounding has a name or title of `sgat.transformers`; an unknown one is
+        refused (UnknownNameError) before any walk.
         """
         uneven = grounding(name).uneven_sim
         sim = self.models.grounded(name)
@@ -96,4 +93,4 @@ class GroundingStep:
             lumps_m = LUMPS_MARGIN * self.models.lumps_m
             sim = replace(sim, place=self._places.sim(lumps_m, SHORT_START_M))
         # On lumps, a longer walk shows more of the falls.
-        return GroundedRater(sim, repeats, ON_COURSE if uneven else RATED)
+        return partial(rate_in_sim, sim, repeats, ON_COURSE if uneven else WALK)

@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -85,12 +85,3 @@ def _rung(severity: float, trials: Sequence[Trial]) -> dict[str, Any]:
         "distance_to_fall_m": float(np.median(distances)) if distances else None,
         "causes": dict(Counter(trial.cause for trial in fallen).most_common()),
     }
-
-
-def causes_by_family(curves: Sequence[Curve]) -> Iterator[tuple[Curve, Counter[str]]]:
-    """Yield each curve with the number of its falls by cause."""
-    for curve in curves:
-        counted: Counter[str] = Counter()
-        for rung in curve["rungs"]:
-            counted.update(rung["causes"])
-        yield curve, counted

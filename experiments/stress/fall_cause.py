@@ -72,7 +72,7 @@ def fall_cause(scene: Scene) -> FallCause:
     """
     if scene.recording.metadata.end == End.DIVERGED:
         return FallCause(Cause.UNKNOWN, None)
-    signals = Signals.of(scene)
+    signals = Signals(scene)
     loss = _loss(signals)
     window = signals.ticks_in(WINDOW_PENDULUMS * signals.pendulum_s)
     before = range(max(0, loss - window), loss)
@@ -86,17 +86,14 @@ def fall_cause(scene: Scene) -> FallCause:
         return FallCause(cause, float(signals.time_s[tick]))
     if loss == len(signals.tilt_rad):
         return FallCause(Cause.UNKNOWN, None)
-    return FallCause(_tip(signals), float(signals.time_s[loss]))
+    forward, left = signals.lean[-1]
+    tip = Cause.FORWARD_TIP if forward > 0 else Cause.BACKWARD_TIP
+    if abs(left) > abs(forward):
+        tip = Cause.SIDEWAYS_TIP
+    return FallCause(tip, float(signals.time_s[loss]))
 
 
 def _loss(signals: Signals) -> int:
     """The tick from which on the torso is tilted too far; number of ticks if never."""
     upright = np.flatnonzero(signals.tilt_rad < LOSS_TILT_RAD)
     return int(upright[-1]) + 1 if upright.size else 0
-
-
-def _tip(signals: Signals) -> Cause:
-    forward, left = signals.lean[-1]
-    if abs(left) > abs(forward):
-        return Cause.SIDEWAYS_TIP
-    return Cause.FORWARD_TIP if forward > 0 else Cause.BACKWARD_TIP

@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from experiments.stress.families import leg_length_m
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
-from robots import biped
 from robots.sole import contact_points
 from worlds.recordings.columns import SUPPORT
 from worlds.scenes.forward_kinematics import LinkPoses, link_poses
@@ -19,26 +19,16 @@ from worlds.scenes.scene import Scene
 class Signals:
     """Signals of a recorded walk as arrays over its ticks; feet in order left, right.
 
-    Attributes:
-      scene: the recording with its robot and its ground.
-      leg_m: length of a straight leg from hip to sole [m].
+    The recording must have base pose, commands, foot forces and support leg; a signal
+    whose column it lacks raises an UnknownNameError.
     """
 
     scene: Scene
-    leg_m: float
 
-    @classmethod
-    def of(cls, scene: Scene) -> "Signals":
-        """Prepare the signals of a walk.
-
-        Args:
-          scene: a recording with base pose, commands, foot forces and support leg.
-
-        Raises:
-          UnknownNameError: the recording lacks a column.
-        """
-        leg = biped(scene.description).leg
-        return cls(scene, leg.thigh_m + leg.tibia_m + leg.ankle_height_m)
+    @cached_property
+    def leg_m(self) -> float:
+        """Length of a straight leg from hip to sole [m]."""
+        return leg_length_m(self.scene.description)
 
     @cached_property
     def pendulum_s(self) -> float:

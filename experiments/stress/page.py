@@ -7,7 +7,7 @@ from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.runs.folder import RunFolder
 from experiments.runs.gait_files import short_name
-from experiments.stress.curves import Curve, causes_by_family
+from experiments.stress.curves import Curve
 from experiments.stress.fall_cause import Cause
 from experiments.stress.families import FLAT
 from experiments.stress.figure import COMPARISON, heat_map_name
@@ -79,11 +79,15 @@ def cell_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
     """Table rows: number of falls by cause, for each curve with falls."""
-    return [
-        [*_setting(curve), str(counted.total()), *(str(counted[c]) for c in Cause)]
-        for curve, counted in causes_by_family(curves)
-        if counted
-    ]
+    rows = []
+    for curve in curves:
+        counted: Counter[str] = Counter()
+        for rung in curve["rungs"]:
+            counted.update(rung["causes"])
+        if counted:
+            counts = [str(counted[cause]) for cause in Cause]
+            rows.append([*_setting(curve), str(counted.total()), *counts])
+    return rows
 
 
 def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:

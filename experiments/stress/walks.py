@@ -1,6 +1,5 @@
 """Trials of the terrain stress test: gaits walk on ground of one severity."""
 
-import contextlib
 import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,14 +11,12 @@ import robots
 import worlds
 from experiments.stress.fall_cause import fall_cause
 from experiments.stress.families import Place, leg_length_m
-from experiments.walking.evaluation import MOST_AT_ONCE
-from experiments.walking.recorder import Recorder, servo_gains
-from experiments.walking.trials import TrialRules, walk_trials
+from experiments.walking.evaluation import MOST_AT_ONCE, Start, walk_recorded
+from experiments.walking.trials import TrialRules
 from groundwalk.gravity import GRAVITY_M_S2
 from robots import Description
-from terrain import TerrainSpec
 from walk_engine import Gait
-from worlds import FALLS, End, RecordingMetadata
+from worlds import FALLS
 from worlds.scenes.scene import Scene
 
 COURSE_LEGS = 8.0
@@ -67,23 +64,6 @@ class Trial:
         return self.end in FALLS
 
 
-@dataclass(frozen=True, eq=False)
-class Walk:
-    """A trial with its recording."""
-
-    trial: Trial
-    scene: Scene
-
-
-@dataclass(frozen=True, eq=False)
-class _Start:
-    """Ground and seeds of a trial, which are the same for all gaits."""
-
-    ground: TerrainSpec
-    of_noise: np.random.SeedSequence
-    of_pose: np.random.SeedSequence
-
-
 def rules_of(description: Description) -> TrialRules:
     """Rules of a trial, with course and time limit scaled to the robot's leg length."""
     leg_m = leg_length_m(description)
@@ -101,8 +81,8 @@ def walk_at(
     seed: int,
     threads: int = 0,
     on_end: Callable[[], object] = lambda: None,
-) -> Iterator[Walk]:
-    """Run trials at a place; none depends on which other trials run beside it.
+) -> Iterator[tuple[Trial, Scene]]:
+    """Run trials at a place, and record them; none depends on the others beside it.
 
     Args:
       place: robot, world, family of ground and severity.
@@ -112,82 +92,52 @@ def walk_at(
       threads: threads of the sim, or processes of the real world; 0 for one per core.
       on_end: called once at the end of each trial.
     """
+    description = robots.get(place.robot)
+    options = place.options(
+        dataclasses.replace(worlds.kind(place.world).options, threads=threads)
+    )
+    about = (
+        place.world,
+        f"groundwalk terrain-stress, {place.world} world, {place.label}",
+    )
     for first in range(0, len(rows), MOST_AT_ONCE):
         wave = rows[first : first + MOST_AT_ONCE]
-        yield from _walk_together(place, gaits, wave, seed, threads, on_end)
-
-
-def _walk_together(
-    place: Place,
-    gaits: Mapping[str, Gait],
-    rows: Sequence[Row],
-    seed: int,
-    threads: int,
-    on_end: Callable[[], object],
-) -> Iterator[Walk]:
-    description = robots.get(place.robot)
-    numbers = dict.fromkeys(number for _, number in rows)
-    starts = {number: _start(place, description, number, seed) for number in numbers}
-    grounds = {number: start.ground.make() for number, start in starts.items()}
-    usual = dataclasses.replace(worlds.kind(place.world).options, threads=threads)
-    own = [starts[number] for _, number in rows]
-    world = worlds.make(
-        place.world,
-        description,
-        [grounds[number] for _, number in rows],
-        [start.of_noise for start in own],
-        place.options(usual),
-    )
-    recorder = Recorder(description, range(len(rows)))
-    with contextlib.closing(world):
-        trials = walk_trials(
-            world,
-            [gaits[name] for name, _ in rows],
-            rules_of(description),
-            [start.of_pose for start in own],
-            recorder,
-            on_end,
-        )
-    for i, (name, number) in enumerate(rows):
-        end = trials.ended[i]
-        about = _metadata(place, description, own[i].ground, gaits[name], end)
-        scene = Scene(
-            f"{place.world}/{name}/{place.label}",
-            recorder.recording(i, about),
+        numbers = dict.fromkeys(number for _, number in wave)
+        starts = {n: _start(place, description, n, seed) for n in numbers}
+        own = [(gaits[name], starts[number]) for name, number in wave]
+        world = worlds.make(
+            place.world,
             description,
-            grounds[number],
+            [start.ground for _, start in own],
+            [start.of_noise for _, start in own],
+            options,
         )
-        trial = Trial(
-            gait=name,
-            number=number,
-            distance_m=float(trials.distance_m[i]),
-            time_s=float(trials.time_s[i]),
-            end=str(end),
-            cause=str(fall_cause(scene).cause) if trials.fell[i] else "",
+        trials, recordings = walk_recorded(
+            world, own, rules_of(description), range(len(wave)), about, on_end
         )
-        yield Walk(trial, scene)
+        for i, (name, number) in enumerate(wave):
+            scene = Scene(
+                f"{place.world}/{name}/{place.label}",
+                recordings[i],
+                description,
+                starts[number].ground,
+            )
+            trial = Trial(
+                gait=name,
+                number=number,
+                distance_m=float(trials.distance_m[i]),
+                time_s=float(trials.time_s[i]),
+                end=str(trials.ended[i]),
+                cause=str(fall_cause(scene).cause) if trials.fell[i] else "",
+            )
+            yield trial, scene
 
 
-def _start(place: Place, description: Description, number: int, seed: int) -> _Start:
+def _start(place: Place, description: Description, number: int, seed: int) -> Start:
     """Draw ground and seeds of a trial; the seeds are the same at all severities."""
     children = np.random.SeedSequence(seed, spawn_key=(number,)).spawn(4)
     of_ground, of_begin, of_noise, of_pose = children
     begin = float(np.random.default_rng(of_begin).uniform(*BEGIN_LEGS))
     ground_seed = int(of_ground.generate_state(1)[0])
-    ground = place.ground(leg_length_m(description), begin, ground_seed)
-    return _Start(ground, of_noise, of_pose)
-
-
-def _metadata(
-    place: Place, description: Description, ground: TerrainSpec, gait: Gait, end: End
-) -> RecordingMetadata:
-    return RecordingMetadata(
-        robot=description.name,
-        base="floating",
-        source=f"groundwalk terrain-stress, {place.world} world, {place.label}",
-        servo=servo_gains(description),
-        terrain=ground.to_json(),
-        gait=dict(gait),
-        world=place.world,
-        end=str(end),
-    )
+    spec = place.ground(leg_length_m(description), begin, ground_seed)
+    return Start(spec, spec.make(), of_noise, of_pose)

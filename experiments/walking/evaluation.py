@@ -5,7 +5,7 @@ import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,6 @@ from robots import Description
 from terrain import Heightfield, TerrainSpec, parse
 from walk_engine import Gait
 from worlds import (
-    End,
     Recording,
     RecordingMetadata,
     World,
@@ -107,15 +106,8 @@ class Study:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """The trials of one gait in a world.
-
-    Attributes:
-      score: summary of the trials.
-      trials: distance, duration and end of each trial.
-      recording: recording of the first trial.
-    """
+class Outcome(NamedTuple):
+    """The trials of one gait in a world, their summary, and the first one's recording."""
 
     score: Score
     trials: Trials
@@ -130,25 +122,35 @@ def evaluate(
 ) -> dict[str, Outcome]:
     """Let each gait walk the same trials: the same grounds, noise and start poses.
 
-    Args:
-      study: world, ground and rules of the trials.
-      description: the robot model.
-      gaits: the gaits by name.
-      seed: seed of the grounds, the sensor noise and the start poses.
-
-    Returns:
-      The outcome of each gait, by its name.
+    These follow from the seed. Gaits and outcomes are by the gaits' names.
     """
     starts = _starts(study, seed)
     rows = [(name, start) for name in gaits for start in starts]
+    corrected = "" if study.correction is None else "corrected "
+    source = (
+        f"groundwalk, {corrected}{study.world} world, "
+        f"command latency {study.options.latency_s * 1e3:.0f} ms"
+    )
     walked: list[Trials] = []
     recordings: dict[str, Recording] = {}
     with progress(f"trials in {study.world}", len(rows)) as bar:
         for first in range(0, len(rows), MOST_AT_ONCE):
             wave = rows[first : first + MOST_AT_ONCE]
-            trials, recorded = _walk(study, description, gaits, wave, bar.advance)
+            world = study.make_world(
+                description,
+                [start.ground for _, start in wave],
+                [start.of_noise for _, start in wave],
+            )
+            trials, recorded = walk_recorded(
+                world,
+                [(gaits[name], start) for name, start in wave],
+                study.rules,
+                [i for i, (_, start) in enumerate(wave) if start is starts[0]],
+                (study.world, source),
+                bar.advance,
+            )
             walked.append(trials)
-            recordings |= recorded
+            recordings |= {wave[i][0]: one for i, one in recorded.items()}
     outcomes = {}
     for i, name in enumerate(gaits):
         own = Trials.joined(walked).part(i * study.trials, (i + 1) * study.trials)
@@ -156,55 +158,63 @@ def evaluate(
     return outcomes
 
 
-@dataclass(frozen=True, eq=False)
-class _Start:
-    """Number, ground and seeds of a trial, which are the same for all gaits."""
+class Start(NamedTuple):
+    """Ground and seeds of a trial, which are the same for all gaits."""
 
-    number: int
     spec: TerrainSpec
     ground: Heightfield
     of_noise: np.random.SeedSequence
     of_pose: np.random.SeedSequence
 
 
-def _starts(study: Study, seed: np.random.SeedSequence) -> list[_Start]:
+def _starts(study: Study, seed: np.random.SeedSequence) -> list[Start]:
     starts = []
     children = zip(*(child.spawn(study.trials) for child in seed.spawn(3)), strict=True)
-    for number, (of_ground, of_noise, of_pose) in enumerate(children):
+    for of_ground, of_noise, of_pose in children:
         ground_seed = int(of_ground.generate_state(1)[0])
         spec = TerrainSpec(*parse(study.terrain), seed=ground_seed)
-        starts.append(_Start(number, spec, spec.make(), of_noise, of_pose))
+        starts.append(Start(spec, spec.make(), of_noise, of_pose))
     return starts
 
 
-def _walk(
-    study: Study,
-    description: Description,
-    gaits: Mapping[str, Gait],
-    wave: Sequence[tuple[str, _Start]],
+def walk_recorded(
+    world: World,
+    rows: Sequence[tuple[Gait, Start]],
+    rules: TrialRules,
+    recorded: Sequence[int],
+    about: tuple[str, str],
     on_end: Callable[[], object],
-) -> tuple[Trials, dict[str, Recording]]:
-    """Run trials (gait name and start) in one world; record each gait's trial 0."""
-    starts = [start for _, start in wave]
-    grounds, seeds = [s.ground for s in starts], [s.of_noise for s in starts]
-    world = study.make_world(description, grounds, seeds)
-    firsts = [i for i, start in enumerate(starts) if start.number == 0]
-    recorder = Recorder(description, firsts)
+) -> tuple[Trials, dict[int, Recording]]:
+    """Run trials side by side in a world, close it, and record some of the trials.
+
+    Args:
+      world: made with the grounds and the noise of the rows' starts.
+      rows: gait and start of every trial.
+      rules: when a trial is over.
+      recorded: indices of the trials to record.
+      about: world and source of the recordings, for their metadata.
+      on_end: called once at the end of each trial.
+    """
+    robot, recorder = world.description, Recorder(world.description, recorded)
+    poses = [start.of_pose for _, start in rows]
     with contextlib.closing(world):
         trials = walk_trials(
-            world,
-            [gaits[name] for name, _ in wave],
-            study.rules,
-            [s.of_pose for s in starts],
-            recorder,
-            on_end,
+            world, [gait for gait, _ in rows], rules, poses, recorder, on_end
         )
     recordings = {}
-    for i in firsts:
-        name, start = wave[i]
-        end = trials.ended[i]
-        metadata = _metadata(study, description, start.spec, gaits[name], end)
-        recordings[name] = recorder.recording(i, metadata)
+    for i in recorded:
+        gait, start = rows[i]
+        metadata = RecordingMetadata(
+            robot=robot.name,
+            base="floating",
+            source=about[1],
+            servo=servo_gains(robot),
+            terrain=start.spec.to_json(),
+            gait=dict(gait),
+            world=about[0],
+            end=str(trials.ended[i]),
+        )
+        recordings[i] = recorder.recording(i, metadata)
     return trials, recordings
 
 
@@ -219,36 +229,10 @@ def score(trials: Trials) -> Score:
     )
 
 
-def _metadata(
-    study: Study,
-    description: Description,
-    ground: TerrainSpec,
-    gait: Gait,
-    end: End,
-) -> RecordingMetadata:
-    latency_ms = study.options.latency_s * 1e3
-    corrected = "" if study.correction is None else "corrected "
-    return RecordingMetadata(
-        robot=description.name,
-        base="floating",
-        source=f"groundwalk, {corrected}{study.world} world, "
-        f"command latency {latency_ms:.0f} ms",
-        servo=servo_gains(description),
-        terrain=ground.to_json(),
-        gait=dict(gait),
-        world=study.world,
-        end=str(end),
-    )
-
-
 def keep(
     folder: RunFolder, world: str, outcomes: Mapping[str, Outcome]
 ) -> dict[str, dict[str, Any]]:
-    """Write the recordings of all gaits in a world into a run folder.
-
-    Returns:
-      The fields of each gait's `Score`, by the name of the gait.
-    """
+    """Write all gaits' recordings into a run folder; return their scores by name."""
     for name, outcome in outcomes.items():
         path = folder.path / RECORDINGS / f"{world}_{name}.parquet"
         write_recording(outcome.recording, path)

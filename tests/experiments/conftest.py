@@ -36,7 +36,7 @@ def short_walks(monkeypatch):
         "grounded_walks.records.walk": short_walk,
         "grounded_walks.models.ON_COURSE": SHORT,
         "grounded_walks.step.ON_COURSE": SHORT,
-        "grounded_walks.step.RATED": SHORT,
+        "grounded_walks.step.WALK": SHORT,
         "transfer.nao_falls.walk": short_walk,
         "transfer.nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
         "transfer.nao_studies.study.Study": partial(Study, rules=SHORT),

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from experiments.grounded_walks.courses import RealCourse
-from experiments.grounded_walks.data import ON_COURSE
+from experiments.grounded_walks.data import ON_COURSE, WALK
 from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
-from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S, RATED
+from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S
 from experiments.grounded_walks.step import LUMPS_MARGIN
 from experiments.reports.report import markdown_table
 from experiments.reports.statistics import wilson
@@ -156,7 +156,7 @@ def write_nao_page(
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
-        f"{RATED.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the ground has lumps.",
+        f"{WALK.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the ground has lumps.",
         "What a search finds is the best of its generations' mean gaits, each rated",
         f"{RATINGS} times more.",
         "*real walks*: number of real walks that the method used before its trials.",

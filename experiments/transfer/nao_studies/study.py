@@ -5,14 +5,17 @@ A cell is one method after one grounding step. To try another grounding of
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import robots
+import worlds
 from experiments.grounded_walks.courses import Places, RealCourse
+from experiments.grounded_walks.data import WALK
 from experiments.grounded_walks.models import (
     GAT,
     NONE,
@@ -21,13 +24,14 @@ from experiments.grounded_walks.models import (
     action_envelope,
 )
 from experiments.grounded_walks.raters import (
-    GroundedRater,
-    RandomisedRater,
-    RealRater,
+    rate_in_sim,
+    rate_on_real,
+    rate_randomised,
 )
 from experiments.grounded_walks.sim import ROBOT, GroundedSim
 from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
+from experiments.runs.options import RunOptions, check_at_least
 from experiments.transfer.nao_studies.page import (
     CELLS,
     DIAGNOSED,
@@ -35,11 +39,17 @@ from experiments.transfer.nao_studies.page import (
     worth_cm_s,
 )
 from experiments.walking.evaluation import Study, evaluate
+from experiments.walking.search import check_search
+from experiments.walking.sims import check_correction
 from experiments.walking.tuning import Budget, Rater, tune
+from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transformers.catalogue import grounding
 from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import Gait, gaits
+from worlds.hidden.effects import Hidden
+from worlds.real.hidden_robot import check_hidden
 
+START_GAIT = gaits.get("start")
 START, ANE, RANDOMISED, REAL = "start gait", "ANE", "randomisation", "search on real"
 """Methods without a grounding: the gait that all searches start from; searches in the
 sim with the action noise envelope (ANE), with random dynamics, and in the real
@@ -81,6 +91,10 @@ WITH_SIM_ON_FLAT = (NONE, SGAT, DIAGNOSED_SIM, DIAGNOSED_SGAT)
 """Methods that are compared by default with a diagnosed sim, on flat real ground. They
 have no uneven sim, since lumps would not explain why gaits fall on flat ground."""
 
+SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,
+            "more_real_walks": 2, "sim_walks": 2, "real_generations": 1}  # fmt: skip
+"""Least value of each option with which the study can run."""
+
 ENVELOPES_RAD = (0.02, 0.05)
 """Standard deviations [rad] of the noise on commands that ANE chooses from."""
 
@@ -93,24 +107,80 @@ so that differences between results come from the methods."""
 
 
 @dataclass(frozen=True)
-class Effort:
-    """Numbers of walks and sizes of searches.
+class TransferNao(RunOptions):
+    """Tune gaits in grounded sims, and count falls on real uneven ground.
 
     Attributes:
+      methods: methods to compare; the start gait is always tried.
+      terrain: ground of the real world's courses, which are 3 m long.
+      hidden: physics of the real world that the sim's model lacks, such as
+        speed_limit@LKneePitch:speed=3.
+      sim: folder of a diagnosis of the real robot; the sim that it corrects is tried
+        beside the plain one.
       trials: number of real courses on which each gait that was found is tried.
+      population: number of gaits in a generation of a search in the sim.
+      generations: number of generations of a search in the sim.
+      sigma: standard deviation of the first generation, as a share of each parameter's
+        range.
       repeats: number of walks that rate a gait in a sim with random numbers.
-      walks: numbers of real walks for the first grounding step, and for each further.
+      real_walks: number of real walks that the first grounding step learns from.
+      more_real_walks: number of real walks that each further step adds.
       sim_walks: number of walks in the sim for each grounding step.
-      sim: size of a search in the sim.
-      real: size of the search in the real world.
+      real_population: number of gaits in a generation of the search in the real world.
+      real_generations: number of generations of the search in the real world.
     """
 
-    trials: int
-    repeats: int
-    walks: tuple[int, int]
-    sim_walks: int
-    sim: Budget
-    real: Budget
+    methods: tuple[str, ...] | None = None
+    terrain: str = worlds.kind("real").terrain
+    hidden: tuple[str, ...] = ()
+    sim: Path | None = None
+    trials: int = 40
+    population: int = 150
+    generations: int = 10
+    sigma: float = 0.15
+    repeats: int = 2
+    real_walks: int = 96
+    more_real_walks: int = 48
+    sim_walks: int = 200
+    real_population: int = 50
+    real_generations: int = 10
+
+    def __post_init__(self) -> None:
+        """Refuse options with which nothing can run, before anything is written."""
+        known = tuple(dict.fromkeys((*METHODS, *WITH_SIM, *WITH_SIM_ON_FLAT)))
+        for method in self.compared:
+            if method not in known:
+                raise UnknownNameError("method", method, known)
+            if self.sim is None and method not in METHODS:
+                raise BadValueError(f"{method!r} needs a diagnosis: give --sim")
+        robot, places = robots.get(ROBOT), self.places
+        check_hidden(robot, places.real.options)
+        if self.sim is not None:
+            check_correction(robot, worlds.kind("sim").options, self.sim)
+        check_search(self.population, self.sigma)
+        check_search(self.real_population, self.sigma)
+        check_at_least(self, **SMALLEST)
+        super().__post_init__()
+
+    @property
+    def compared(self) -> tuple[str, ...]:
+        """The methods to compare; a default set if none are given."""
+        if self.methods is not None:
+            return self.methods
+        if self.sim is None:
+            return METHODS
+        return WITH_SIM_ON_FLAT if self.places.real.flat else WITH_SIM
+
+    @property
+    def plan(self) -> tuple[tuple[str, int], ...]:
+        """Method and grounding step of each gait to find and try."""
+        return tuple(cell for cell in PLAN if cell[0] in (START, *self.compared))
+
+    @property
+    def places(self) -> Places:
+        """The real course, and the diagnosis that corrects the sim."""
+        hidden = tuple(Hidden.parse(text) for text in self.hidden)
+        return Places(RealCourse(self.terrain, hidden), self.sim)
 
 
 class NaoStudy:
@@ -120,36 +190,25 @@ class NaoStudy:
       cells: all that are known so far, as plain values.
     """
 
-    def __init__(
-        self, folder: RunFolder, effort: Effort, places: Places, seed: int
-    ) -> None:
-        """Start a study, or continue the one that the run's folder holds.
-
-        `places` has the real course, and the diagnosis that corrects the sim.
-        """
-        self._folder, self._effort, self._entropy = folder, effort, seed
-        self._diagnosed, self._plain = places, Places(places.real)
+    def __init__(self, folder: RunFolder, config: TransferNao) -> None:
+        """Start a study, or continue the one that the run's folder holds."""
+        self._folder, self._config = folder, config
+        self._diagnosed, self._plain = config.places, Places(config.places.real)
         state = folder.read_json(HISTORY) if folder.has(HISTORY) else {CELLS: []}
         self.cells: list[dict[str, Any]] = state[CELLS]
         self._first = self._first_step(self._plain)
-        self._first_diagnosed = self._first_step(places, self._first)
+        self._first_diagnosed = self._first_step(self._diagnosed, self._first)
 
     def _first_step(
         self, places: Places, beside: GroundingStep | None = None
     ) -> GroundingStep:
-        walks = self._effort.walks[0], self._effort.sim_walks
-        return GroundingStep(
-            gaits.get("start"),
-            GaitCloud(),
-            walks,
+        walks, seed = (
+            (self._config.real_walks, self._config.sim_walks),
             self._seed(OF_DATA),
-            places=places,
-            beside=beside,
         )
-
-    @property
-    def _course(self) -> RealCourse:
-        return self._plain.real
+        return GroundingStep(
+            START_GAIT, GaitCloud(), walks, seed, places=places, beside=beside
+        )
 
     def cell(self, method: str, step: int) -> Mapping[str, Any] | None:
         """The result of a method after a grounding step; None if there is none yet."""
@@ -161,30 +220,34 @@ class NaoStudy:
     def compute(self, method: str, step: int) -> None:
         """Find a method's gait, try it in the real world, and write the result."""
         gait, facts = self._find(method, step)
-        score = self._try(gait, self._effort.trials, OF_TRIALS)
+        score = self._try(gait, self._config.trials, OF_TRIALS)
         cell = {"method": method, "step": step, **score, **facts, "gait": dict(gait)}
         self.cells.append(cell)
         self._folder.write_json(HISTORY, {CELLS: self.cells})
 
     def _find(self, method: str, step: int) -> tuple[Gait, dict[str, Any]]:
-        effort, start = self._effort, gaits.get("start")
+        """The gait of a method, and the number of real walks that it took."""
+        config = self._config
         checkpoint = self._folder.path / f"search_{method}_{step}.pkl".replace(" ", "_")
         if method == START:
-            return start, {"real_walks": 0}
+            return START_GAIT, {"real_walks": 0}
         if method == ANE:
             return self._best_envelope(checkpoint)
         if method == REAL:
-            rater: Rater = RealRater(self._course)
-            gait = self._tune(checkpoint, start, rater, effort.real)
-            return gait, {"real_walks": effort.real.rated}
+            budget = Budget(
+                config.real_population, config.real_generations, config.sigma
+            )
+            rater: Rater = partial(rate_on_real, self._plain.real)
+            gait = self._tune(checkpoint, START_GAIT, rater, budget)
+            return gait, {"real_walks": budget.rated}
+        if method not in (RANDOMISED, NONE, DIAGNOSED_SIM):
+            return self._grounded(checkpoint, method, step)
         if method == RANDOMISED:
-            rater = RandomisedRater(effort.repeats)
-            return self._tune(checkpoint, start, rater), {"real_walks": 0}
-        if method in (NONE, DIAGNOSED_SIM):
+            rater = partial(rate_randomised, config.repeats)
+        else:
             places = self._plain if method == NONE else self._diagnosed
-            rater = GroundedRater(GroundedSim(None, places.sim()), 1)
-            return self._tune(checkpoint, start, rater), {"real_walks": 0}
-        return self._grounded(checkpoint, method, step)
+            rater = partial(rate_in_sim, GroundedSim(None, places.sim()), 1, WALK)
+        return self._tune(checkpoint, START_GAIT, rater), {"real_walks": 0}
 
     def _grounded(
         self, checkpoint: Path, method: str, step: int
@@ -193,24 +256,23 @@ class NaoStudy:
 
         All methods share the walks of step 1, since all begin at the same gait.
         """
-        effort, start = self._effort, gaits.get("start")
+        config, start = self._config, START_GAIT
         data, places = self._first, self._plain
         name = method.removesuffix(_ON_DIAGNOSED)
         if name != method:
             data, places = self._first_diagnosed, self._diagnosed
-        walks = effort.walks[0]
+        walks = config.real_walks
         if step == 2:
             before = self.cell(method, 1)
             assert before is not None
             start = Gait.from_mapping(before["gait"])
-            more = effort.walks[1], effort.sim_walks
+            more = config.more_real_walks, config.sim_walks
             seed = self._seed(OF_DATA, step)
             cloud = GaitCloud.near(start)
             data = GroundingStep(start, cloud, more, seed, data, places)
-            walks += effort.walks[1]
-        repeats = effort.repeats if grounding(name).is_random else 1
-        rater = data.rater(name, repeats)
-        gait = self._tune(checkpoint, start, rater)
+            walks += config.more_real_walks
+        repeats = config.repeats if grounding(name).is_random else 1
+        gait = self._tune(checkpoint, start, data.rater(name, repeats))
         return gait, {"real_walks": walks}
 
     def _best_envelope(self, checkpoint: Path) -> tuple[Gait, dict[str, Any]]:
@@ -218,9 +280,9 @@ class NaoStudy:
         found = []
         for level in ENVELOPES_RAD:
             path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.pkl")
-            envelope = GroundedSim(action_envelope(level))
-            rater = GroundedRater(envelope, self._effort.repeats)
-            gait = self._tune(path, gaits.get("start"), rater)
+            sim = GroundedSim(action_envelope(level))
+            rater = partial(rate_in_sim, sim, self._config.repeats, WALK)
+            gait = self._tune(path, START_GAIT, rater)
             score = self._try(gait, ENVELOPE_WALKS, OF_ENVELOPES)
             found.append((worth_cm_s(score), level, gait))
         _, level, gait = max(found, key=lambda entry: entry[:2])
@@ -230,20 +292,21 @@ class NaoStudy:
     def _tune(
         self, checkpoint: Path, start: Gait, rater: Rater, budget: Budget | None = None
     ) -> Gait:
-        budget = budget or self._effort.sim
-        return tune(checkpoint, start, budget, rater, self._seed(OF_SEARCH))
+        config = self._config
+        in_sim = Budget(config.population, config.generations, config.sigma)
+        return tune(checkpoint, start, budget or in_sim, rater, self._seed(OF_SEARCH))
 
     def _try(self, gait: Gait, trials: int, use: int) -> dict[str, Any]:
-        course = self._course
+        course = self._plain.real
         study = Study("real", course.terrain, trials, hidden=course.hidden)
         outcome = evaluate(study, robots.get(ROBOT), {"gait": gait}, self._seed(use))
-        score = asdict(outcome["gait"].score)
+        score = outcome["gait"].score
         return {
-            "speed_mean": score["speed_cm_s"],
-            "speed_std": score["speed_std"],
-            "falls": score["falls"],
-            "trials": score["trials"],
+            "speed_mean": score.speed_cm_s,
+            "speed_std": score.speed_std,
+            "falls": score.falls,
+            "trials": score.trials,
         }
 
     def _seed(self, *use: int) -> np.random.SeedSequence:
-        return np.random.SeedSequence(self._entropy, spawn_key=use)
+        return np.random.SeedSequence(self._config.seed, spawn_key=use)

@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
 
+from experiments.grounded_walks.data import WALK
 from experiments.grounded_walks.raters import (
-    GroundedRater,
-    RandomisedRater,
+    random_dynamics,
+    rate_in_sim,
+    rate_randomised,
 )
 from experiments.grounded_walks.sim import GroundedSim, walk_in_sim
 from experiments.grounded_walks.step import GroundingStep
@@ -21,7 +23,7 @@ def vectors(*speeds_m_s):
 
 @pytest.mark.slow
 def test_in_the_plain_sim_a_faster_gait_earns_more():
-    slow, fast = GroundedRater(GroundedSim(), 1)(vectors(0.1, 0.2), SEED)
+    slow, fast = rate_in_sim(GroundedSim(), 1, WALK, vectors(0.1, 0.2), SEED)
     # cm/s of a walk that starts from rest, without a fall
     assert slow == pytest.approx(10, abs=1.5)
     assert fast == pytest.approx(18.5, abs=2.5)
@@ -29,15 +31,15 @@ def test_in_the_plain_sim_a_faster_gait_earns_more():
 
 @pytest.mark.slow
 def test_equal_gaits_get_equal_random_numbers():
-    first, second = RandomisedRater(2)(vectors(0.15, 0.15), np.random.SeedSequence(4))
+    first, second = rate_randomised(2, vectors(0.15, 0.15), np.random.SeedSequence(4))
     assert first == second
-    again = RandomisedRater(2)(vectors(0.15), np.random.SeedSequence(5))
+    again = rate_randomised(2, vectors(0.15), np.random.SeedSequence(5))
     assert again[0] != first
 
 
 def test_dynamics_are_drawn_within_their_ranges():
-    rater, rng = RandomisedRater(1), np.random.default_rng(1)
-    options = [rater.options(rng) for _ in range(200)]
+    rng = np.random.default_rng(1)
+    options = [random_dynamics(rng) for _ in range(200)]
     latencies = np.array([o.latency_s for o in options])
     frictions = np.array([o.friction for o in options])
     assert latencies.min() >= 0

@@ -20,8 +20,8 @@ from experiments.runs.repeat_command import repeat_command
 from experiments.seeing.score_page import score_answer, write_page
 from experiments.seeing.search_figure import draw_search
 from experiments.transfer.claims import Claim, claims_answer, write_transfer_page
-from experiments.transfer.nao import TransferNao
 from experiments.transfer.nao_studies.page import answer_of
+from experiments.transfer.nao_studies.study import TransferNao
 from groundwalk.errors import RunFolderError
 from walk_engine import gaits
 

@@ -84,7 +84,7 @@ def upright(request):
     "event", [events.slip, events.trip, events.missed_switch, events.motor_limit]
 )
 def test_a_walk_that_goes_well_shows_no_cause(upright, event):
-    signals = Signals.of(upright)
+    signals = Signals(upright)
     assert event(signals, range(80, len(signals.time_s))) is None
 
 
@@ -105,7 +105,7 @@ def test_the_cause_is_when_the_edge_is_met():
     step = edge(leg_length_m(robots.get("nao")), begin_m)
     (scene,), _ = walk("sim", gaits.get("start"), step, limit_s=4.0)
     found = fall_cause(scene)
-    signals = Signals.of(scene)
+    signals = Signals(scene)
     tick = round(found.time_s / signals.tick_s)
     toes_m = signals.soles_m[tick, ..., 0].max()
     # the riser takes up the one cell behind the edge; toes are round, of 1 cm

@@ -19,7 +19,7 @@ from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.records import RealWalks
 from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
-from experiments.transfer.nao import TransferNao, main
+from experiments.transfer.nao import main
 from experiments.transfer.nao_studies.figure import cells_figure
 from experiments.transfer.nao_studies.page import (
     DIAGNOSED_SIM,
@@ -29,7 +29,7 @@ from experiments.transfer.nao_studies.page import (
     table_of,
     worth_cm_s,
 )
-from experiments.transfer.nao_studies.study import START
+from experiments.transfer.nao_studies.study import START, TransferNao
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transitions import Transitions
 from sgat.walks.gait_cloud import GaitCloud
