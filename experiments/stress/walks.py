@@ -96,10 +96,7 @@ def walk_at(
     options = place.options(
         dataclasses.replace(worlds.kind(place.world).options, threads=threads)
     )
-    about = (
-        place.world,
-        f"groundwalk terrain-stress, {place.world} world, {place.label}",
-    )
+    source = f"groundwalk terrain-stress, {place.world} world, {place.label}"
     for first in range(0, len(rows), MOST_AT_ONCE):
         wave = rows[first : first + MOST_AT_ONCE]
         numbers = dict.fromkeys(number for _, number in wave)
@@ -113,7 +110,12 @@ def walk_at(
             options,
         )
         trials, recordings = walk_recorded(
-            world, own, rules_of(description), range(len(wave)), about, on_end
+            world,
+            own,
+            rules_of(description),
+            range(len(wave)),
+            (place.world, source),
+            on_end,
         )
         for i, (name, number) in enumerate(wave):
             scene = Scene(

@@ -107,7 +107,7 @@ class Study:
 
 
 class Outcome(NamedTuple):
-    """The trials of one gait in a world, their summary, and the first one's recording."""
+    """Trials of one gait in a world, their summary, and the first one's recording."""
 
     score: Score
     trials: Trials
