@@ -1,13 +1,10 @@
 """All measures of a grounding's forward model, before a policy is trained with it."""
 
-import json
 import math
-from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray
 from sgat.measures import (
     Advance,
     autocorrelation,
@@ -29,85 +26,55 @@ HORIZON = 10
 """Ticks for which a model predicts from its own predictions, without measurements."""
 
 
-@dataclass(frozen=True, eq=False)
-class GroundingReport:
-    """How well a grounding's forward model predicts the next states of the real world.
+def grounding_report(
+    forward: ForwardModel, held_out: Transitions, advance: Advance
+) -> dict[str, Any]:
+    """Measure how well a grounding's forward model predicts the real world.
 
-    Measured on real transitions that the model was not fitted to; p is the number of
-    columns of a next state.
+    Args:
+      forward: model of the real world.
+      held_out: transitions of the real world that the model was not fitted to.
+      advance: predicts the whole state one tick later; `forward.predict` if a next
+        state has all columns of a state.
 
-    Attributes:
-      one_step_error: (p,) root mean square error, in the state's units.
-      one_step_r_squared: (p,) share of the variance of the state's change that is
-        predicted.
-      multi_step_error: (horizon, p) root mean square error 1, 2 ... ticks ahead, if the
-        model predicts from its own predictions, in the state's units.
-      log_likelihood: mean log-likelihood per transition and column.
-      levels: (levels,) probabilities of central intervals of the normal distribution.
-      coverage: (levels, p) share of the standardised residuals within each interval.
-      autocorrelation: (lags, p) of the residuals, at lags of 1, 2 ... ticks.
-      cross_correlation: (p, p) of the residuals at the same tick.
-      excess_kurtosis: (p,) kurtosis of the residuals minus 3; 0 if they are normal.
+    Returns:
+      Numbers and lists by name, None where undefined or infinite. p is the number of
+      columns of a next state; errors are in the state's units:
+
+      - `one_step_error` (p,) and `multi_step_error` (HORIZON, p): root mean squares 1
+        tick, and 1, 2 ... ticks ahead, if the model predicts from its own predictions;
+      - `one_step_r_squared` (p,): share of the variance of the state's change that is
+        predicted;
+      - `log_likelihood`: mean per transition and column;
+      - `levels` and `coverage` (levels, p): share of the standardised residuals within
+        the normal distribution's central intervals;
+      - `autocorrelation` (LAGS, p) of residuals, at lags of 1, 2 ... ticks;
+        `cross_correlation` (p, p) at the same tick; `excess_kurtosis` (p,), 0 if they
+        are normal.
 
     Example:
-      >>> report = GroundingReport.of(forward, held_out, forward.predict)
-      >>> print(report.to_json())
+      >>> grounding_report(forward, held_out, forward.predict)["coverage"]
     """
-
-    one_step_error: FloatArray
-    one_step_r_squared: FloatArray
-    multi_step_error: FloatArray
-    log_likelihood: float
-    levels: FloatArray
-    coverage: FloatArray
-    autocorrelation: FloatArray
-    cross_correlation: FloatArray
-    excess_kurtosis: FloatArray
-
-    @classmethod
-    def of(
-        cls,
-        forward: ForwardModel,
-        held_out: Transitions,
-        advance: Advance,
-        horizon: int = HORIZON,
-        lags: int = LAGS,
-    ) -> Self:
-        """Measure a forward model.
-
-        Args:
-          forward: model of the real world.
-          held_out: transitions of the real world that the model was not fitted to.
-          advance: predicts the whole state one tick later; `forward.predict` if a next
-            state has all columns of a state.
-          horizon: ticks that are predicted without measurements in between.
-          lags: largest lag [ticks] of the autocorrelation.
-        """
-        residuals = forward.residuals(held_out)
-        predicted = forward.predict(held_out.state, held_out.action)
-        change = predicted - held_out.next_state + held_out.change
-        return cls(
-            one_step_error=root_mean_square(predicted - held_out.next_state),
-            one_step_r_squared=r_squared(change, held_out.change),
-            multi_step_error=multi_step_error(advance, held_out, horizon),
-            log_likelihood=forward.score(held_out),
-            levels=np.array(LEVELS),
-            coverage=coverage(residuals, LEVELS),
-            autocorrelation=autocorrelation(residuals, held_out.episode, lags),
-            cross_correlation=cross_correlation(residuals),
-            excess_kurtosis=excess_kurtosis(residuals),
-        )
-
-    def to_json(self) -> str:
-        """All attributes as a JSON object; null where undefined or infinite."""
-        return json.dumps(
-            {name: _plain(value) for name, value in vars(self).items()}, allow_nan=False
-        )
+    residuals = forward.residuals(held_out)
+    predicted = forward.predict(held_out.state, held_out.action)
+    change = predicted - held_out.next_state + held_out.change
+    measures = {
+        "one_step_error": root_mean_square(predicted - held_out.next_state),
+        "one_step_r_squared": r_squared(change, held_out.change),
+        "multi_step_error": multi_step_error(advance, held_out, HORIZON),
+        "log_likelihood": forward.score(held_out),
+        "levels": np.array(LEVELS),
+        "coverage": coverage(residuals, LEVELS),
+        "autocorrelation": autocorrelation(residuals, held_out.episode, LAGS),
+        "cross_correlation": cross_correlation(residuals),
+        "excess_kurtosis": excess_kurtosis(residuals),
+    }
+    return {
+        name: _plain(np.asarray(value).tolist()) for name, value in measures.items()
+    }
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
     if isinstance(value, list):
         return [_plain(item) for item in value]
-    return None if value is None or not math.isfinite(value) else value
+    return value if math.isfinite(value) else None

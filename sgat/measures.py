@@ -39,14 +39,8 @@ def multi_step_error(
     """(horizon, p) root mean square error of predictions 1 ... `horizon` ticks ahead.
 
     From every transition that has enough successors in its episode, the recorded
-    actions are replayed and the predicted states are fed back. Errors are of the p
-    columns of a next state, in their units.
-
-    Args:
-      advance: predicts a whole state; `ForwardModel.predict` can do this if a next
-        state has all columns of a state.
-      transitions: recorded in the real world.
-      horizon: number of ticks to predict.
+    actions are replayed and the predicted states are fed back. `advance` predicts a
+    whole state; errors are of the p columns of a next state, in their units.
 
     Raises:
       BadValueError: no episode is as long as the horizon.

@@ -33,16 +33,10 @@ class NoiseLaw(Protocol):
         """d, how many numbers are drawn for a robot at each tick."""
 
     def chunk(self, generators: Generators) -> FloatArray:
-        """Draw the noise of the next ticks.
+        """(ticks, n, d) noise of the next ticks, for n robots with a generator each.
 
-        To the last bit, a robot's noise depends only on its own generator, not on the
-        other robots.
-
-        Args:
-          generators: n random generators, one for each robot.
-
-        Returns:
-          (ticks, n, d) noise without a unit; the law chooses the number of ticks.
+        The law chooses the number of ticks. To the last bit, a robot's noise depends
+        only on its own generator, not on the other robots.
         """
 
 

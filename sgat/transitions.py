@@ -103,15 +103,10 @@ class Transitions:
 def held_out_rows(
     episode: IntArray, share: float, rng: np.random.Generator
 ) -> BoolArray:
-    """(N,) mask of the rows of random episodes to hold out: at least one, never all.
+    """(N,) mask of the rows of a random share of episodes: at least one, never all.
 
-    Whole episodes are chosen, because rows of the same episode are too similar to
-    separate what is learned from what is tested.
-
-    Args:
-      episode: (N,) number of the episode of each row.
-      share: fraction of the episodes that is chosen, between 0 and 1.
-      rng: chooses the episodes.
+    Whole episodes (their numbers: (N,)) are held out, because rows of the same episode
+    are too similar to separate what is learned from what is tested.
 
     Raises:
       BadValueError: there are fewer than two episodes, or the share is not between 0

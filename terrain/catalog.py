@@ -33,14 +33,7 @@ def names() -> tuple[str, ...]:
 
 
 def configuration(name: str, /, **parameters: object) -> Ground:
-    """Choose a family of terrain and its parameters, without making heights yet.
-
-    Args:
-      name: one of `terrain.names()`.
-      **parameters: fields of the family's dataclass; others keep their defaults.
-
-    Returns:
-      The family's frozen dataclass, for example `Lumps`.
+    """Choose a family of terrain by name and its parameters, without heights yet.
 
     Raises:
       UnknownNameError: there is no such family, or it has no such parameter.
@@ -63,10 +56,8 @@ def configuration(name: str, /, **parameters: object) -> Ground:
 def make(name: str, /, seed: Seed, **parameters: object) -> Heightfield:
     """Make the ground of a family of terrain; the same seed makes the same ground.
 
-    Args:
-      name: one of `terrain.names()`.
-      seed: a whole number of 0 or more, or a NumPy `SeedSequence`.
-      **parameters: fields of the family's dataclass; others keep their defaults.
+    The seed is a whole number of 0 or more, or a NumPy `SeedSequence`; parameters that
+    are not given keep their defaults.
 
     Raises:
       UnknownNameError: there is no such family, or it has no such parameter.

@@ -44,12 +44,7 @@ class Ladder:
     parameters: Parameters = lambda severity, leg_m: {}
 
     def severities(self, rungs: int, leg_m: float) -> FloatArray:
-        """(rungs,) values of the quantity in SI units, mildest first, in equal ratios.
-
-        Args:
-          rungs: number of values.
-          leg_m: length of the robot's legs [m].
-        """
+        """(rungs,) values in SI units, mildest first, in equal ratios."""
         scale = leg_m if self.unit == "m" else 1.0
         return np.geomspace(self.mildest * scale, self.hardest * scale, rungs)
 
@@ -109,22 +104,20 @@ class Ground(ABC):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights on a grid [m], shape (rows, columns), flat where robots start.
+        """Heights (rows, columns) on a grid [m], flat where robots start.
 
         Args:
-          x_m: world x of the grid's columns [m], shape (1, columns).
-          y_m: world y of the grid's rows [m], shape (rows, 1).
+          x_m: (1, columns) world x [m].
+          y_m: (rows, 1) world y [m].
           generator: source of all randomness.
         """
 
     def make(self, seed: Seed) -> Heightfield:
         """Make the heightfield; the same seed makes the same bits every time.
 
-        Args:
-          seed: a whole number of 0 or more, or a NumPy `SeedSequence`.
-
         Raises:
-          BadValueError: the seed is neither.
+          BadValueError: the seed is neither a whole number of 0 or more, nor a NumPy
+            `SeedSequence`.
         """
         x_m, y_m = self._line(self.x_range_m), self._line(self.y_range_m)
         heights_m = self.heights(x_m[None, :], y_m[:, None], generator_of(seed))
@@ -134,12 +127,9 @@ class Ground(ABC):
     def past_start(self, distance_m: FloatArray) -> FloatArray:
         """Factor from 0 to 1 for the terrain's heights that leaves the start area flat.
 
-        Args:
-          distance_m: distance from the world's origin [m], any shape.
-
-        Returns:
-          Same shape: 0 up to `start_radius_m`, 1 from `blend_m` further on, between
-          them the cubic t^2 (3 - 2 t), t = 0 to 1, whose slope is 0 at both ends.
+        At distances from the world's origin [m], any shape: 0 up to `start_radius_m`, 1
+        from `blend_m` further on, between them the cubic t^2 (3 - 2 t), t = 0 to 1,
+        whose slope is 0 at both ends.
         """
         t = np.clip((distance_m - self.start_radius_m) / self.blend_m, 0.0, 1.0)
         return t * t * (3.0 - 2.0 * t)

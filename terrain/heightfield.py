@@ -98,12 +98,7 @@ class Heightfield:
         return corners.reshape(-1, 3)
 
     def contains(self, x_m: npt.ArrayLike, y_m: npt.ArrayLike) -> BoolArray:
-        """Tell whether points lie within the grid, its edge included.
-
-        Args:
-          x_m: world x [m], any shape.
-          y_m: world y [m], a shape that broadcasts with that of `x_m`.
-        """
+        """Whether points (x, y) [m] lie within the grid, its edge included."""
         x_m, y_m = np.asarray(x_m, np.float64), np.asarray(y_m, np.float64)
         (x_low, x_high), (y_low, y_high) = self.x_range_m, self.y_range_m
         return np.asarray(
@@ -111,15 +106,10 @@ class Heightfield:
         )
 
     def height_at(self, x_m: npt.ArrayLike, y_m: npt.ArrayLike) -> FloatArray:
-        """Height of the ground's surface at points [m].
+        """Height of the ground's surface at points x, y [m], whose shapes broadcast.
 
-        Args:
-          x_m: world x [m], any shape.
-          y_m: world y [m], a shape that broadcasts with that of `x_m`.
-
-        Returns:
-          Heights in the broadcast shape; outside of the grid the height of the
-          nearest point of its edge. NaN where a coordinate is NaN.
+        Outside of the grid it is the height of the nearest point of the edge; NaN where
+        a coordinate is NaN.
         """
         rows, columns = self.heights_m.shape
         column, u = self._cell(x_m, self.origin_m[0], columns)
@@ -135,10 +125,7 @@ class Heightfield:
     def _cell(
         self, position_m: npt.ArrayLike, origin_m: float, samples: int
     ) -> tuple[IntArray, FloatArray]:
-        """Index of the grid cell that holds a coordinate, and the position in the cell.
-
-        The position counts from 0 to 1; outside of the grid the nearest edge's hold.
-        """
+        """Index of the nearest cell to a coordinate, and the place in it, 0 to 1."""
         position_m = np.asarray(position_m, np.float64)
         cells = np.clip((position_m - origin_m) / self.spacing_m, 0.0, samples - 1)
         index = np.minimum(np.nan_to_num(cells).astype(np.intp), samples - 2)

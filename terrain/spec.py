@@ -65,12 +65,7 @@ class TerrainSpec:
 def parse(text: str) -> tuple[str, dict[str, Parameter]]:
     """Read a terrain such as `lumps:amplitude_m=0.012,x_range_m=-1:8`.
 
-    Args:
-      text: a name, or a name, a colon and parameters separated by commas; the two
-        ends of a range are separated by a colon.
-
-    Returns:
-      The name and the parameters in the text, for `terrain.make` and `TerrainSpec`.
+    The result is the name, and the parameters for `terrain.make` and `TerrainSpec`.
 
     Raises:
       UnknownNameError: there is no such terrain, or it has no such parameter.

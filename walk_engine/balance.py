@@ -21,12 +21,7 @@ def weight_of_new(gait: GaitColumns, tick_s: float, config: EngineConfig) -> Flo
     """Weight (n,), 0 to 1, of a new gyroscope sample in the low-pass filter.
 
     The gait parameter `gyro_filter` is the weight for samples at 100 Hz; the result has
-    the same time constant at another sampling time.
-
-    Args:
-      gait: values of the n robots by gait parameter.
-      tick_s: time between two samples [s].
-      config: the engine's constants.
+    the same time constant for samples every `tick_s` [s].
     """
     kept: FloatArray = 1.0 - gait["gyro_filter"]
     return 1.0 - kept ** (tick_s / config.gyro_filter_tick_s)
@@ -35,25 +30,15 @@ def weight_of_new(gait: GaitColumns, tick_s: float, config: EngineConfig) -> Flo
 def low_pass(
     before_rad_s: FloatArray, rate_rad_s: FloatArray, weight: FloatArray
 ) -> FloatArray:
-    """Low-pass filter of first order: filtered turning rates (k, n) [rad/s].
-
-    Args:
-      before_rad_s: (k, n) filtered rates of the last tick.
-      rate_rad_s: (k, n) new measurements.
-      weight: (n,) weight of the new measurements, 0 to 1.
-    """
+    """Filtered rates (k, n) [rad/s]: a low-pass of first order with weights (n,)."""
     return before_rad_s + weight * (rate_rad_s - before_rad_s)
 
 
 def feedback_share(state: StateArray, support: StateArray) -> FloatArray:
     """Factor (2, n), 0 or 1, of the gyroscope feedback to each ankle: left, then right.
 
-    During a step only the ankle of the support foot gets feedback, in the state READY
-    none, in all other states both.
-
-    Args:
-      state: (n,) states of the robots, `WalkState`.
-      support: (n,) the supporting foot: 1 left, -1 right, 0 both.
+    During a step only the ankle of the support foot (1 left, -1 right, 0 both) gets
+    feedback, in the state READY none, in all other states both.
     """
     both = np.where(state == WalkState.READY, 0.0, 1.0)
     return np.where(support == 0, both, np.stack((support > 0, support < 0)))

@@ -14,13 +14,7 @@ Record = TypeVar("Record", bound=NamedTuple)
 
 
 def select(chosen: BoolArray, new: Record, old: Record) -> Record:
-    """Merge two records: `new` for chosen robots, `old` for the others.
-
-    Args:
-      chosen: (n,) whether a robot is chosen.
-      new: NamedTuple of arrays (..., n), or of such NamedTuples.
-      old: NamedTuple of the same kind.
-    """
+    """Merge NamedTuples of arrays (..., n): `new` for robots chosen, else `old`."""
     fields = (
         select(chosen, one, other)
         if isinstance(one, tuple)

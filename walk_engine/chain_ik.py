@@ -35,12 +35,7 @@ class ChainLegs:
     """Solves the inverse kinematics of a left and a right leg of six joints each."""
 
     def __init__(self, chains: tuple[LegChain, LegChain], length_m: float) -> None:
-        """Prepare the solver for a robot's legs.
-
-        Args:
-          chains: the left leg and the right one.
-          length_m: length of a leg [m], the unit of lengths in the equations.
-        """
+        """Prepare the left and the right leg; `length_m` [m] is the unit of lengths."""
         # First axis: the joints of a leg; second axis: the two legs.
         self._origins = np.stack([chain.origins_m for chain in chains], axis=1)
         self._axes = np.stack([chain.axes for chain in chains], axis=1)
@@ -79,28 +74,8 @@ class ChainLegs:
             [q[chain.order, side] for side, chain in enumerate(self._chains)], axis=1
         )
 
-    def error(
-        self, q: FloatArray, target_m: FloatArray, foot: FloatArray
-    ) -> FloatArray:
-        """Deviation (2, n, 6) of the feet from their targets.
-
-        Args:
-          q: (6, 2, n) joint angles in the order of the chain [rad].
-          target_m: (2, n, 3) target positions of the last joints in the torso's frame
-            [m].
-          foot: (2, n, 3, 3) target rotations from the feet's frames to the torso's.
-
-        Returns:
-          Three deviations in leg lengths, then three in radians.
-        """
-        places, rotations, _ = self._forward(q)
-        return self._error(places[-1], rotations, target_m, foot)
-
     def _in_chain(self, chain: LegChain, by_role_rad: FloatArray) -> FloatArray:
-        """Convert angles (6, n) [rad] by role to the joints' own, in the chain's order.
-
-        Angles by role are those of yaw, roll, pitch, knee, ankle pitch and ankle roll.
-        """
+        """Angles (6, n) [rad] by role as the joints' own, in the chain's order."""
         own = chain.signs[:, None] * (by_role_rad - chain.zero_rad[:, None])
         angles = np.empty_like(own)
         angles[chain.order] = own
@@ -133,15 +108,7 @@ class ChainLegs:
         return np.concatenate([shift, turn], axis=-1)
 
     def _forward(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Forward kinematics of both legs in the torso's frame.
-
-        Args:
-          q: (6, 2, n) joint angles in the order of the chain [rad].
-
-        Returns:
-          Positions of the joints (6, 2, n, 3) [m], rotations from the feet's frames
-          (2, n, 3, 3), and axes of the joints (6, 2, n, 3).
-        """
+        """Joints (6, 2, n, 3) [m], feet's rotations (2, n, 3, 3), axes (6, 2, n, 3)."""
         sine, cosine = np.sin(q)[..., None, None], 1.0 - np.cos(q)[..., None, None]
         shape = (*q.shape[1:], 3, 3)
         rotation = np.broadcast_to(np.eye(3), shape)

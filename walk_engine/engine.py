@@ -79,7 +79,7 @@ class WalkEngine:
         self._left_first = first_swing == "left"
         self._stepper = Stepper(biped, self._gait, tick_s, config)
         self._posture = Posture(biped, self._gait, config)
-        self._limits = Limits.of(biped, tick_s, config.speed_fraction)
+        self._limits = Limits(biped, tick_s, config.speed_fraction)
         self._gain_s = np.stack(
             (self._gait["gyro_sagittal"], self._gait["gyro_coronal"])
         )

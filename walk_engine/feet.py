@@ -34,9 +34,6 @@ from walk_engine.time_profiles import (
 class Feet(NamedTuple):
     """Positions of the feet of n robots relative to their hips.
 
-    Arrays (2, n) hold the left foot in row 0 and the right one in row 1; the other
-    attributes are the same for both feet.
-
     Attributes:
       behind_m: (2, n) distance of the ankle behind the hip, without com_offset_m [m].
       lift_m: (2, n) height of the sole above the ground [m].
@@ -53,11 +50,7 @@ class Feet(NamedTuple):
 
 
 def resting_feet(com_offset_m: FloatArray) -> Feet:
-    """Feet of n robots side by side on the ground.
-
-    Args:
-      com_offset_m: (n,) distance of the hips ahead of the ankles [m].
-    """
+    """Feet side by side on the ground; hips ahead of the ankles by (n,) offsets [m]."""
     n = len(com_offset_m)
     pair, zero = np.zeros((2, n)), np.zeros(n)
     return Feet(pair, pair, zero, zero, com_offset_m)
@@ -72,7 +65,7 @@ def feet_in_step(
     leg_height_m: FloatArray,
     config: EngineConfig,
 ) -> Feet:
-    """Positions of the feet at a time within a step.
+    """Positions of the feet at times (n,) [s] since the step began.
 
     Args:
       time_s: (n,) time since the step began [s].
@@ -105,10 +98,7 @@ def feet_in_step(
 def _opening(
     outward_m: FloatArray, progress: FloatArray, origin: Feet, leg_height_m: FloatArray
 ) -> FloatArray:
-    """Outward turn (n,) of the legs about the hips' x axes during a step [rad].
-
-    `outward_m` is the distance in a cycle of two steps to the swing foot's side.
-    """
+    """Outward turn (n,) of the legs [rad]; `outward_m` is a cycle's side step."""
     step = np.arctan(np.maximum(outward_m, 0.0) * progress / leg_height_m)
     return 0.5 * step + origin.opening_rad * (1.0 - progress)
 
@@ -116,10 +106,7 @@ def _opening(
 def _toe_out(
     outward_rad: FloatArray, progress: FloatArray, origin: Feet, config: EngineConfig
 ) -> FloatArray:
-    """Outward turn (n,) of the toes during a step [rad].
-
-    `outward_rad` is the turn in a cycle of two steps to the swing foot's side.
-    """
+    """Outward turn (n,) of the toes [rad]; `outward_rad` is a cycle's turn."""
     outer = config.outward_turn_share
     target = np.where(outward_rad > 0, outer, 1.0 - outer) * outward_rad
     return origin.toe_out_rad + (target - origin.toe_out_rad) * progress

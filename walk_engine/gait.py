@@ -47,10 +47,7 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def from_vector(cls, vector: npt.ArrayLike) -> "Gait":
-        """Make a gait from an array of its values.
-
-        Args:
-          vector: (16,) values in the order of `PARAMETERS`.
+        """Make a gait from an array (16,) of its values in the order of `PARAMETERS`.
 
         Raises:
           BadValueError: the number of values is wrong or a value is out of bounds; the
@@ -124,10 +121,7 @@ class Gait(Mapping[str, float]):
 
 
 def stack(gaits: Sequence[Gait] | FloatArray) -> FloatArray:
-    """Put n gaits into one (n, 16) array, parameters in the order of `PARAMETERS`.
-
-    Args:
-      gaits: gaits, or an (n, 16) array of their values, which is checked.
+    """Put n gaits, or rows of values to be checked, into one (n, 16) array.
 
     Raises:
       BadValueError: no gait is given, or a value is out of bounds.
@@ -147,11 +141,7 @@ def to_unit(vectors: npt.ArrayLike) -> FloatArray:
 
 
 def from_unit(units: npt.ArrayLike) -> FloatArray:
-    """Scale values (..., 16) from [0, 1] to the bounds of the 16 gait parameters.
-
-    Raises:
-      BadValueError: a value is not in [0, 1].
-    """
+    """Scale values (..., 16) from [0, 1] to their bounds; BadValueError outside."""
     parts = np.asarray(units, dtype=np.float64)
     if not ((parts >= 0) & (parts <= 1)).all():
         raise BadValueError("scaled gait values must lie between 0 and 1")

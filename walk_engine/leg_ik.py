@@ -69,10 +69,7 @@ def inverse(
 def _yaw_undone(
     leg: LegGeometry, turn: tuple[FloatArray, FloatArray], vector: _Vector
 ) -> _Vector:
-    """Rotate a vector about a leg's yaw axis by the negative yaw (Rodrigues).
-
-    `turn` is the cosine and the sine of the yaw angle.
-    """
+    """Rotate a vector about the yaw axis by minus the yaw, given as cosine and sine."""
     a, b, c = leg.yaw_axis
     x, y, z = vector
     cosine, sine = turn
@@ -87,10 +84,7 @@ def _yaw_undone(
 def _within_reach(
     leg: LegGeometry, target: _Vector
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Move an ankle target out of reach to the nearest distance from the hip in reach.
-
-    The result is x, y and z relative to the hip and the distance from the hip [m].
-    """
+    """Nearest target in reach, relative to the hip, and its distance from it [m]."""
     x, y, z = target
     # A target at the hip has no direction: use a point just below instead.
     z = np.where(x * x + y * y + z * z < _MARGIN_M**2, -_MARGIN_M, z)

@@ -1,14 +1,12 @@
 """Joint angles from positions of the feet, and their limits of range and speed."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from robots.leg_geometry import Biped
 from walk_engine.engine_config import EngineConfig
 from walk_engine.feet import Feet
-from walk_engine.legs import legs_of
+from walk_engine.legs import Legs
 from walk_engine.step_plan import GaitColumns
 
 
@@ -16,17 +14,11 @@ class Posture:
     """Computes the joint angles of n equal robots from positions of their feet."""
 
     def __init__(self, biped: Biped, gait: GaitColumns, config: EngineConfig) -> None:
-        """Prepare the inverse kinematics and the resting angles of the other joints.
-
-        Args:
-          biped: the robots' legs and joints.
-          gait: values (n,) of each gait parameter, by its name.
-          config: the engine's constants.
-        """
+        """Prepare the inverse kinematics and the resting angles of the other joints."""
         leg = biped.leg
         self._biped = biped
         self._gait = gait
-        self._legs = legs_of(biped)
+        self._legs = Legs(biped)
         self._shoulder_roll_rad = config.shoulder_roll_rad
         self._below_hip_m = leg.hip_m[0] + biped.ankles_ahead_m
         self._standing_m = leg.ankle_height_m + config.stretch * (
@@ -88,55 +80,27 @@ class Posture:
 def _pair(values: FloatArray) -> FloatArray:
     """Repeat values (n,) for both feet as an array (2, n).
 
-    The values are copied, not broadcast: only for contiguous arrays do the bits of
-    NumPy's sines not depend on the number of robots.
+    Copied, not broadcast: the bits of NumPy's sines depend on the memory layout.
     """
     return np.stack((values, values))
 
 
-@dataclass(frozen=True, eq=False)
 class Limits:
-    """Bounds of joint commands; all arrays are (joints, 1) [rad].
+    """Limits of joint commands: the joints' ranges and their motors' speeds."""
 
-    Attributes:
-      low_rad: lower ends of the joints' ranges.
-      high_rad: upper ends of the joints' ranges.
-      change_rad: largest change of a command from one tick to the next.
-    """
-
-    low_rad: FloatArray
-    high_rad: FloatArray
-    change_rad: FloatArray
-
-    @classmethod
-    def of(cls, biped: Biped, tick_s: float, speed_fraction: float) -> "Limits":
-        """Compute the limits of a robot's joint commands.
-
-        Args:
-          biped: the robot.
-          tick_s: duration of a control tick [s].
-          speed_fraction: share of the motors' no-load speed that commands may use.
-        """
-        low, high = biped.joint_range_rad.T[:, :, None].copy()
-        return cls(low, high, biped.max_speed_rad_s[:, None] * speed_fraction * tick_s)
+    def __init__(self, biped: Biped, tick_s: float, speed_fraction: float) -> None:
+        """Compute limits per tick [s]; speeds are a fraction of the no-load speeds."""
+        self._low_rad, self._high_rad = biped.joint_range_rad.T[:, :, None].copy()
+        self._change_rad = biped.max_speed_rad_s[:, None] * speed_fraction * tick_s
 
     def within_range(self, target_rad: FloatArray) -> FloatArray:
         """Clip joint targets (joints, n) [rad] to the joints' ranges."""
-        return np.clip(target_rad, self.low_rad, self.high_rad)
+        return np.clip(target_rad, self._low_rad, self._high_rad)
 
     def towards(self, before_rad: FloatArray, target_rad: FloatArray) -> FloatArray:
         """Move from the last commands towards targets as fast as the motors allow.
 
-        Args:
-          before_rad: (joints, n) the last commands [rad].
-          target_rad: (joints, n) the targets [rad].
-
-        Returns:
-          (joints, n) the new commands [rad].
+        Commands and targets are (joints, n) [rad].
         """
-        change = np.clip(
-            self.within_range(target_rad) - before_rad,
-            -self.change_rad,
-            self.change_rad,
-        )
-        return before_rad + change
+        change = self.within_range(target_rad) - before_rad
+        return before_rad + np.clip(change, -self._change_rad, self._change_rad)

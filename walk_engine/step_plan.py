@@ -69,19 +69,13 @@ def plan_step(
     leg: LegGeometry,
     config: EngineConfig,
 ) -> StepPlan:
-    """Plan a step of each robot.
+    """Plan a step of each robot, from its speeds within the limits.
 
-    The first step only rocks the robot: it lifts a foot, less high than a later step,
-    and covers no distance. The turn of the hip yaw joints follows without slip: the
-    foot turns by the z component of the joint's axis, and each degree is used twice in
-    a cycle. (rUNSWift's Walk2014 multiplies turns by 1.43, as feet slip.)
-
-    Args:
-      speeds: the robots' speeds within their limits.
-      starting: (n,) whether the step is a robot's first.
-      gait: values of the n robots by gait parameter.
-      leg: lengths and axes of the left leg.
-      config: the engine's constants.
+    The first step (`starting`, (n,)) only rocks the robot: it lifts a foot, less high
+    than a later step, and covers no distance. The turn of the hip yaw joints follows
+    without slip: the foot turns by the z component of the joint's axis, and each degree
+    is used twice in a cycle. (rUNSWift's Walk2014 multiplies turns by 1.43, as feet
+    slip.)
     """
     share = np.abs(speeds.left_m_s) / config.max_left_m_s
     period_s = gait["step_period"] + config.side_step_extra_s * share

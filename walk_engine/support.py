@@ -33,23 +33,18 @@ class Sensing(NamedTuple):
 
 
 def nothing_sensed(robots: int, config: EngineConfig) -> Sensing:
-    """State of the force sensing before the first reading, for a number of robots."""
+    """State of the force sensing of some robots before the first reading."""
     return Sensing(np.full((8, robots), config.sensor_start_n), np.zeros(robots))
 
 
 def sense(
     before: Sensing, force_n: FloatArray, lateral_m: FloatArray, config: EngineConfig
 ) -> Sensing:
-    """Update the state of the force sensing with one reading of the sensors.
+    """Update the state of the force sensing with readings (8, n) of the sensors [N].
 
     While no foot carries weight, the last side is kept. (rUNSWift's Walk2014 assumes
-    the middle then, and misses a crossing in such a tick.)
-
-    Args:
-      before: the state before this reading.
-      force_n: (8, n) readings of the sensors [N].
-      lateral_m: (8,) positions of the sensors [m], left of the torso's middle.
-      config: the engine's constants.
+    the middle then, and misses a crossing in such a tick.) `lateral_m` (8,) are the
+    sensors' positions left of the torso's middle [m].
     """
     largest_n = np.clip(force_n, before.largest_n, config.sensor_full_n)
     pressure = np.maximum(force_n, 0.0) / largest_n
@@ -72,14 +67,7 @@ def step_is_over(
     """(n,) whether the step is over, so that the support foot changes.
 
     A step is over when the weight moves to the robot's other side, but not before
-    `min_phase` periods, and at the latest after `config.timeout_periods` periods.
-
-    Args:
-      time_s: (n,) time since the step began [s].
-      period_s: (n,) planned duration of the step [s].
-      has_crossed: (n,) whether the weight has moved to the other side in this tick.
-      min_phase: (n,) earliest end, as a share of the period.
-      config: the engine's constants.
+    `min_phase` (n,) periods, and at the latest after `config.timeout_periods` periods.
     """
     late_enough = time_s > min_phase * period_s
     too_late = time_s > config.timeout_periods * period_s
@@ -89,10 +77,7 @@ def step_is_over(
 def next_swing(now: Sensing, left_swings: BoolArray) -> BoolArray:
     """(n,) whether the left foot swings next: the foot that carries less weight.
 
-    Args:
-      now: the state of the force sensing.
-      left_swings: (n,) whether the left foot swings now; the feet take turns if it is
-        unknown which one carries the weight.
+    The feet take turns if it is unknown which one carries the weight.
     """
     return np.where(now.side == 0, ~left_swings, now.side < 0)
 
@@ -108,12 +93,7 @@ def sensor_lateral_m(biped: Biped) -> FloatArray:
 
 
 def _lateral_cop_m(pressure: FloatArray, lateral_m: FloatArray) -> FloatArray:
-    """Lateral centre of pressure (n,) [m], positive to the left; 0 without load.
-
-    The sensors are added one by one, each with its mirror image, so that neither the
-    number of robots nor mirroring changes a bit of the result. `pressure` (8, n) has
-    the readings as shares of each sensor's largest reading.
-    """
+    """Lateral centre of pressure (n,) [m], left positive; 0 without load."""
     moment = total = np.zeros(pressure.shape[1])
     for left, right in zip(_LEFT, _RIGHT, strict=True):
         moment = moment + (

@@ -23,10 +23,8 @@ def parabolic_step(
 ) -> FloatArray:
     """Profile from 0 to 1 with constant acceleration, then constant deceleration.
 
-    Args:
-      time_s: time since the step began [s].
-      period_s: duration of the step [s].
-      dead_fraction: share of the period without motion, half of it at each end.
+    Times are in [s]; `dead_fraction` is the share of the period without motion, half of
+    it at each end.
     """
     dead_s = period_s * np.multiply(0.5, dead_fraction)
     part = np.clip((time_s - dead_s) / (period_s - 2 * dead_s), 0.0, 1.0)

@@ -76,13 +76,7 @@ def is_stepping(state: StateArray) -> BoolArray:
 
 
 def on_request(state: StateArray, walk: BoolArray, stand: BoolArray) -> StateArray:
-    """States (n,) of the robots after they have read a request.
-
-    Args:
-      state: (n,) the states before the request.
-      walk: (n,) whether a robot is asked to walk.
-      stand: (n,) whether a robot is asked to stand upright; it overrides `walk`.
-    """
+    """States (n,) after a request (n,) to walk or, which overrides it, to stand."""
     return _ON_REQUEST[state, np.where(stand, 2, walk)]
 
 
@@ -94,9 +88,6 @@ def when_over(state: StateArray) -> StateArray:
 def crouched(state: StateArray, time_s: FloatArray, duration_s: float) -> FloatArray:
     """Depth (n,) of each robot's crouch: 0 standing upright, 1 at its walking height.
 
-    Args:
-      state: (n,) states of the robots, `WalkState`.
-      time_s: (n,) time since the current crouching or rising began [s].
-      duration_s: duration of crouching and of rising [s].
+    `time_s` (n,) counts since crouching or rising began, which last `duration_s` [s].
     """
     return _DEPTH[state] + _DEEPENS[state] * parabolic_step(time_s, duration_s)

@@ -8,7 +8,7 @@ import robots
 from groundwalk.arrays import FloatArray
 from robots import Biped, Description, biped
 from walk_engine import Gait
-from walk_engine.legs import legs_of
+from walk_engine.legs import Legs
 from worlds import Recording
 from worlds.scenes.forward_kinematics import LinkPoses, link_poses
 
@@ -123,7 +123,7 @@ def _angles(body: Biped, ankle_m: FloatArray) -> FloatArray:
     """(n, joints) angles [rad] for ankles (3, 2, n) [m] and level soles, unclipped."""
     n = ankle_m.shape[2]
     none = np.zeros((2, n))
-    left, right = legs_of(body).angles(ankle_m, none, none, np.zeros((2, 2, n)))
+    left, right = Legs(body).angles(ankle_m, none, none, np.zeros((2, 2, n)))
     angles = np.zeros((n, body.joints))
     angles[:, list(body.left_leg)] = left.T
     angles[:, list(body.right_leg)] = right.T

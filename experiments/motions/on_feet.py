@@ -8,7 +8,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import UnknownNameError
 from robots import Biped, Description, biped
 from walk_engine import Velocity, WalkEngine, gaits
-from walk_engine.legs import legs_of
+from walk_engine.legs import Legs
 from worlds.hidden.engine import BodySense
 from worlds.world import TICK_S
 
@@ -80,7 +80,7 @@ def _pose(body: Biped, down: FloatArray, aside_m: FloatArray) -> FloatArray:
         for side in (-1.0, 1.0)
     ]
     still = np.zeros((2, len(down)))
-    left, right = legs_of(body).angles(
+    left, right = Legs(body).angles(
         np.stack(ankle, axis=1), still, still, np.stack([still, still])
     )
     command[:, list(body.left_leg)] = left.T

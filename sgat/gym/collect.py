@@ -21,36 +21,6 @@ Policy = Callable[[FloatArray], FloatArray]
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 
 
-class _Rows:
-    """Transitions of one environment, added one by one."""
-
-    def __init__(self) -> None:
-        self.state: list[FloatArray] = []
-        self.action: list[FloatArray] = []
-        self.next_state: list[FloatArray] = []
-        self.episode: list[int] = []
-        self._episode = 0
-
-    def add(
-        self, state: FloatArray, action: FloatArray, next_state: FloatArray, end: bool
-    ) -> None:
-        """Add a copy of one transition; `end` says whether it ends the episode."""
-        self.state.append(np.array(state, float))
-        self.action.append(np.array(action, float))
-        self.next_state.append(np.array(next_state, float))
-        self.episode.append(self._episode)
-        self._episode += end
-
-    def to_transitions(self) -> Transitions:
-        """All transitions added so far."""
-        return Transitions(
-            np.array(self.state),
-            np.array(self.action),
-            np.array(self.next_state),
-            np.array(self.episode),
-        )
-
-
 def collect(
     env: Environment, policy: Policy, steps: int, rng: np.random.Generator
 ) -> Transitions:
@@ -72,16 +42,18 @@ def collect(
       100
     """
     low, high = _bounds(env.action_space)
-    rows = _Rows()
+    rows, episode = [], 0
     observation, _ = env.reset(seed=int(rng.integers(2**31)))
     for _ in range(steps):
         before = np.array(observation, float)
         action = np.clip(policy(observation), low, high)
         after, _, terminated, truncated, _ = env.step(action)
         end = bool(terminated or truncated)
-        rows.add(before, action, after, end)
+        rows.append((before, action.astype(float), np.array(after, float), episode))
+        episode += end
         observation = env.reset()[0] if end else after
-    return rows.to_transitions()
+    state, taken, after, episodes = map(np.array, zip(*rows, strict=True))
+    return Transitions(state, taken, after, episodes)
 
 
 def _bounds(space: gym.Space[Any]) -> tuple[FloatArray, FloatArray]:

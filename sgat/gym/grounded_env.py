@@ -34,10 +34,10 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
         transformer: Transformer,
         reward_of: RewardOf | None = None,
     ) -> None:
-        """Wrap an environment.
+        """Wrap an environment with Box actions and Box observations of one axis each.
 
         Args:
-          env: environment with Box actions and Box observations of one axis each.
+          env: the environment.
           transformer: changes the actions. No other environment may use it; an
             environment that is made again from its `spec` gets a copy.
           reward_of: corrects the reward. If None, the reward is the environment's own,

@@ -138,11 +138,7 @@ class ForwardModel:
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        """Read a file that `save` wrote; the model predicts the same to the last bit.
-
-        Raises:
-          BadModelError: the file cannot be read, or holds no forward model.
-        """
+        """Read a file that `save` wrote, to the last bit; else BadModelError."""
         config, network = read_model(path, _KIND, ForwardConfig)
         model = cls(config)
         model._fitted = network
@@ -183,8 +179,7 @@ class ForwardModel:
 def _stages(head: Head) -> list[Stage]:
     """Three stages of training: mean, likelihood, likelihood at a tenth of the rate.
 
-    If the likelihood were maximised from a wrong mean, a large spread would explain the
-    error, and would then keep the mean from improving.
+    From a wrong mean, a likelihood would explain the error by a large spread for good.
     """
 
     def loss(raw: Tensor, y: Tensor) -> Tensor:

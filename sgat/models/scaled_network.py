@@ -125,10 +125,7 @@ class ScaledNetwork:
 def _sample_weights(
     episode: IntArray, members: int, rng: np.random.Generator
 ) -> FloatArray:
-    """(members, N) how often each network's bootstrap sample contains a row's episode.
-
-    A single network learns from every episode once.
-    """
+    """(members, N) counts of a row's episode in each network's bootstrap sample."""
     names, index = np.unique(episode, return_inverse=True)
     if members == 1:
         return np.ones((1, len(episode)))

@@ -140,10 +140,7 @@ def _epochs(
     config: NetworkConfig,
     generator: torch.Generator,
 ) -> Iterator[None]:
-    """Train by one epoch at each step of the iterator, in random order of the rows.
-
-    `minds` (members, n) are the weights of the rows in each network's loss.
-    """
+    """Train by one epoch at each step of the iterator, in random order of the rows."""
     rate = stage.rate * config.learning_rate
     optimiser = torch.optim.AdamW(
         parameters, lr=rate, weight_decay=config.weight_decay, fused=True

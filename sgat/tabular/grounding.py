@@ -15,18 +15,13 @@ NONE = -1
 def counted_forward_model(
     counts: IntArray, sim: FiniteMdp, known_after: int = 1
 ) -> FloatArray:
-    """(S, A, S) probabilities of the real next states, estimated by observed shares.
+    """(S, A, S) probabilities of real next states, from their counts (S, A, S).
 
-    The shares maximise the likelihood. If too few transitions of a state and action
-    were seen, the sim's probabilities are used, which leaves the action as it is. Where
-    the sim is too optimistic, policies planned in it go to these states and collect the
-    missing data (like the known states of R-max: Brafman and Tennenholtz 2002).
-
-    Args:
-      counts: (S, A, S) number of times that each transition was seen in the real world.
-      sim: the simulator, with S states and A actions.
-      known_after: least number of transitions of a state and action with which their
-        shares are used.
+    The shares maximise the likelihood. If fewer than `known_after` transitions of a
+    state and action were seen, the sim's probabilities are used, which leaves the
+    action as it is. Where the sim is too optimistic, policies planned in it go to these
+    states and collect the missing data (like the known states of R-max: Brafman and
+    Tennenholtz 2002).
     """
     seen = counts.sum(axis=-1, keepdims=True)
     shares: FloatArray = np.where(
@@ -38,10 +33,8 @@ def counted_forward_model(
 def inverse_model(sim: FiniteMdp) -> IntArray:
     """(S, S) the sim's action that leads from a state (row) to another one (column).
 
-    It is the first one if several do, and `NONE` (-1) if none does.
-
-    Raises:
-      BadValueError: the sim is not deterministic.
+    It is the first one if several do, and `NONE` (-1) if none does; BadValueError if
+    the sim is not deterministic.
     """
     if not np.isin(sim.transition, (0, 1)).all():
         raise BadValueError("only a deterministic sim has an inverse model")
@@ -53,13 +46,10 @@ def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMd
     """The simulator behind an action transformer, as a finite world of its own.
 
     Args:
-      sim: a deterministic simulator with S states and A actions.
+      sim: a deterministic simulator with S states and A actions; else BadValueError.
       forward: (S, A, S) forward model: probabilities of the real next states.
       samples: whether the transformer samples next states (SGAT) or takes the most
         likely one (GAT).
-
-    Raises:
-      BadValueError: the sim is not deterministic.
 
     Example:
       >>> sgat = grounded_sim(sim, real.transition, samples=True)

@@ -44,20 +44,12 @@ def roll_out(
     exploration: float = 0.0,
     step_limit: int = STEP_LIMIT,
 ) -> TabularRollouts:
-    """Play episodes of a policy side by side.
+    """Play episodes of a policy (S,) side by side.
 
     Two policies whose generators are in the same state share their random numbers: step
     k of episode i uses the same ones whatever happened before, so equal probabilities
-    of next states lead to equal next states.
-
-    Args:
-      mdp: the world.
-      policy: (S,) action in each state.
-      episodes: number of episodes.
-      generator: draws outcomes and exploration.
-      exploration: probability, at each step, of a random action instead of the
-        policy's.
-      step_limit: steps after which an episode is cut.
+    of next states lead to equal next states. `exploration` is the probability, at each
+    step, of a random action; episodes are cut after `step_limit` steps.
 
     Example:
       >>> roll_out(mdp, policy, 100, np.random.default_rng(1)).mean

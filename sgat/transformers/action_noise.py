@@ -21,12 +21,7 @@ class ActionNoise:
     """
 
     def __init__(self, deviation: float, low: FloatArray, high: FloatArray) -> None:
-        """Choose the noise.
-
-        Args:
-          deviation: standard deviation, in the action's units.
-          low: (a,) least action.
-          high: (a,) largest action.
+        """Choose the standard deviation, and the least and largest action (a,).
 
         Raises:
           BadValueError: the deviation is negative or not finite.

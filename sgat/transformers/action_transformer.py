@@ -46,11 +46,11 @@ class ActionTransformer:
         smoothing: float = 1.0,
         inverse_columns: int | None = None,
     ) -> None:
-        """Join two fitted models.
+        """Join a model of the real world and an inverse model of the sim, both fitted.
 
         Args:
-          forward: f_real, the forward model of the real world.
-          inverse: f_inv, the inverse model of the sim.
+          forward: f_real.
+          inverse: f_inv.
           low: (a,) least action.
           high: (a,) largest action.
           noise: None for GAT. For SGAT the law of the standardised noise, with as many

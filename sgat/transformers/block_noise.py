@@ -19,13 +19,7 @@ class BlockNoise:
     """
 
     def __init__(self, residuals: FloatArray, episode: IntArray, ticks: int) -> None:
-        """Find all blocks; none goes beyond the end of an episode.
-
-        Args:
-          residuals: (N, d) standardised residuals of a forward model, preferably on
-            data that it was not fitted to.
-          episode: (N,) number of the episode of each row.
-          ticks: length of a block [ticks].
+        """Find all blocks of residuals (N, d) within episodes, numbered by (N,).
 
         Raises:
           BadValueError: no episode is as long as a block.
@@ -57,10 +51,7 @@ class BlockNoise:
 
 
 def _standardised(residuals: FloatArray, starts: IntArray, ticks: int) -> FloatArray:
-    """(N, d) residuals whose mean is 0 and variance 1 when they are drawn in blocks.
-
-    Fewer blocks contain the rows near either end of an episode.
-    """
+    """(N, d) residuals with mean 0 and variance 1 when they are drawn in blocks."""
     edges = np.zeros(len(residuals) + 1)
     np.add.at(edges, starts, 1.0)
     np.add.at(edges, starts + ticks, -1.0)

@@ -144,10 +144,7 @@ class DirectTransformer:
 
 
 def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArray:
-    """(N, k + p) states and changes of `real`, scaled as in the sim's forward model.
-
-    k is the number of columns of a state of `tried`, p that of a next state.
-    """
+    """(N, k + p) states and changes of `real`, scaled as in the sim's forward model."""
     inputs, targets = sim.scalings
     columns = slice(tried.state.shape[1])
     state = real.state[:, columns] - inputs.mean[columns]
@@ -155,11 +152,7 @@ def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArra
 
 
 def _loss(sim: ForwardModel, tried: Transitions, outputs: Scaling) -> Loss:
-    """Training loss of the transformer's network g.
-
-    It is the squared difference between the next state that the sim's model predicts
-    after g's action and the real one, in standard deviations of the model's residuals.
-    """
+    """Training loss: squared error of the sim's next state, in standard deviations."""
     inputs, targets = sim.scalings
     columns, actions = tried.state.shape[1], tried.action.shape[1]
     off = sim.predict(tried.state, tried.action) - tried.next_state

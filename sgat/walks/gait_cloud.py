@@ -37,15 +37,9 @@ class GaitCloud:
     def draw(
         self, around: Gait, count: int, seed: np.random.SeedSequence
     ) -> FloatArray:
-        """Draw random gaits.
+        """(count, 16) random gaits around one, in the order of `PARAMETERS`.
 
-        Args:
-          around: gait around which the others are drawn.
-          count: number of gaits.
-          seed: the same seed gives the same gaits.
-
-        Returns:
-          (count, 16) gait vectors in the order and units of `walk_engine.PARAMETERS`.
+        The same seed gives the same gaits.
         """
         rng = np.random.default_rng(seed)
         unit = to_unit(around.to_vector()) + rng.normal(0, self.spread, (count, 16))

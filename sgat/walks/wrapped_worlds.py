@@ -71,9 +71,7 @@ class WorldWrapper:
 
 
 class GroundedWorld(WorldWrapper):
-    """A sim that behaves like the real world, because its commands are transformed.
-
-    Each command passes through an action transformer before the sim gets it.
+    """A sim that behaves like the real world: a transformer changes its commands.
 
     Example:
       >>> senses = leg_senses(robots.get("nao"))
@@ -87,10 +85,10 @@ class GroundedWorld(WorldWrapper):
         transformer: Transformer,
         seeds: Sequence[np.random.SeedSequence],
     ) -> None:
-        """Put a transformer before a world.
+        """Put a transformer before a world with n robots.
 
         Args:
-          world: the sim, with n robots.
+          world: the sim.
           senses: makes the states and actions that the transformer sees.
           transformer: changes the actions.
           seeds: n seeds of the transformer's noise, one for each robot.

@@ -9,7 +9,7 @@ from walk_engine import EngineConfig, Velocity, WalkEngine, gaits
 from walk_engine.chain_ik import ChainLegs
 from walk_engine.engine_config import WALK2014_CONFIG
 from walk_engine.leg_ik import inverse
-from walk_engine.legs import legs_of
+from walk_engine.legs import Legs
 
 N = 40
 SIGNS = {"left": 1.0, "right": -1.0}
@@ -33,7 +33,7 @@ def test_feet_are_where_they_shall_be(name, link_frames):
     body = biped(description)
     ankle, toe, tilt, none = targets(body.leg)
     angles = np.zeros((N, body.joints))
-    pair = legs_of(body).angles(ankle, toe, tilt, none)
+    pair = Legs(body).angles(ankle, toe, tilt, none)
     for columns, found in zip((body.left_leg, body.right_leg), pair, strict=True):
         angles[:, list(columns)] = found.T
     turns, places = link_frames(description, angles)
@@ -55,7 +55,7 @@ def test_another_start_leads_to_the_closed_form():
     ankle, _, _, none = targets(body.leg)
     still = np.zeros((2, N))
     closed = inverse(body.leg, still, ankle, still)[:, 0]
-    left, _ = legs_of(body).angles(ankle, still, still, none)
+    left, _ = Legs(body).angles(ankle, still, still, none)
     np.testing.assert_allclose(left, closed, atol=1e-9)
     start = np.stack([closed, closed], axis=1)
     start += np.random.default_rng(1).uniform(-0.2, 0.2, start.shape)
@@ -70,7 +70,7 @@ def test_a_target_out_of_reach_is_finite():
     body = biped(robots.get("g1"))
     ankle, toe, tilt, none = targets(body.leg)
     ankle[2] -= 1.0
-    for angles in legs_of(body).angles(ankle, toe, tilt, none):
+    for angles in Legs(body).angles(ankle, toe, tilt, none):
         assert np.isfinite(angles).all()
         assert np.abs(angles).max() < 7
 
@@ -78,10 +78,10 @@ def test_a_target_out_of_reach_is_finite():
 def test_robots_do_not_influence_each_other():
     body = biped(robots.get("g1"))
     ankle, toe, tilt, none = targets(body.leg)
-    together = legs_of(body).angles(ankle, toe, tilt, none)
+    together = Legs(body).angles(ankle, toe, tilt, none)
     one = np.s_[..., 7:8]
     parts = (part[one].copy() for part in (ankle, toe, tilt, none))
-    for all_of_them, alone in zip(together, legs_of(body).angles(*parts), strict=True):
+    for all_of_them, alone in zip(together, Legs(body).angles(*parts), strict=True):
         np.testing.assert_array_equal(all_of_them[one], alone)
 
 
@@ -90,8 +90,8 @@ def test_ankles_take_feedback_by_their_own_signs():
     body = biped(robots.get("icub"))
     ankle, toe, tilt, none = targets(body.leg)
     added = none + 0.1
-    before = legs_of(body).angles(ankle, toe, tilt, none)
-    after = legs_of(body).angles(ankle, toe, tilt, added)
+    before = Legs(body).angles(ankle, toe, tilt, none)
+    after = Legs(body).angles(ankle, toe, tilt, added)
     left, right = (b - a for a, b in zip(before, after, strict=True))
     np.testing.assert_allclose(left[4:], [[0.1] * N, [0.1] * N])
     np.testing.assert_allclose(right[4:], [[0.1] * N, [-0.1] * N])

@@ -1,6 +1,5 @@
 """Measures of the groundings' forward models, before gaits walk in grounded sims."""
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,7 @@ from experiments.grounded_walks.models import (
 from experiments.grounded_walks.sim import ROBOT
 from groundwalk.arrays import FloatArray
 from robots import biped
-from sgat.grounding_report import GroundingReport
+from sgat.grounding_report import grounding_report
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transitions import Transitions
 from sgat.walks.walk_senses import leg_senses
@@ -67,7 +66,7 @@ def measures_of(
       seed: seed of the transformers' noise.
 
     Returns:
-      For each grounding the attributes of `GroundingReport`, and the mean and standard
+      For each grounding the measures of `grounding_report`, and the mean and standard
       deviation of what its transformer adds to each joint's command [rad].
     """
     senses = leg_senses(robots.get(ROBOT))
@@ -81,9 +80,8 @@ def measures_of(
             outcome = forward.predict(state, action)  # noqa: B023
             return senses.advanced(state, action, outcome)
 
-        report = GroundingReport.of(forward, unseen, advance)
         added = _added(transformer, unseen, seed)
-        found[name] = json.loads(report.to_json()) | added
+        found[name] = grounding_report(forward, unseen, advance) | added
     return found
 
 
