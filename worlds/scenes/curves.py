@@ -1,6 +1,6 @@
 """Curves of a recording over time, and the plots of a viewer that show them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -87,54 +87,37 @@ def plots(scene: Scene) -> list[list[Plot]]:
 
     The last row shows the sensors. Quantities that were not recorded have no plot.
     """
+    units = {
+        joint.name: "m" if joint.slides else "rad" for joint in scene.description.links
+    }
+    groups: Iterable[tuple[str, ...]] = ((joint,) for joint in scene.recording.joints)
+    if scene.description.feet:
+        groups = zip(*map(scene.pitch_joints, SIDES), strict=False)
     joints = [
         Plot(
-            f"{left}, {right} [rad]",
+            f"{', '.join(group)} [{units[group[0]]}]",
             [
                 f"joints/{joint}/{quantity}"
-                for joint in (left, right)
+                for joint in group
                 for quantity in ("position", "command")
             ],
         )
-        for left, right in zip(*map(scene.pitch_joints, SIDES), strict=False)
+        for group in groups
     ]
     sensors = [
         Plot("foot forces [N]", [f"contact/{side}" for side in SIDES]),
         Plot("gyroscope [rad/s]", ["imu/gyroscope"]),
         Plot("balance: y [m]", [f"{SIDEWAYS}/**"]),
     ]
-    if not scene.description.feet:
-        joints = _all_joints(scene)
     recorded = {trace.path for trace in traces(scene)}
     if scene.recording.has("base.position") and scene.description.feet:
         recorded.add(f"{SIDEWAYS}/**")
-    rows = [
+    rows = [joints[k : k + _ABREAST] for k in range(0, len(joints), _ABREAST)]
+    shown = [
         [plot for plot in row if not recorded.isdisjoint(plot.paths)]
-        for row in (
-            *_rows(joints if scene.description.feet else _all_joints(scene)),
-            sensors,
-        )
+        for row in (*rows, sensors)
     ]
-    return [row for row in rows if row]
-
-
-def _all_joints(scene: Scene) -> list[Plot]:
-    """A plot of position and command for each recorded joint."""
-    units = {
-        joint.name: "m" if joint.slides else "rad" for joint in scene.description.links
-    }
-    return [
-        Plot(
-            f"{joint} [{units[joint]}]",
-            [f"joints/{joint}/position", f"joints/{joint}/command"],
-        )
-        for joint in scene.recording.joints
-    ]
-
-
-def _rows(plots: Sequence[Plot]) -> list[Sequence[Plot]]:
-    """Split plots into rows of at most `_ABREAST`."""
-    return [plots[k : k + _ABREAST] for k in range(0, len(plots), _ABREAST)]
+    return [row for row in shown if row]
 
 
 def support_changes(scene: Scene) -> tuple[IntArray, list[str]]:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Capsule, Description, Imu, Joint, Link, Motor
 from robots.rigid_body import Inertial
 from robots.scale import Scale
@@ -36,125 +36,83 @@ def mechanism(model: "mujoco.MjModel", name: str) -> Description:
         at its root.
       name: the robot's name.
     """
-    return _Mechanism(model).description(name)
+    import mujoco
 
+    kinds = mujoco.mjtJoint
+    slide, hinge = int(kinds.mjJNT_SLIDE), int(kinds.mjJNT_HINGE)
+    data = mujoco.MjData(model)
+    data.qpos[:] = 0.0  # where all links' frames are parallel
+    for joint in np.flatnonzero(model.jnt_type == int(kinds.mjJNT_FREE)):
+        data.qpos[model.jnt_qposadr[joint] + 3] = 1.0  # upright
+    mujoco.mj_kinematics(model, data)
+    joints = np.flatnonzero(np.isin(model.jnt_type, (hinge, slide)))
+    parent, mover = _tree(model, joints)
+    # Place [m] of each joint; the last row, -1, is the root.
+    origin_m = np.vstack([data.xanchor[joints], np.zeros((1, 3))])
+    shapes = _shapes(model, data)
+    places_m = [np.zeros((1, 3)), data.xanchor, *(ends for _, ends, _ in shapes)]
+    extent_m = max(float(np.ptp(np.vstack(places_m), axis=0).max()), 0.01)
 
-class _Mechanism:
-    """Makes links from a MuJoCo model with joints at 0, where frames are parallel."""
-
-    def __init__(self, model: "mujoco.MjModel") -> None:
-        import mujoco
-
-        self._model, self._data = model, mujoco.MjData(model)
-        kinds = mujoco.mjtJoint
-        self._slide = int(kinds.mjJNT_SLIDE)
-        self._joints = [
-            joint
-            for joint in range(model.njnt)
-            if model.jnt_type[joint] in (int(kinds.mjJNT_HINGE), self._slide)
-        ]
-        self._data.qpos[:] = 0.0
-        for joint in range(model.njnt):
-            if model.jnt_type[joint] == int(kinds.mjJNT_FREE):
-                self._data.qpos[model.jnt_qposadr[joint] + 3] = 1.0  # upright
-        mujoco.mj_kinematics(model, self._data)
-        self._shapes = self._geoms()
-        places_m = np.vstack(
-            [np.zeros((1, 3)), self._data.xanchor, *(c for _, c, _ in self._shapes)]
-        )
-        self._extent_m = max(float(np.ptp(places_m, axis=0).max()), 0.01)
-
-    def description(self, name: str) -> Description:
-        """Make the description: a root link, and a link for each hinge or slide."""
-        nowhere = (0.0, 0.0, 0.0)
-        return Description(
-            name=name,
-            root=self._link("base", -1),
-            links=tuple(self._joint(row) for row in range(len(self._joints))),
-            coupled=(),
-            feet=(),
-            imu=Imu(nowhere, nowhere),
-            scale=Scale(length=self._extent_m / _NAO_EXTENT_M),
-        )
-
-    def _geoms(self) -> list[tuple[int, FloatArray, float]]:
-        """Capsules for geoms but planes: body id, axis ends (2, 3) and radius [m]."""
-        import mujoco
-
-        model, data, found = self._model, self._data, []
-        for geom in range(model.ngeom):
-            if model.geom_type[geom] == int(mujoco.mjtGeom.mjGEOM_PLANE):
-                continue
-            middle, half = model.geom_aabb[geom].reshape(2, 3)
-            along = int(half.argmax())
-            radius = float(np.delete(half, along).mean())
-            way = np.zeros(3)
-            way[along] = max(half[along] - radius, 0.0)
-            turn = data.geom_xmat[geom].reshape(3, 3)
-            ends = (
-                data.geom_xpos[geom] + np.array([middle - way, middle + way]) @ turn.T
-            )
-            found.append((int(model.geom_bodyid[geom]), ends, radius))
-        return found
-
-    def _joint(self, row: int) -> Joint:
-        joint = self._joints[row]
-        parent = self._carrier(row)
-        way_m = self._origin_m(row) - self._origin_m(parent)
-        low, high = self._model.jnt_range[joint].tolist()
-        name = self._model.joint(joint).name
-        return Joint(
-            name=name,
-            parent=parent,
-            origin_m=way_m,
-            axis=self._data.xaxis[joint].copy(),
-            range_rad=(low, high),
-            motor=_NO_MOTOR,
-            link=self._link(name, row),
-            slides=bool(self._model.jnt_type[joint] == self._slide),
-        )
-
-    def _origin_m(self, row: int) -> FloatArray:
-        """(3,) place [m] of a joint in the world; the origin for -1, the root."""
-        if row < 0:
-            return np.zeros(3)
-        return np.array(self._data.xanchor[self._joints[row]])
-
-    def _carrier(self, row: int) -> int:
-        """Row of the joint before joint `row` on the path from the root, or -1."""
-        body = int(self._model.jnt_bodyid[self._joints[row]])
-        before = [k for k in range(row) if self._body(k) == body]
-        return before[-1] if before else self._mover(self._model.body_parentid[body])
-
-    def _mover(self, body: int) -> int:
-        """Row of the last joint between the root and a MuJoCo body, or -1."""
-        while body > 0:
-            own = [row for row in range(len(self._joints)) if self._body(row) == body]
-            if own:
-                return own[-1]
-            body = int(self._model.body_parentid[body])
-        return -1
-
-    def _body(self, row: int) -> int:
-        return int(self._model.jnt_bodyid[self._joints[row]])
-
-    def _link(self, name: str, row: int) -> Link:
+    def link(name: str, row: int) -> Link:
         """Link that joint `row` moves: mass and capsules of all bodies on it."""
-        model, origin_m = self._model, self._origin_m(row)
-        bodies = [body for body in range(model.nbody) if self._mover(body) == row]
-        mass_kg = max(float(model.body_mass[bodies].sum()), _LEAST_KG)
-        inertial = Inertial(mass_kg, np.zeros(3), np.zeros((3, 3)))
-        parts = [
-            (ends, radius) for body, ends, radius in self._shapes if body in bodies
-        ]
+        mass_kg = max(float(model.body_mass[mover == row].sum()), _LEAST_KG)
+        parts = [(ends, radius) for body, ends, radius in shapes if mover[body] == row]
         if not parts:
-            parts = [
-                (np.array([origin_m, self._origin_m(other)]), _THIN * self._extent_m)
-                for other in range(len(self._joints))
-                if self._carrier(other) == row
-            ]
-        shapes = [_capsule(ends - origin_m, radius) for ends, radius in parts]
-        return Link(name, inertial, tuple(shapes))
+            after = np.flatnonzero(parent == row)
+            rods = [np.stack([origin_m[row], origin_m[k]]) for k in after]
+            parts = [(ends, _THIN * extent_m) for ends in rods]
+        capsules = [_capsule(ends - origin_m[row], radius) for ends, radius in parts]
+        inertial = Inertial(mass_kg, np.zeros(3), np.zeros((3, 3)))
+        return Link(name, inertial, tuple(capsules))
+
+    links = [
+        Joint(
+            name=model.joint(joint).name,
+            parent=int(parent[row]),
+            origin_m=origin_m[row] - origin_m[parent[row]],
+            axis=data.xaxis[joint].copy(),
+            range_rad=tuple(model.jnt_range[joint].tolist()),
+            motor=_NO_MOTOR,
+            link=link(model.joint(joint).name, row),
+            slides=bool(model.jnt_type[joint] == slide),
+        )
+        for row, joint in enumerate(joints)
+    ]
+    scale = Scale(length=extent_m / _NAO_EXTENT_M)
+    imu = Imu((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    return Description(name, link("base", -1), tuple(links), (), (), imu, scale)
+
+
+def _tree(model: "mujoco.MjModel", joints: IntArray) -> tuple[IntArray, IntArray]:
+    """Row of the joint before each of the joints, and of the one that moves each body.
+
+    Rows count the joints from the root's side; -1 is the root.
+    """
+    parent, mover = np.full(len(joints), -1), np.full(model.nbody, -1)
+    for body in range(1, model.nbody):
+        mover[body] = mover[model.body_parentid[body]]
+        for row in np.flatnonzero(model.jnt_bodyid[joints] == body):
+            parent[row], mover[body] = mover[body], row
+    return parent, mover
+
+
+def _shapes(
+    model: "mujoco.MjModel", data: "mujoco.MjData"
+) -> list[tuple[int, FloatArray, float]]:
+    """Capsules for geoms but planes: body id, axis ends (2, 3) and radius [m]."""
+    import mujoco
+
+    found = []
+    for geom in np.flatnonzero(model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)):
+        middle, half = model.geom_aabb[geom].reshape(2, 3)
+        along = int(half.argmax())
+        radius = float(np.delete(half, along).mean())
+        way = np.zeros(3)
+        way[along] = max(half[along] - radius, 0.0)
+        turn = data.geom_xmat[geom].reshape(3, 3)
+        ends = data.geom_xpos[geom] + np.array([middle - way, middle + way]) @ turn.T
+        found.append((int(model.geom_bodyid[geom]), ends, radius))
+    return found
 
 
 def _capsule(ends_m: FloatArray, radius_m: float) -> Capsule:

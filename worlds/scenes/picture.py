@@ -1,7 +1,5 @@
 """Draws scenes as pictures: the robot, its ground and the marks of its balance."""
 
-from typing import NamedTuple
-
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
@@ -33,28 +31,11 @@ _SOLE_M, _LINE_M, _POINT_M, _ARROW_M = 0.006, 0.0025, 0.009, 0.005
 """Radii [m] of the capsules that draw a sole (of a NAO), lines, points and arrows."""
 
 
-class LinkCapsules(NamedTuple):
-    """The n capsules that draw one link, in the link's frame.
-
-    Attributes:
-      link: name of the link.
-      start_m, end_m: (n, 3) ends of the capsules' axes.
-      radius_m: (n,) radii of the capsules.
-      colour: (n, 3) red, green, blue from 0 to 255.
-    """
-
-    link: str
-    start_m: FloatArray
-    end_m: FloatArray
-    radius_m: FloatArray
-    colour: FloatArray
-
-
 class SceneCamera:
     """A camera that follows a scene's robot; robots of all sizes look equally large.
 
     Attributes:
-      parts: capsules of the robot's links and soles.
+      parts: names of the robot's links, and capsules that draw them, in their frames.
 
     Example:
       >>> camera = SceneCamera(scene, accent, size_px=(640, 480))
@@ -100,81 +81,71 @@ class SceneCamera:
         target_m = self._target_m[tick]
         eye_m = target_m + np.array(_EYE_M) * self._size
         camera = Camera(tuple(eye_m), tuple(target_m), self._size_px, _VIEW_RAD)
-        groups = [self._placed(part, tick) for part in self.parts]
+        groups = [self._placed(link, rounds, tick) for link, rounds in self.parts]
         if self._balance is not None:
             groups += self._marks(self._balance, tick)
-        rounds = Rounds(
-            *(np.concatenate(column) for column in zip(*groups, strict=True))
-        )
-        return camera.picture(rounds, self._scene.ground)
+        whole = (np.concatenate(column) for column in zip(*groups, strict=True))
+        return camera.picture(Rounds(*whole), self._scene.ground)
 
-    def _placed(self, part: LinkCapsules, tick: int) -> Rounds:
-        pose = self._poses[part.link].at(tick)
-        start_m, end_m = (pose.points(ends)[0] for ends in (part.start_m, part.end_m))
-        dull = np.zeros(len(start_m), bool)
-        return Rounds(start_m, end_m, part.radius_m, part.colour, dull)
+    def _placed(self, link: str, rounds: Rounds, tick: int) -> Rounds:
+        """Move capsules from a link's frame into the world."""
+        pose = self._poses[link].at(tick)
+        start_m, end_m = pose.points(rounds.start_m)[0], pose.points(rounds.end_m)[0]
+        return rounds._replace(start_m=start_m, end_m=end_m)
 
     def _marks(self, found: Balance, tick: int) -> list[Rounds]:
         """Forces, balance points and support polygon, in colours without shading."""
-        way_m = found.centre_of_mass_m[: tick + 1 : 3]
-        marks = [_line(way_m, _LINE_M, colours.MASS)]
-        points = (
+        marks = [_line(found.centre_of_mass_m[: tick + 1 : 3], colours.MASS)]
+        for places_m, colour in (
             (found.centre_of_mass_m, colours.MASS),
             (found.pressure_m, colours.FORCE),
             (found.zmp_m, colours.ZMP),
-        )
-        for place_m, colour in points:
-            if place_m is not None:
-                marks.append(
-                    _glowing(place_m[[tick]], place_m[[tick]], _POINT_M, colour)
-                )
+        ):
+            if places_m is not None:
+                at_m = places_m[[tick]]
+                marks.append(_rounds(at_m, at_m, _POINT_M, colour, glow=True))
         if found.polygons_m is not None and len(found.polygons_m[tick]):
             corners = found.polygons_m[tick]
             rim_m = np.vstack([corners, corners[:1]])
-            marks.append(_line(rim_m, _LINE_M, colours.SUPPORT_POLYGON))
-        for side in SIDES:
-            marks += self._forces(side, tick)
+            marks.append(_line(rim_m, colours.SUPPORT_POLYGON))
+        robot = self._scene.description
+        for side, foot in zip(SIDES, robot.feet, strict=True):
+            sensors = self._scene.sensor_forces_n(side)
+            if sensors is not None:
+                link = robot.links[foot.joint].link.name
+                marks.append(self._placed(link, self._arrows(*sensors, tick), tick))
         return marks
 
-    def _forces(self, side: str, tick: int) -> list[Rounds]:
-        sensors = self._scene.sensor_forces_n(side)
-        if sensors is None:
-            return []
-        points_m, forces_n = sensors
-        robot = self._scene.description
-        foot = robot.feet[SIDES.index(side)]
-        pose = self._poses[robot.links[foot.joint].link.name]
+    def _arrows(self, points_m: FloatArray, forces_n: FloatArray, tick: int) -> Rounds:
+        """Arrows in a foot's frame for the forces that press on its sensors."""
         pressing = forces_n[tick] > 0
-        start_m = points_m[pressing]
         length_m = self._scene.arrow_m_per_n * forces_n[tick, pressing]
+        start_m = points_m[pressing]
         end_m = start_m + length_m[:, np.newaxis] * (0.0, 0.0, 1.0)
-        start_m, end_m = (pose.at(tick).points(ends)[0] for ends in (start_m, end_m))
-        return [_glowing(start_m, end_m, _ARROW_M, colours.FORCE)]
+        return _rounds(start_m, end_m, _ARROW_M, colours.FORCE, glow=True)
 
 
-def _parts(scene: Scene, accent: colours.Colour) -> list[LinkCapsules]:
-    """Capsules of all links that have shapes, and of the soles."""
+def _parts(scene: Scene, accent: colours.Colour) -> list[tuple[str, Rounds]]:
+    """Capsules of all links that have shapes, and of the soles, by the link's name."""
     robot = scene.description
-    parts = [
-        LinkCapsules(
-            link.name,
-            np.array([shape.start_m for shape in link.shapes]),
-            np.array([shape.end_m for shape in link.shapes]),
-            np.array([shape.radius_m for shape in link.shapes]),
-            shape_colours(link.shapes, accent).astype(float),
-        )
-        for link in (robot.root, *(joint.link for joint in robot.links))
-        if link.shapes
-    ]
+    parts = []
+    for link in (robot.root, *(joint.link for joint in robot.links)):
+        if link.shapes:
+            rounds = Rounds(
+                np.array([shape.start_m for shape in link.shapes]),
+                np.array([shape.end_m for shape in link.shapes]),
+                np.array([shape.radius_m for shape in link.shapes]),
+                shape_colours(link.shapes, accent).astype(float),
+                np.zeros(len(link.shapes), bool),
+            )
+            parts.append((link.name, rounds))
     for foot in robot.feet:
-        name = robot.links[foot.joint].link.name
-        parts.append(_sole(name, foot, _SOLE_M * robot.scale.length, accent))
+        sole = _sole(foot, _SOLE_M * robot.scale.length, accent)
+        parts.append((robot.links[foot.joint].link.name, sole))
     return parts
 
 
-def _sole(
-    link: str, foot: Foot, radius_m: float, colour: colours.Colour
-) -> LinkCapsules:
+def _sole(foot: Foot, radius_m: float, colour: colours.Colour) -> Rounds:
     """Fill a sole with capsules: around its outline, and side by side across it."""
     outline_m = foot.outline_m
     low_m, high_m = outline_m[:, 0].min(), outline_m[:, 0].max()
@@ -185,33 +156,33 @@ def _sole(
         part = (x_m - x0) / (x1 - x0)
     # Each bar's line meets two edges of the outline, which is convex.
     y_m = np.where((part >= 0) & (part <= 1), y0 + part * (y1 - y0), np.nan)
-    sides = [
+    low, high = (
         np.hstack([x_m, pick(y_m, axis=1)[:, np.newaxis]])
         for pick in (np.nanmin, np.nanmax)
-    ]
-    start_m = np.vstack([outline_m, sides[0]])
-    end_m = np.vstack([np.roll(outline_m, -1, axis=0), sides[1]])
-    height_m = np.full((len(start_m), 1), foot.sole_height_m + radius_m)
-    return LinkCapsules(
-        link,
-        np.hstack([start_m, height_m]),
-        np.hstack([end_m, height_m]),
-        np.full(len(start_m), radius_m),
-        np.tile(np.array(colour, float), (len(start_m), 1)),
     )
+    start_m = np.vstack([outline_m, low])
+    end_m = np.vstack([np.roll(outline_m, -1, axis=0), high])
+    height_m = np.full((len(start_m), 1), foot.sole_height_m + radius_m)
+    start_m, end_m = np.hstack([start_m, height_m]), np.hstack([end_m, height_m])
+    return _rounds(start_m, end_m, radius_m, colour, glow=False)
 
 
-def _glowing(
-    start_m: FloatArray, end_m: FloatArray, radius_m: float, colour: colours.Colour
+def _rounds(
+    start_m: FloatArray,
+    end_m: FloatArray,
+    radius_m: float,
+    colour: colours.Colour,
+    glow: bool,
 ) -> Rounds:
+    """Capsules with axis ends (n, 3) that have the same radius and colour."""
     count = len(start_m)
     painted = np.tile(np.array(colour, float), (count, 1))
-    radii_m = np.full(count, radius_m)
-    return Rounds(start_m, end_m, radii_m, painted, np.ones(count, bool))
+    radii_m, glows = np.full(count, radius_m), np.full(count, glow)
+    return Rounds(start_m, end_m, radii_m, painted, glows)
 
 
-def _line(points_m: FloatArray, radius_m: float, colour: colours.Colour) -> Rounds:
-    return _glowing(points_m[:-1], points_m[1:], radius_m, colour)
+def _line(points_m: FloatArray, colour: colours.Colour) -> Rounds:
+    return _rounds(points_m[:-1], points_m[1:], _LINE_M, colour, glow=True)
 
 
 def _steadied(place_m: FloatArray, time_s: FloatArray) -> FloatArray:

@@ -74,9 +74,9 @@ def test_a_sole_is_a_plate_without_holes():
         link = robot.description.links[foot.joint].link.name
         bars = [
             (start, end, radius)
-            for part in camera.parts
-            if part.link == link
-            for start, end, radius, colour in zip(*part[1:], strict=True)
+            for name, rounds in camera.parts
+            if name == link
+            for start, end, radius, colour, _ in zip(*rounds, strict=True)
             if tuple(colour) == BLUE
         ]
         start, end, radius = (np.array(column) for column in zip(*bars, strict=True))
