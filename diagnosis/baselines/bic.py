@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.baselines.found import NORMAL_80, found_effect
+from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
@@ -13,7 +13,7 @@ from diagnosis.search.screening import Screen
 from diagnosis.search.signatures import signatures
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
-from diagnosis.verdict import Recordings, Verdict
+from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 
 CANDIDATES = 8
@@ -49,12 +49,9 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     )
     weights = np.exp(-0.5 * (criteria - criteria.min()))
     weights /= weights.sum()
-    recordings = Recordings(fit=tuple(trace.name for trace in traces))
     best = int(np.argmin(criteria)) - 1
     if best < 0:
-        return Verdict(
-            "none", recordings=recordings, seconds=time.monotonic() - begun_s
-        )
+        return verdict_of(traces, begun_s)
     close = [
         fit.model[0]
         for fit, value in zip(fits, criteria[1:], strict=True)
@@ -64,8 +61,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     (fit,) = fit_all(predictor, [fits[best].model])
     placed, spans = fit.model[0], intervals(fit)
     named = found_effect(plant, placed, spans, weights[best + 1], close)
-    spent_s = time.monotonic() - begun_s
-    return Verdict("effects", (named,), recordings=recordings, seconds=spent_s)
+    return verdict_of(traces, begun_s, (named,))
 
 
 def criterion(fit: FittedModel, samples: int) -> float:

@@ -1,5 +1,6 @@
-"""Makes the effects of a verdict from fitted values and intervals."""
+"""Makes verdicts, and their effects from fitted values and intervals."""
 
+import time
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,7 +9,8 @@ from scipy.stats import norm
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.verdict import Estimate, Found
+from diagnosis.traces.trace import Trace
+from diagnosis.verdict import Estimate, Found, Recordings, Verdict
 
 NORMAL_80 = float(norm.ppf(0.9))
 """Half width of an 80 % interval of a normal distribution, in standard deviations."""
@@ -56,4 +58,27 @@ def found_effect(
         float(np.clip(probability, 0.0, 1.0)),
         tuple(PlacedEffect(other.name, other.place) for other in confusable_with),
         native=kind.native,
+    )
+
+
+def verdict_of(
+    traces: Sequence[Trace],
+    begun_s: float,
+    effects: Sequence[Found] = (),
+    limits: Sequence[str] = (),
+) -> Verdict:
+    """The verdict with these effects, or none; or with what keeps it from an answer.
+
+    Args:
+      traces: recordings, all of which were fitted.
+      begun_s: when the work began, by `time.monotonic`.
+      effects: the effects found.
+      limits: why nothing can be concluded.
+    """
+    return Verdict(
+        "not_identifiable" if limits else "effects" if effects else "none",
+        tuple(effects),
+        limits=tuple(limits),
+        recordings=Recordings(fit=tuple(trace.name for trace in traces)),
+        seconds=time.monotonic() - begun_s,
     )

@@ -5,14 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.baselines.found import NORMAL_80, found_effect
-from diagnosis.baselines.sparse_columns import Column, torque_columns
-from diagnosis.baselines.sparse_torques import Torques
+from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
+from diagnosis.baselines.sparse_columns import Column, Torques, torque_columns
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict import Recordings, Verdict
+from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray, IntArray
 
 THRESHOLD = 0.1
@@ -43,14 +42,9 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
       traces: recordings; all of them are fitted.
     """
     begun_s = time.monotonic()
-    recordings = Recordings(fit=tuple(trace.name for trace in traces))
     if plant.base == "floating" or any(t.command_rad is None for t in traces):
-        return Verdict(
-            "not_identifiable",
-            limits=("inverse dynamics need a fixed base and position commands",),
-            recordings=recordings,
-            seconds=time.monotonic() - begun_s,
-        )
+        limit = "inverse dynamics need a fixed base and position commands"
+        return verdict_of(traces, begun_s, limits=(limit,))
     torques = Torques.of(plant, traces)
     columns = torque_columns(plant, traces, torques)
     kept, size, error = sequential_threshold(
@@ -62,12 +56,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         found_effect(plant, placed, spans, part / total)
         for placed, spans, part in ranked[:MOST_EFFECTS]
     )
-    return Verdict(
-        "effects" if effects else "none",
-        effects,
-        recordings=recordings,
-        seconds=time.monotonic() - begun_s,
-    )
+    return verdict_of(traces, begun_s, effects)
 
 
 def sequential_threshold(

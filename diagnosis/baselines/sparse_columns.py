@@ -1,4 +1,4 @@
-"""Regression columns: joint torques of effects that are linear in a parameter."""
+"""Regression columns, and the torque they explain: what the nominal model lacks."""
 
 import copy
 from collections.abc import Iterator, Sequence
@@ -7,21 +7,97 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.baselines.sparse_torques import Torques, inverse_nm
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.parts import JointMotion, PlacedEffect
 from diagnosis.effects.variants import Variants
+from diagnosis.plant.inverse_dynamics import inverse_dynamics
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import variants_of
+from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     import mujoco
 
+MOST_ROWS = 1500
+"""Largest number of rows, of all recordings together, that regression uses."""
+
 NUDGE_RAD = 1e-4
 """Step of an angle [rad] for finite differences of inverse dynamics."""
+
+_EDGE_S = 0.2
+"""Time at both ends of a recording that is left out, because smoothed accelerations are
+poor there [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Torques:
+    """The torque that the nominal model does not explain, in R rows of all recordings.
+
+    Attributes:
+      motion: smoothed motion, arrays (R, j); its torque is that of the nominal model.
+      damping_nm_s_rad: (j,) median damping plus back-EMF of the servos.
+      weight_rad_nm: (j,) weights 1 / kp. They turn torques into position errors, which
+        are about equally large at all joints.
+      missing: (R j,) weighted torque of the servos less that of the nominal model.
+    """
+
+    motion: JointMotion
+    damping_nm_s_rad: FloatArray
+    weight_rad_nm: FloatArray
+    missing: FloatArray
+
+    @classmethod
+    def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Torques":
+        """Compute servo torque minus inverse dynamics for recordings of a robot."""
+        every = max(1, -(-sum(trace.ticks for trace in traces) // MOST_ROWS))
+        parts = zip(*(_rows(trace, every) for trace in traces), strict=True)
+        since_s, q, v, a, command, rate, kp, damping, servo_nm = map(
+            np.concatenate, parts
+        )
+        # the model has the nominal servo's back-EMF as damping
+        emf = traces[0].servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
+        nominal = inverse_dynamics(plant, plant.model, q, v, a) + emf * v
+        weight = 1 / np.maximum(np.median(kp, axis=0), 1e-6)
+        return cls(
+            JointMotion(since_s, q, v, a, command, rate, kp, nominal),
+            np.median(damping, axis=0),
+            weight,
+            ((servo_nm - nominal) * weight).reshape(-1),
+        )
+
+    def weighted(self, values: FloatArray) -> FloatArray:
+        """(R j,) torques (R, j) times the weights."""
+        return np.asarray((values * self.weight_rad_nm).reshape(-1))
+
+
+def _rows(trace: Trace, every: int) -> list[FloatArray]:
+    """Rows of a trace, away from its ends, of what `Torques.of` names, (rows, j) each."""
+    q, v, a = smooth_columns(trace.time_s, trace.position_rad)
+    command = trace.position_rad if trace.command_rad is None else trace.command_rad
+    # around a row the one before it holds as long as its own
+    command = (command + np.vstack([command[:1], command[:-1]])) / 2
+    rate = np.gradient(command, trace.time_s, axis=0)
+    servo, since_s = trace.servo, trace.time_s - trace.time_s[0]
+    whole = np.isfinite(np.hstack([q, v, a, command, rate])).all(axis=1)
+    inside = (since_s > _EDGE_S) & (since_s < since_s[-1] - _EDGE_S)
+    rows = np.flatnonzero(whole & inside)[::every]
+    damping = servo.kd_nm_s_rad + servo.back_emf_nm_s_rad
+    torque = servo.torque(command - q, v)
+    columns = (
+        since_s[:, None],
+        q,
+        v,
+        a,
+        command,
+        rate,
+        servo.kp_nm_rad,
+        damping,
+        torque,
+    )
+    return [np.broadcast_to(column, q.shape)[rows] for column in columns]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,13 +152,13 @@ def torque_columns(
 def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Column]:
     """Columns of effects at one joint alone, and of a constant torque there."""
     motion, place = _motion_of(torques, joint), plant.joints[joint]
-    damping = float(np.median(torques.motion.damping_nm_s_rad[:, joint]))
+    damping = float(torques.damping_nm_s_rad[joint])
 
     def column(name: str, parameter: int, values: FloatArray) -> Column:
         """The column of an effect whose torque (rows,) acts at this joint only."""
         whole = np.zeros_like(torques.motion.position_rad)
         whole[:, joint] = values
-        return Column(name, place, parameter, _weighted(torques, whole), damping)
+        return Column(name, place, parameter, torques.weighted(whole), damping)
 
     for kind in all_effects().values():
         values = kind.torque_column(motion) if kind.place_kind == "joint" else None
@@ -101,22 +177,12 @@ def _signal_columns(plant: Plant, torques: Torques, kind: Effect) -> Iterator[Co
     if values:
         whole = np.stack(values, axis=1)
         place, number = kind.place_kind, kind.column_parameter
-        yield Column(kind.name, place, number, _weighted(torques, whole))
+        yield Column(kind.name, place, number, torques.weighted(whole))
 
 
 def _motion_of(torques: Torques, joint: int) -> JointMotion:
     """The motion of one joint, taken from arrays of all joints."""
-    motion = torques.motion
-    return JointMotion(
-        since_s=motion.since_s[:, 0],
-        position_rad=motion.position_rad[:, joint],
-        velocity_rad_s=motion.velocity_rad_s[:, joint],
-        acceleration_rad_s2=motion.acceleration_rad_s2[:, joint],
-        command_rad=motion.command_rad[:, joint],
-        command_rate_rad_s=motion.command_rate_rad_s[:, joint],
-        kp_nm_rad=motion.kp_nm_rad[:, joint],
-        torque_nm=torques.nominal_nm[:, joint],
-    )
+    return JointMotion(*(values[:, joint] for values in vars(torques.motion).values()))
 
 
 def _changed_columns(
@@ -135,9 +201,10 @@ def _changed_columns(
         values = tuple(size if i == number else 0.0 for i in range(len(parameters)))
         variants = variants_of(plant, [(PlacedEffect(kind.name, place, values),)])
         pose = motion.position_rad - variants.joints.offset_rad[0]
-        other = inverse_nm(plant, _model_of(plant, variants), pose, motion)
-        change = (other - torques.nominal_nm) / size
-        yield Column(kind.name, place, number, _weighted(torques, change))
+        model = _model_of(plant, variants)
+        moves = pose, motion.velocity_rad_s, motion.acceleration_rad_s2
+        change = (inverse_dynamics(plant, model, *moves) - motion.torque_nm) / size
+        yield Column(kind.name, place, number, torques.weighted(change))
 
 
 def _model_of(plant: Plant, variants: Variants) -> "mujoco.MjModel":
@@ -155,7 +222,3 @@ def _model_of(plant: Plant, variants: Variants) -> "mujoco.MjModel":
         getattr(owner, last)[:] = values[0].reshape(getattr(owner, last).shape)
     mujoco.mj_setConst(model, mujoco.MjData(model))
     return model
-
-
-def _weighted(torques: Torques, values: FloatArray) -> FloatArray:
-    return np.asarray((values * torques.weight_rad_nm).reshape(-1))

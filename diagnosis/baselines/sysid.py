@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import norm
 
-from diagnosis.baselines.found import NORMAL_80, found_effect
+from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.baselines.sysid_models import (
     FreeParameter,
     SysidModels,
@@ -26,7 +26,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import WARM_UP_S
 from diagnosis.traces.trace import Trace
-from diagnosis.verdict import Recordings, Verdict
+from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
 
@@ -77,24 +77,19 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
       GroundwalkError: mujoco.sysid is not installed.
     """
     begun_s = time.monotonic()
-    recordings = Recordings(fit=tuple(trace.name for trace in traces))
     free = free_parameters(plant, traces)
     change, half = fitted(plant, _beginnings(plant, traces), free)
     moved = (np.abs(change) >= LEAST_CHANGE) & (np.abs(change) > half)
     size = np.where(moved, np.abs(change), 0.0)
     if not moved.any():
-        return Verdict(
-            "none", recordings=recordings, seconds=time.monotonic() - begun_s
-        )
+        return verdict_of(traces, begun_s)
     best = int(np.argmax(size))
     one = free[best]
     placed = replace(one.placed, values=(one.value(change[best]),))
     spread = half[best] * NORMAL_80 / _NORMAL_95
     span = (one.value(change[best] - spread), one.value(change[best] + spread))
     found = found_effect(plant, placed, [span], size[best] / size.sum())
-    return Verdict(
-        "effects", (found,), recordings=recordings, seconds=time.monotonic() - begun_s
-    )
+    return verdict_of(traces, begun_s, (found,))
 
 
 def fitted(

@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnosis.plant.inverse_dynamics import inverse_dynamics
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import PulseSource
 from groundwalk.arrays import BoolArray, FloatArray
@@ -123,13 +123,9 @@ def _felt(
     real torques, and -1 if only the torque sensor showed them.
     """
     assert trace.torque_nm is not None
-    smoothed = [smooth(trace.time_s, own) for own in trace.position_rad.T]
-    motion = (
-        np.stack([getattr(own, name) for own in smoothed], axis=1)
-        for name in ("value", "rate", "acceleration")
-    )
+    motion = smooth_columns(trace.time_s, trace.position_rad)
     needed = inverse_dynamics(plant, plant.model, *motion)[:, column]
-    velocity = smoothed[column].rate
+    velocity = motion.rate[:, column]
     pulse = np.zeros(trace.ticks)
     for (first, last), size in zip(where, sizes, strict=True):
         pulse[first:last] = size

@@ -20,7 +20,7 @@ from diagnosis.traces.pulse_sources import (
     source_of,
     step_at,
 )
-from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace, filled, stretches
 from diagnosis.verdict import Pulse
 from groundwalk.arrays import FloatArray
@@ -181,8 +181,6 @@ def _asked_nm(trace: Trace, late: float) -> FloatArray:
     assert trace.command_rad is not None
     command = filled(trace.command_rad)
     before = np.vstack([command[:1], command[:-1]])
-    velocity = np.stack(
-        [smooth(trace.time_s, own).rate for own in trace.position_rad.T], axis=1
-    )
+    velocity = smooth_columns(trace.time_s, trace.position_rad).rate
     error = late * before + (1 - late) * command - trace.position_rad
     return trace.servo.torque(error, velocity)

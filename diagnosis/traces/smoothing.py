@@ -1,6 +1,6 @@
 """Smooths noisy samples at uneven times, and estimates their rates of change."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -21,19 +21,18 @@ _STIFFNESS = np.logspace(-4, 10, 22)
 """Weights of the smoothing penalty that are tried, for spline knots one tick apart."""
 
 
-@dataclass(frozen=True, eq=False)
-class Smoothed:
-    """A smoothed channel and its derivatives at the channel's own times.
+class Smoothed(NamedTuple):
+    """Smoothed channels and their derivatives at the channels' own times.
 
-    Attributes:
-      value: (T,) in the channel's unit.
-      rate: (T,) first derivative, per second.
-      acceleration: (T,) second derivative, per second squared.
+    The arrays are (T,) for one channel and (T, k) for k channels.
     """
 
     value: FloatArray
+    """In the channel's unit."""
     rate: FloatArray
+    """First derivative, per second."""
     acceleration: FloatArray
+    """Second derivative, per second squared."""
 
 
 def smooth(
@@ -69,6 +68,12 @@ def smooth(
         np.asarray(spline(time_s, 1), float),
         np.asarray(spline(time_s, 2), float),
     )
+
+
+def smooth_columns(time_s: FloatArray, values: FloatArray) -> Smoothed:
+    """Smooth each of k channels, the columns of (T, k) values, as `smooth` does."""
+    found = [smooth(time_s, column) for column in values.T]
+    return Smoothed(*(np.stack(parts, axis=1) for parts in zip(*found, strict=True)))
 
 
 def _knots(time_s: FloatArray) -> FloatArray:

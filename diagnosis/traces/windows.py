@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
@@ -53,14 +53,8 @@ class Run:
     def of(cls, trace: Trace) -> "Run":
         """A whole trace, to be replayed from the smoothed state at its start."""
         head = slice(0, min(trace.ticks, HEAD_ROWS))
-        smoothed = [
-            smooth(trace.time_s[head], column[head]) for column in trace.position_rad.T
-        ]
-        return cls(
-            trace,
-            np.array([one.value[0] for one in smoothed]),
-            np.array([one.rate[0] for one in smoothed]),
-        )
+        smoothed = smooth_columns(trace.time_s[head], trace.position_rad[head])
+        return cls(trace, smoothed.value[0], smoothed.rate[0])
 
 
 def window_s(plant: Plant, trace: Trace) -> float | None:
@@ -80,7 +74,7 @@ def runs_of(plant: Plant, trace: Trace) -> list[Run]:
     longest_s = window_s(plant, trace)
     if longest_s is None:
         return [Run.of(trace)]
-    position, velocity = _smoothed(trace.time_s, trace.position_rad)
+    position, velocity, _ = smooth_columns(trace.time_s, trace.position_rad)
     base = _bases(trace) if plant.base == "floating" else None
     since_s = trace.time_s - trace.time_s[0]
     if plant.base == "floating":
@@ -101,22 +95,13 @@ def runs_of(plant: Plant, trace: Trace) -> list[Run]:
     ]
 
 
-def _smoothed(time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Smoothed values and rates, (T, k) each, of k channels."""
-    found = [smooth(time_s, column) for column in values.T]
-    return (
-        np.stack([one.value for one in found], axis=1),
-        np.stack([one.rate for one in found], axis=1),
-    )
-
-
 def _bases(trace: Trace) -> FloatArray:
     """(T, 13) smoothed states of a floating base, columns as in `Run.base`."""
     assert trace.base_position_m is not None
     assert trace.base_orientation is not None
-    position, velocity = _smoothed(trace.time_s, trace.base_position_m)
+    position, velocity, _ = smooth_columns(trace.time_s, trace.base_position_m)
     turned = continuous(trace.base_orientation)
-    quaternion, rate = _smoothed(trace.time_s, turned)
+    quaternion, rate, _ = smooth_columns(trace.time_s, turned)
     length = np.linalg.norm(quaternion, axis=1, keepdims=True)
     quaternion, rate = quaternion / length, rate / length
     turning = _body_rates(quaternion, rate)
@@ -131,7 +116,7 @@ def _with_measured(
     """(T, 3) mean of derived and measured rates, whose errors are independent."""
     if measured is None or not np.isfinite(measured).all():
         return rates
-    return np.asarray((rates + _smoothed(trace.time_s, measured)[0]) / 2)
+    return np.asarray((rates + smooth_columns(trace.time_s, measured).value) / 2)
 
 
 def continuous(quaternion: FloatArray) -> FloatArray:
