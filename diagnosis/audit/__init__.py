@@ -5,6 +5,5 @@ reversals) and clocks, and writes its findings as sentences for the report.
 """
 
 from diagnosis.audit.audit import audit
-from diagnosis.audit.result import Audit, Finding
 
-__all__ = ["Audit", "Finding", "audit"]
+__all__ = ["audit"]

@@ -12,18 +12,19 @@ from diagnosis.audit.channels import (
     repeated_findings,
     repeated_share,
 )
-from diagnosis.audit.forces import imu_findings, torque_findings
 from diagnosis.audit.motion import audit_joint, excitation_findings, stuck_findings
 from diagnosis.audit.result import Audit, Finding, TraceAudit
 from diagnosis.audit.suspicions import (
     drive_findings,
     following_findings,
+    imu_findings,
     range_findings,
+    torque_findings,
     velocity_findings,
 )
 from diagnosis.audit.timing import audit_timing
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.smoothing import Smoothed, smooth
+from diagnosis.traces.smoothing import smooth
 from diagnosis.traces.trace import Trace
 
 
@@ -59,30 +60,20 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
         smooth(trace.time_s, values, channel.noise.total)
         for values, channel in zip(trace.position_rad.T, positions, strict=True)
     ]
-    measured = replace(
-        timing,
-        repeated_share=repeated_share(
-            trace, np.array([channel.quantum or 0.0 for channel in positions])
-        ),
-        channels=tuple(channels.values()),
-        joints=tuple(map(audit_joint, plant.joints, positions, smoothed)),
-    )
-    for channel in measured.channels:
+    joints = tuple(map(audit_joint, plant.joints, positions, smoothed))
+    steps = np.array([channel.quantum or 0.0 for channel in positions])
+    repeated = repeated_share(trace, steps)
+    for channel in channels.values():
         findings += channel_findings(trace, channel)
-    findings += repeated_findings(trace, measured.repeated_share)
-    findings += stuck_findings(trace, plant.joints, channels)
-    return measured, findings + _suspicions(trace, plant, measured, smoothed)
-
-
-def _suspicions(
-    trace: Trace, plant: Plant, measured: TraceAudit, smoothed: list[Smoothed]
-) -> list[Finding]:
-    """Findings on contradictions within a recording, or between it and the model."""
-    moves = [joint.moves for joint in measured.joints]
-    return [
+    findings += [
+        *repeated_findings(trace, repeated),
+        *stuck_findings(trace, plant.joints, channels),
         *range_findings(trace, plant),
         *following_findings(trace, plant),
-        *velocity_findings(trace, plant, smoothed, moves),
+        *velocity_findings(trace, plant, smoothed, [joint.moves for joint in joints]),
         *torque_findings(trace, plant),
         *imu_findings(trace),
     ]
+    every = tuple(channels.values())
+    audited = replace(timing, repeated_share=repeated, channels=every, joints=joints)
+    return audited, findings

@@ -1,31 +1,16 @@
 """Audits single channels: noise, rounding, and missing, stuck or repeated values."""
 
-import numpy as np
-from scipy.ndimage import find_objects, label
+from collections.abc import Iterator
 
-from diagnosis.audit.result import ChannelAudit, Finding, Severity
+import numpy as np
+
+from diagnosis.audit.result import ChannelAudit, Finding
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.noise import noise_of
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace, runs
 from groundwalk.arrays import BoolArray, FloatArray
 from worlds.recordings.columns import vector_columns
 
-_OF_JOINTS = {
-    "position": "position_rad",
-    "velocity": "velocity_rad_s",
-    "command": "command_rad",
-    "command_torque": "command_torque_nm",
-    "torque": "torque_nm",
-}
-_OF_VECTORS = {
-    "gyroscope": "gyroscope_rad_s",
-    "accelerometer": "accelerometer_m_s2",
-    "foot_force": "foot_force_n",
-    "base.position": "base_position_m",
-    "base.orientation": "base_orientation",
-    "base.linear_velocity": "base_linear_velocity_m_s",
-    "base.angular_velocity": "base_angular_velocity_rad_s",
-}
 COMMANDS = ("command.", "command_torque.")
 """Prefixes of the names of columns that are commanded, not measured."""
 _MOST_MISSING = 0.5
@@ -50,17 +35,15 @@ def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
     Quantities that were never recorded at a joint are left out.
     """
     channels: dict[str, FloatArray] = {}
-    for quantity, field in _OF_JOINTS.items():
+    for quantity, field in JOINT_FIELDS.items():
         values = getattr(trace, field)
         for column, joint in enumerate(plant.joints if values is not None else ()):
             if quantity == "position" or np.isfinite(values[:, column]).any():
                 channels[f"{quantity}.{joint}"] = values[:, column]
-    for vector, field in _OF_VECTORS.items():
+    for vector, field in VECTOR_FIELDS.items():
         values = getattr(trace, field)
-        for column, name in enumerate(
-            vector_columns(vector) if values is not None else ()
-        ):
-            channels[name] = values[:, column]
+        if values is not None:
+            channels |= dict(zip(vector_columns(vector), values.T, strict=False))
     return channels
 
 
@@ -87,34 +70,27 @@ def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
     )
 
 
-def channel_findings(trace: Trace, channel: ChannelAudit) -> list[Finding]:
+def channel_findings(trace: Trace, channel: ChannelAudit) -> Iterator[Finding]:
     """Findings on the missing and clipped values of one channel."""
-    severity: Severity
-    found = []
-    where = f"{channel.name} of {trace.name}"
-    if channel.missing_share > _MOST_MISSING:
-        driving = channel.name.startswith(("position.", "command."))
-        text = f"{where}: {channel.missing_share:.0%} of the values are missing"
-        severity = "refuse" if driving else "limit"
-        found.append(Finding(severity, text, trace.name, channel.name))
-    elif channel.longest_missing_s >= _BURST_S:
-        text = (
-            f"{where}: {channel.missing_share:.1%} of the values are missing, up to "
-            f"{channel.longest_missing_s:.2g} s at a stretch, which are not judged"
-        )
-        found.append(Finding("limit", text, trace.name, channel.name))
-    elif channel.missing_share > 0:
-        text = f"{where}: {channel.missing_share:.1%} of the values are missing"
-        found.append(Finding("note", text, trace.name, channel.name))
+    name = channel.name
+    where, share = f"{name} of {trace.name}", channel.missing_share
+    if share > _MOST_MISSING:
+        driving = name.startswith(("position.", "command."))
+        text = f"{where}: {share:.0%} of the values are missing"
+        yield Finding("refuse" if driving else "limit", text, trace.name, name)
+    elif share > 0:
+        text, long = f"{where}: {share:.1%} of the values are missing", False
+        if channel.longest_missing_s >= _BURST_S:
+            span_s, long = channel.longest_missing_s, True
+            text += f", up to {span_s:.2g} s at a stretch, which are not judged"
+        yield Finding("limit" if long else "note", text, trace.name, name)
     if channel.clipped_share > 0:
         text = (
             f"{where} is stuck at an extreme in {channel.clipped_share:.1%} of the "
             "rows, as if the sensor or the motor had reached its limit"
         )
-        is_position = channel.name.startswith("position.")
-        severity = "note" if is_position else "limit"
-        found.append(Finding(severity, text, trace.name, channel.name))
-    return found
+        is_position = name.startswith("position.")
+        yield Finding("note" if is_position else "limit", text, trace.name, name)
 
 
 def repeated_share(trace: Trace, steps: FloatArray) -> float:
@@ -133,16 +109,15 @@ def repeated_share(trace: Trace, steps: FloatArray) -> float:
     return float(np.mean(same[moving])) if moving.any() else 0.0
 
 
-def repeated_findings(trace: Trace, share: float) -> list[Finding]:
+def repeated_findings(trace: Trace, share: float) -> Iterator[Finding]:
     """The finding on a large share of rows that repeat the row before, or none."""
-    if share < _REPEATED:
-        return []
-    text = (
-        f"{trace.name}: {share:.0%} of the rows taken in motion repeat the positions "
-        "of the row before; the sensors are slower than the recording, and delays of "
-        "that length cannot be distinguished from it"
-    )
-    return [Finding("limit", text, trace.name)]
+    if share >= _REPEATED:
+        text = (
+            f"{trace.name}: {share:.0%} of the rows taken in motion repeat the "
+            "positions of the row before; the sensors are slower than the recording, "
+            "and delays of that length cannot be distinguished from it"
+        )
+        yield Finding("limit", text, trace.name)
 
 
 def _clipped_share(name: str, values: FloatArray, step: float) -> float:
@@ -155,7 +130,7 @@ def _clipped_share(name: str, values: FloatArray, step: float) -> float:
     stays = []
     ends = (np.nanmax(values), np.nanmin(values))
     for extreme in ends[:1] if name.startswith("foot_force") else ends:
-        for start, stop in _spans(values == extreme):
+        for start, stop in runs(values == extreme):
             if stop - start < _STUCK_ROWS or start < 3:
                 continue
             # the last step to the extreme is cut off, so speed is that before it
@@ -171,12 +146,7 @@ def _clipped_share(name: str, values: FloatArray, step: float) -> float:
 def _longest_s(time_s: FloatArray, mask: BoolArray) -> float:
     """Length [s] of the longest run of true flags in `mask` (T,), edges included."""
     longest = 0.0
-    for start, stop in _spans(mask):
+    for start, stop in runs(mask):
         end = min(stop, len(time_s) - 1)
         longest = max(longest, float(time_s[end] - time_s[max(start - 1, 0)]))
     return longest
-
-
-def _spans(mask: BoolArray) -> list[tuple[int, int]]:
-    """First row of each run of (T,) flags, and the row after its last one."""
-    return [(rows.start, rows.stop) for (rows,) in find_objects(label(mask)[0])]

@@ -1,6 +1,6 @@
 """Audits how the joints moved, and finds the questions that this leaves open."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -40,55 +40,46 @@ def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointA
 
 def stuck_findings(
     trace: Trace, joints: Sequence[str], channels: dict[str, ChannelAudit]
-) -> list[Finding]:
+) -> Iterator[Finding]:
     """Find channels that never change although the robot moves."""
-    found, dead = [], []
     commanded = []
     for joint in joints:
         command = channels.get(
             f"command.{joint}", channels.get(f"command_torque.{joint}")
         )
         if command is not None and not command.constant:
-            commanded.append(joint)
-            if channels[f"position.{joint}"].constant:
-                dead.append(joint)
-    for joint in dead:
-        name = f"position.{joint}"
-        every = len(dead) == len(commanded)
+            commanded.append(f"position.{joint}")
+    dead = [name for name in commanded if channels[name].constant]
+    every = len(dead) == len(commanded)
+    for name in dead:
         text = (
             f"{name} of {trace.name} never changes although its command does"
             + (", and so for all joints" if every and len(dead) > 1 else "")
             + ": the joint is jammed or its sensor dead"
         )
-        found.append(Finding("refuse" if every else "limit", text, trace.name, name))
+        yield Finding("refuse" if every else "limit", text, trace.name, name)
     for name, channel in channels.items():
         if channel.constant and name.startswith(("gyroscope", "accelerometer")):
             text = f"{name} of {trace.name} never changes; it is left out"
-            found.append(Finding("limit", text, trace.name, name))
-    return found
+            yield Finding("limit", text, trace.name, name)
 
 
-def excitation_findings(traces: Sequence[TraceAudit]) -> list[Finding]:
+def excitation_findings(traces: Sequence[TraceAudit]) -> Iterator[Finding]:
     """Find joints that never move or hardly reverse in all traces together."""
-    found = []
     for column, first in enumerate(traces[0].joints if traces else ()):
-        joints = [trace.joints[column] for trace in traces]
-        text = _left_open(first.name, [joint for joint in joints if joint.moves])
-        if text:
-            found.append(Finding("limit", text, channel=f"position.{first.name}"))
-    return found
-
-
-def _left_open(name: str, moving: Sequence[JointAudit]) -> str:
-    if not moving:
-        return f"{name} never moves: its friction, inertia and play remain unknown"
-    reversals = sum(joint.reversals for joint in moving)
-    if reversals < _LEAST_REVERSALS:
-        return (
-            f"{name} reverses {reversals} times: its Coulomb friction and an offset of "
-            "its torque or its encoder cannot be distinguished, nor can play be seen"
-        )
-    return ""
+        name, joints = first.name, [trace.joints[column] for trace in traces]
+        reversals = sum(joint.reversals for joint in joints if joint.moves)
+        if not any(joint.moves for joint in joints):
+            text = f"{name} never moves: its friction, inertia and play remain unknown"
+        elif reversals < _LEAST_REVERSALS:
+            text = (
+                f"{name} reverses {reversals} times: its Coulomb friction and an "
+                "offset of its torque or its encoder cannot be distinguished, nor can "
+                "play be seen"
+            )
+        else:
+            continue
+        yield Finding("limit", text, channel=f"position.{name}")
 
 
 def _reversals(rate: FloatArray) -> int:

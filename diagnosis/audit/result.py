@@ -21,10 +21,6 @@ class Finding:
       trace: name of the trace; empty if the finding is about all of them together.
       channel: such as "position.LKneePitch" or "time"; empty if the finding is about
         the whole trace.
-
-    Example:
-      >>> Finding("limit", "knee never moves", channel="position.knee").severity
-      'limit'
     """
 
     severity: Severity
@@ -66,7 +62,6 @@ class JointAudit:
     """The motion of one joint in a trace; sliding joints have m for rad.
 
     Attributes:
-      name: the joint.
       low_rad: smallest smoothed position.
       high_rad: largest smoothed position.
       speed_rad_s: speed below which the joint is in 99 % of the rows.
@@ -87,15 +82,12 @@ class TraceAudit:
     """Measurements of one trace.
 
     Attributes:
-      name: the trace.
-      rows: number of rows.
       duration_s: time from the first to the last row.
       rate_hz: rows per second: one over the median tick (time between rows).
       jitter_s: standard deviation of the ticks that are no gaps.
       gaps: number of ticks longer than two and a half median ticks.
       longest_gap_s: length of the longest gap, 0 without any.
       repeated_share: share of the rows in motion that repeat the row before.
-      channels: all channels of the trace.
       joints: all joints of the robot model.
     """
 
@@ -115,12 +107,7 @@ class TraceAudit:
 class Audit:
     """Measurements of all traces, and the findings about them.
 
-    Attributes:
-      traces: measurements of each trace.
-      findings: in the order of the traces, those about all together last.
-
-    Example:
-      See `diagnosis.audit.audit.audit`.
+    The findings are in the order of the traces, those about all together last.
     """
 
     traces: tuple[TraceAudit, ...]

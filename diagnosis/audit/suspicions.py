@@ -1,5 +1,7 @@
 """Finds recordings that contradict the robot model: mixed up units, signs or joints."""
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
@@ -9,6 +11,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.traces.smoothing import Smoothed
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.gravity import GRAVITY_M_S2
 
 _FAR_BEYOND, _FAR_BEYOND_RAD = 1.0, 1.0
 """Positions beyond a joint's range in the model, both by this multiple of its width and
@@ -31,42 +34,78 @@ _UNITS = {np.degrees(1): "degrees instead of radians", 1e3: "thousandths of the 
 """Factors between units that are often confused, and words for the wrong unit."""
 _RATE_SLACK = 2.0
 """Largest factor between measured velocities and the rate of the positions."""
+_ABOVE, _FAR_ABOVE = 1.5, 20.0
+"""Torques above the first multiple of the servo's limit are suspicious; above the
+second, their unit is wrong."""
+_IN_G = (0.7, 1.4)
+"""A median size of the accelerometer's vector within this range, expected in m/s^2,
+shows that the sensor reports multiples of gravity."""
+_FASTEST_RAD_S = 35.0
+"""Largest rate [rad/s] that robots' gyroscopes can measure: 2000 degrees a second."""
 
 
-def range_findings(trace: Trace, plant: Plant) -> list[Finding]:
+def drive_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
+    """Find what a trace lacks for a replay: a base's pose, commands or servo gains."""
+    if plant.base == "floating" and (
+        trace.base_position_m is None or trace.base_orientation is None
+    ):
+        text = (
+            f"{trace.name} has a floating base without base.position and "
+            "base.orientation; nothing says where it is"
+        )
+        yield Finding("refuse", text, trace.name)
+    torques = (trace.command_torque_nm, trace.torque_nm)
+    for column, joint in enumerate(plant.joints):
+        name = f"command.{joint}"
+        if not _has_any(column, trace.command_rad, *torques):
+            text = f"{trace.name}: nothing says what drove {joint}"
+            yield Finding("refuse", text, trace.name, name)
+        elif trace.servo.kp_nm_rad[column] == 0 and not _has_any(column, *torques):
+            text = (
+                f"{name} of {trace.name}: no servo gains are known; give them as "
+                "options or in the recording's metadata"
+            )
+            yield Finding("refuse", text, trace.name, name)
+
+
+def range_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
     """Find positions and commands beyond the joint ranges of the robot model."""
-    found = []
+    targets = {"position": trace.position_rad, "command": trace.command_rad}
     for column, joint in enumerate(plant.joints):
         number = plant.model.joint(joint).id
         if not plant.model.jnt_limited[number]:
             continue
         low, high = plant.model.jnt_range[number]
-        for quantity, values in _targets(trace):
-            most = _excess(values[:, column], low, high)
+        for quantity, values in targets.items():
+            if values is None:
+                continue
+            least, most = _outermost(values[:, column], low, high)
+            excess = float(max(most - high, low - least, 0.0))
             name = f"{quantity}.{joint}"
-            said = f"{name} of {trace.name} goes {most:.3g} beyond"
-            ends = f"its range of {low:.3g} to {high:.3g} in the model"
-            if _is_in_degrees(values[:, column], low, high):
+            said = (
+                f"{name} of {trace.name} goes {excess:.3g} beyond its range of "
+                f"{low:.3g} to {high:.3g} in the model"
+            )
+            # a range in radians was converted once more; all motion is within that
+            inside = np.degrees(low) <= least and most <= np.degrees(high)
+            if high > low and inside and most - least > _NARROW * (high - low):
                 text = (
-                    f"{said} {ends}; is the model's range in degrees where radians are "
+                    f"{said}; is the model's range in degrees where radians are "
                     "expected, or the other way round (MJCF: compiler angle)?"
                 )
-                found.append(Finding("refuse", text, trace.name, name))
-            elif most > max(_FAR_BEYOND * (high - low), _FAR_BEYOND_RAD):
-                text = f"{said} {ends}; are angles in degrees instead of radians?"
-                found.append(Finding("refuse", text, trace.name, name))
-            elif most > _BEYOND * (high - low):
-                text = f"{said} {ends}; the model's end stop would act there"
-                found.append(Finding("limit", text, trace.name, name))
-    return found
+                yield Finding("refuse", text, trace.name, name)
+            elif excess > max(_FAR_BEYOND * (high - low), _FAR_BEYOND_RAD):
+                text = f"{said}; are angles in degrees instead of radians?"
+                yield Finding("refuse", text, trace.name, name)
+            elif excess > _BEYOND * (high - low):
+                text = f"{said}; the model's end stop would act there"
+                yield Finding("limit", text, trace.name, name)
 
 
-def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
+def following_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
     """Find joints that follow another joint's command, or their own with wrong sign."""
-    if trace.command_rad is None:
-        return []
     follow = following(trace)
-    found = _swapped(trace, plant, follow)
+    yield from _swapped(trace, plant, follow)
     for k, column in enumerate(follow.columns):
         name = f"position.{plant.joints[column]}"
         slope, alike = follow.slope[k], follow.correlation[k, k]
@@ -76,19 +115,18 @@ def following_findings(trace: Trace, plant: Plant) -> list[Finding]:
                 f"{name} of {trace.name} moves {slope:.3g} times as far as its "
                 f"command; is one of them in {unit}?"
             )
-            found.append(Finding("refuse", text, trace.name, name))
+            yield Finding("refuse", text, trace.name, name)
         elif alike < -_ALIKE and follow.flipped[k] < _FAR_BETTER * follow.misfit[k, k]:
             text = (
                 f"{name} of {trace.name} runs against its command (correlation "
                 f"{alike:.2f}); is a sign wrong?"
             )
-            found.append(Finding("refuse", text, trace.name, name))
-    return found
+            yield Finding("refuse", text, trace.name, name)
 
 
 def velocity_findings(
-    trace: Trace, plant: Plant, smoothed: list[Smoothed], moves: list[bool]
-) -> list[Finding]:
+    trace: Trace, plant: Plant, smoothed: Sequence[Smoothed], moves: Sequence[bool]
+) -> Iterator[Finding]:
     """Find measured velocities that contradict the rate of the positions.
 
     Args:
@@ -97,19 +135,17 @@ def velocity_findings(
       smoothed: the trace's smoothed positions, joint by joint.
       moves: whether each joint moves.
     """
-    found: list[Finding] = []
     if trace.velocity_rad_s is None:
-        return found
+        return
     for column, joint in enumerate(plant.joints):
         rate, measured = smoothed[column].rate, trace.velocity_rad_s[:, column]
         there = np.isfinite(measured) & np.isfinite(rate)
         if not moves[column] or there.sum() < 2 or np.ptp(measured[there]) == 0:
             continue
         cross = float(np.mean(rate[there] * measured[there]))
-        factor = cross / float(np.mean(rate[there] ** 2))
-        alike = cross / float(
-            np.sqrt(np.mean(rate[there] ** 2) * np.mean(measured[there] ** 2))
-        )
+        power = np.mean(rate[there] ** 2)
+        factor = cross / float(power)
+        alike = cross / float(np.sqrt(power * np.mean(measured[there] ** 2)))
         right = 1 / _RATE_SLACK < factor < _RATE_SLACK
         if abs(alike) > _ALIKE and not right:
             name = f"velocity.{joint}"
@@ -117,48 +153,59 @@ def velocity_findings(
                 f"{name} of {trace.name} is {factor:.3g} times the rate of its "
                 "positions; are their units, signs and the time's the same?"
             )
-            found.append(Finding("refuse", text, trace.name, name))
-    return found
+            yield Finding("refuse", text, trace.name, name)
 
 
-def drive_findings(trace: Trace, plant: Plant) -> list[Finding]:
-    """Find what a trace lacks for a replay: a base's pose, commands or servo gains."""
-    found = []
-    if plant.base == "floating" and (
-        trace.base_position_m is None or trace.base_orientation is None
-    ):
-        text = (
-            f"{trace.name} has a floating base without base.position and "
-            "base.orientation; nothing says where it is"
-        )
-        found.append(Finding("refuse", text, trace.name))
-    for column, joint in enumerate(plant.joints):
-        if _is_driven(trace, column) and not _follows_unknown(trace, column):
-            continue
-        name = f"command.{joint}"
-        text = (
-            f"{name} of {trace.name}: no servo gains are known; give them as options "
-            "or in the recording's metadata"
-            if _is_driven(trace, column)
-            else f"{trace.name}: nothing says what drove {joint}"
-        )
-        found.append(Finding("refuse", text, trace.name, name))
-    return found
+def torque_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
+    """Find measured and commanded torques far above the servos' limits."""
+    torques = {"torque": trace.torque_nm, "command_torque": trace.command_torque_nm}
+    for quantity, values in torques.items():
+        for column, joint in enumerate(plant.joints if values is not None else ()):
+            limit = float(trace.servo.max_torque_nm[column])
+            most = float(_sizes(values[:, column]).max(initial=0.0))
+            name = f"{quantity}.{joint}"
+            said = f"{name} of {trace.name} reaches {most:.3g}"
+            if most > _FAR_ABOVE * limit:
+                text = f"{said}, far above the servo's {limit:.3g}; is its unit right?"
+                yield Finding("refuse", text, trace.name, name)
+            elif most > _ABOVE * limit:
+                text = f"{said}, above the servo's {limit:.3g}"
+                yield Finding("limit", text, trace.name, name)
 
 
-def _swapped(trace: Trace, plant: Plant, follow: Following) -> list[Finding]:
+def imu_findings(trace: Trace) -> Iterator[Finding]:
+    """Find accelerations in multiples of gravity, and turning rates in degrees."""
+    if trace.accelerometer_m_s2 is not None:
+        norms = _sizes(np.linalg.norm(trace.accelerometer_m_s2, axis=1))
+        norm = float(np.median(norms)) if len(norms) else GRAVITY_M_S2
+        if _IN_G[0] < norm < _IN_G[1]:
+            text = (
+                f"accelerometer of {trace.name} shows {norm:.3g} where gravity is "
+                f"{GRAVITY_M_S2} m/s^2; is it in g?"
+            )
+            yield Finding("refuse", text, trace.name, "accelerometer")
+    if trace.gyroscope_rad_s is not None:
+        fastest = float(_sizes(trace.gyroscope_rad_s).max(initial=0.0))
+        if fastest > _FASTEST_RAD_S:
+            text = (
+                f"gyroscope of {trace.name} reaches {fastest:.3g} rad/s, more than "
+                "such sensors measure; is it in degrees per second?"
+            )
+            yield Finding("refuse", text, trace.name, "gyroscope")
+
+
+def _swapped(trace: Trace, plant: Plant, follow: Following) -> Iterator[Finding]:
     """Find cycles of joints that each follow the command of the next one."""
     if len(follow.columns) < 2:
-        return []
+        return
     _, of_command = linear_sum_assignment(follow.misfit**2)
     source = np.argsort(of_command)  # the command that explains each position best
     positions = np.arange(len(source))
     own = follow.misfit[positions, positions]
     better = follow.misfit[source, positions] < _FAR_BETTER * own
     better &= follow.correlation[source, positions] > _ALIKE
-    found = []
     for k in positions[source != positions]:
-        if not all(better[member] for member in _cycle(source, int(k))):
+        if not better[_cycle(source, int(k))].all():
             continue
         joint, other = (plant.joints[follow.columns[i]] for i in (k, source[k]))
         name = f"position.{joint}"
@@ -167,8 +214,7 @@ def _swapped(trace: Trace, plant: Plant, follow: Following) -> list[Finding]:
             f"{follow.misfit[source[k], k]:.2g}, its own only within {own[k]:.2g}; are "
             "joints swapped?"
         )
-        found.append(Finding("refuse", text, trace.name, name))
-    return found
+        yield Finding("refuse", text, trace.name, name)
 
 
 def _cycle(source: IntArray, start: int) -> list[int]:
@@ -187,45 +233,23 @@ def _unit(slope: float) -> str:
     return ""
 
 
-def _targets(trace: Trace) -> list[tuple[str, FloatArray]]:
-    pairs = [("position", trace.position_rad), ("command", trace.command_rad)]
-    return [(name, values) for name, values in pairs if values is not None]
-
-
-def _excess(values: FloatArray, low: float, high: float) -> float:
-    """Distance by which values leave a range, without the outermost 1 % at each end."""
+def _outermost(values: FloatArray, low: float, high: float) -> tuple[float, float]:
+    """The 1 % and 99 % quantiles of values; the range itself if there are none."""
     there = values[np.isfinite(values)]
-    least, most = np.quantile(there, (0.01, 0.99)) if len(there) else (low, high)
-    return float(max(most - high, low - least, 0.0))
-
-
-def _is_in_degrees(values: FloatArray, low: float, high: float) -> bool:
-    """Whether a joint's range was converted to radians although it was in radians.
-
-    This is so if the joint moves over more than three times its range, but within 57.3
-    times that range.
-    """
-    there = values[np.isfinite(values)]
-    if len(there) == 0 or high <= low:
-        return False
+    if not len(there):
+        return low, high
     least, most = np.quantile(there, (0.01, 0.99))
-    inside = np.degrees(low) <= least and most <= np.degrees(high)
-    return bool(inside and most - least > _NARROW * (high - low))
+    return least, most
 
 
-def _is_driven(trace: Trace, column: int) -> bool:
-    drives = (trace.command_rad, trace.command_torque_nm, trace.torque_nm)
+def _has_any(column: int, *channels: FloatArray | None) -> bool:
+    """Whether a joint has a value in one of the channels (T, j)."""
     return any(
         values is not None and bool(np.isfinite(values[:, column]).any())
-        for values in drives
+        for values in channels
     )
 
 
-def _follows_unknown(trace: Trace, column: int) -> bool:
-    """Whether the joint has no servo gains, and no torques instead of commands."""
-    torques = (trace.command_torque_nm, trace.torque_nm)
-    by_torque = any(
-        values is not None and bool(np.isfinite(values[:, column]).any())
-        for values in torques
-    )
-    return bool(trace.servo.kp_nm_rad[column] == 0) and not by_torque
+def _sizes(values: FloatArray) -> FloatArray:
+    """(k,) absolute values of those that are not missing."""
+    return np.asarray(np.abs(values[np.isfinite(values)]))

@@ -1,8 +1,10 @@
 """Audits the clock of a trace: duration, rate, jitter and gaps."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from diagnosis.audit.result import Finding, TraceAudit
+from diagnosis.audit.result import Finding, Severity, TraceAudit
 from diagnosis.traces.trace import Trace
 
 _LEAST_S, _LEAST_ROWS = 1.0, 50
@@ -20,14 +22,14 @@ _UNEVEN = 0.1
 
 def audit_timing(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
     """Measure rate, jitter and gaps of a trace, and find those that limit its use."""
-    name, time_s = trace.name, trace.time_s
-    ticks = np.diff(time_s)
-    if len(time_s) < 2 or (ticks <= 0).any() or not np.isfinite(time_s).all():
-        return _without_clock(trace)
+    ticks = np.diff(trace.time_s)
+    if not len(ticks) or (ticks <= 0).any() or not np.isfinite(trace.time_s).all():
+        audit = TraceAudit(trace.name, trace.ticks, 0.0, 0.0, 0.0, 0, 0.0)
+        return audit, [Finding("refuse", _no_clock(trace), trace.name, "time")]
     tick_s = trace.tick_s
     is_gap = ticks > _GAP * tick_s
     audit = TraceAudit(
-        name=name,
+        name=trace.name,
         rows=trace.ticks,
         duration_s=trace.duration_s,
         rate_hz=1 / tick_s,
@@ -35,64 +37,58 @@ def audit_timing(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
         gaps=int(is_gap.sum()),
         longest_gap_s=float(ticks[is_gap].max(initial=0.0)),
     )
-    return audit, [*_amount(audit), *_rate(audit), *_evenness(audit)]
+    found = _findings(audit)
+    return audit, [Finding(how, text, audit.name, "time") for how, text in found]
 
 
-def _without_clock(trace: Trace) -> tuple[TraceAudit, list[Finding]]:
+def _no_clock(trace: Trace) -> str:
+    """What is wrong with times that do not increase, or with too few of them."""
     backwards = np.flatnonzero(~(np.diff(trace.time_s) > 0))
-    text = f"{trace.name} has {trace.ticks} rows; at least {_LEAST_ROWS} are needed"
-    if len(backwards):
-        row = int(backwards[0]) + 1
-        text = (
-            f"{trace.name}: time does not run forward at row {row}: "
-            f"{trace.time_s[row - 1]:.6g} s, then {trace.time_s[row]:.6g} s"
-        )
-    audit = TraceAudit(trace.name, trace.ticks, 0.0, 0.0, 0.0, 0, 0.0)
-    return audit, [Finding("refuse", text, trace.name, "time")]
+    if not len(backwards):
+        return f"{trace.name} has {trace.ticks} rows; at least {_LEAST_ROWS} are needed"
+    row = int(backwards[0]) + 1
+    return (
+        f"{trace.name}: time does not run forward at row {row}: "
+        f"{trace.time_s[row - 1]:.6g} s, then {trace.time_s[row]:.6g} s"
+    )
 
 
-def _amount(audit: TraceAudit) -> list[Finding]:
-    name, found = audit.name, []
+def _findings(audit: TraceAudit) -> Iterator[tuple[Severity, str]]:
+    """Severity and text of each finding on the clock of a trace."""
+    name, rate = audit.name, audit.rate_hz
     if audit.duration_s < _LEAST_S:
-        found.append(
-            f"{name} lasts {audit.duration_s:.3g} s; at least {_LEAST_S:g} s are needed"
+        yield (
+            "refuse",
+            f"{name} lasts {audit.duration_s:.3g} s; at least {_LEAST_S:g} s are needed",
         )
     if audit.rows < _LEAST_ROWS:
-        found.append(f"{name} has {audit.rows} rows; at least {_LEAST_ROWS} are needed")
-    return [Finding("refuse", text, name, "time") for text in found]
-
-
-def _rate(audit: TraceAudit) -> list[Finding]:
-    name, rate = audit.name, audit.rate_hz
+        yield (
+            "refuse",
+            f"{name} has {audit.rows} rows; at least {_LEAST_ROWS} are needed",
+        )
     if rate < _SLOWEST_HZ:
-        text = (
+        yield (
+            "refuse",
             f"{name} has {rate:.3g} rows a second, too few to show motion; is its time "
-            "in milliseconds instead of seconds?"
+            "in milliseconds instead of seconds?",
         )
-        return [Finding("refuse", text, name, "time")]
-    if rate < _SLOW_HZ:
-        text = (
+    elif rate < _SLOW_HZ:
+        yield (
+            "limit",
             f"{name} has {rate:.3g} rows a second; below about 50, delays, armature "
-            "and elasticity cannot be estimated"
+            "and elasticity cannot be estimated",
         )
-        return [Finding("limit", text, name, "time")]
-    return []
-
-
-def _evenness(audit: TraceAudit) -> list[Finding]:
-    name, found = audit.name, []
     if audit.gaps:
         is_long = audit.longest_gap_s >= _LONG_GAP_S
         after = "; what happened in them stays unknown" if is_long else ""
-        text = (
+        yield (
+            "limit" if is_long else "note",
             f"{name} has {audit.gaps} gaps, the longest of "
-            f"{1e3 * audit.longest_gap_s:.3g} ms{after}"
+            f"{1e3 * audit.longest_gap_s:.3g} ms{after}",
         )
-        found.append(Finding("limit" if is_long else "note", text, name, "time"))
-    if audit.jitter_s * audit.rate_hz > _UNEVEN:
-        text = (
-            f"{name}: ticks of {1e3 / audit.rate_hz:.3g} ms vary by "
-            f"{1e3 * audit.jitter_s:.2g} ms; shorter delays are hidden in the jitter"
+    if audit.jitter_s * rate > _UNEVEN:
+        yield (
+            "limit",
+            f"{name}: ticks of {1e3 / rate:.3g} ms vary by "
+            f"{1e3 * audit.jitter_s:.2g} ms; shorter delays are hidden in the jitter",
         )
-        found.append(Finding("limit", text, name, "time"))
-    return found

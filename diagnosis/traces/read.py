@@ -10,29 +10,13 @@ import numpy as np
 from diagnosis.plant.load import load_plant
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo_sources import Gains, with_gains
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 from worlds import read_recording
 from worlds.recordings.columns import nearest
 from worlds.recordings.metadata import ServoGains
 from worlds.recordings.recording import Recording
-
-_VECTORS = {
-    "gyroscope_rad_s": "gyroscope",
-    "accelerometer_m_s2": "accelerometer",
-    "foot_force_n": "foot_force",
-    "base_position_m": "base.position",
-    "base_orientation": "base.orientation",
-    "base_linear_velocity_m_s": "base.linear_velocity",
-    "base_angular_velocity_rad_s": "base.angular_velocity",
-}
-_JOINTS = {
-    "velocity_rad_s": "velocity",
-    "command_rad": "command",
-    "command_torque_nm": "command_torque",
-    "torque_nm": "torque",
-}
 
 
 def read_traces(
@@ -151,9 +135,6 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
 
     Raises:
       BadRecordingError: the recording's joints or base are not the plant's.
-
-    Example:
-      >>> trace = trace_of(read_recording(path), load_plant("nao", "fixed"), "a")
     """
     for joint in recording.joints:
         if joint not in plant.joints:
@@ -173,12 +154,13 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
         servo=with_gains(plant.servo, plant.joints, recording.metadata.servo),
         **{
             field: _of_joints(recording, quantity, plant.joints)
-            for field, quantity in _JOINTS.items()
+            for quantity, field in JOINT_FIELDS.items()
+            if quantity != "position"
         },
         **{
             field: recording.vector(vector) if recording.has(vector) else None
-            for field, vector in _VECTORS.items()
-            if vector != "foot_force" or len(plant.feet) == len(("left", "right"))
+            for vector, field in VECTOR_FIELDS.items()
+            if vector != "foot_force" or len(plant.feet) == 2
         },
     )
 

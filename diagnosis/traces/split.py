@@ -43,9 +43,6 @@ class Split:
       fit: about half of the time; parameters are fitted to it.
       select: about a quarter of the time; decides between fitted models.
       test: about a quarter of the time, held out for the final errors.
-
-    Example:
-      See `split`.
     """
 
     fit: tuple[Trace, ...]
@@ -64,10 +61,6 @@ def split(traces: Sequence[Trace]) -> Split:
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
-
-    Example:
-      >>> parts = split(traces)  # of `read_traces`
-      >>> [trace.name for trace in parts.test]
     """
     long = all(trace.duration_s >= _LONG_S for trace in traces)
     if len(traces) >= (_LEAST_WHOLE_IF_LONG if long else _LEAST_WHOLE):
@@ -116,14 +109,8 @@ def _aside(
 ) -> list[int]:
     """Choose traces to set aside; the rest must move each joint half as far as they do.
 
-    Args:
-      travel: (traces, j) range of each joint [rad].
-      seconds: (traces,) duration of each trace.
-      left: indices of the traces to choose from; at least one of them stays.
-      wanted_s: duration that the chosen ones should have together.
-
-    Returns:
-      Indices of the chosen traces; empty if no choice fulfils this.
+    Given (traces, j) ranges of joints, (traces,) durations, indices of the traces to
+    choose from, and the wanted duration; [] if no choice fulfils this.
     """
     best, chosen = -np.inf, list[int]()
     for taken in _choices(left):
@@ -164,16 +151,14 @@ def _cut(traces: Sequence[Trace]) -> Split:
     """Cut each trace into parts, with uses in the order that covers motion best.
 
     The uses of each trace begin one part later in that order than those of the trace
-    before. An event that all traces have at the same time, such as a push, is then
-    fitted in some of them and judged in others.
+    before, so that an event at the same time in all, such as a push, gets several uses.
     """
     best, chosen = -np.inf, list[tuple[Trace, int]]()
     for order in sorted(set(permutations((FIT, FIT, SELECT, TEST)))):
-        parts = [
-            part
-            for k, trace in enumerate(traces)
-            for part in _parts(trace, _rotated(order, k))
-        ]
+        parts = []
+        for k, trace in enumerate(traces):
+            first = k % len(order)
+            parts += _parts(trace, order[first:] + order[:first])
         motion = [
             np.stack([_motion(part) for part, use in parts if use == wanted])
             for wanted in (FIT, SELECT, TEST)
@@ -191,11 +176,6 @@ def _cut(traces: Sequence[Trace]) -> Split:
             for wanted in (FIT, SELECT, TEST)
         )
     )
-
-
-def _rotated(order: tuple[int, ...], by: int) -> tuple[int, ...]:
-    by %= len(order)
-    return order[by:] + order[:by]
 
 
 def _parts(trace: Trace, order: tuple[int, ...]) -> list[tuple[Trace, int]]:

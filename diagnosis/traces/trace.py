@@ -13,17 +13,27 @@ from groundwalk.errors import BadRecordingError
 
 DriveBy = Literal["servos", "torques"]
 """What drives the joints in a replay of a recording: simulated servos that follow the
-recorded commands, or the measured torques.
+recorded commands, or the measured torques."""
 
-Example:
-  See `driven_by_torques`.
-"""
+JOINT_FIELDS = {
+    "position": "position_rad",
+    "velocity": "velocity_rad_s",
+    "command": "command_rad",
+    "command_torque": "command_torque_nm",
+    "torque": "torque_nm",
+}
+"""Fields of `Trace` by the joints' quantity that a recording has for them."""
 
-JOINT_WISE = (
-    *("position_rad", "velocity_rad_s", "torque_nm", "added_nm"),
-    *("command_rad", "command_torque_nm"),
-)
-"""Fields of `Trace` that have one column for each joint."""
+VECTOR_FIELDS = {
+    "gyroscope": "gyroscope_rad_s",
+    "accelerometer": "accelerometer_m_s2",
+    "foot_force": "foot_force_n",
+    "base.position": "base_position_m",
+    "base.orientation": "base_orientation",
+    "base.linear_velocity": "base_linear_velocity_m_s",
+    "base.angular_velocity": "base_angular_velocity_rad_s",
+}
+"""Fields of `Trace` by the vector that a recording has for them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +110,7 @@ class Trace:
         chosen = list(columns)
         changes = {
             name: values[:, chosen]
-            for name in JOINT_WISE
+            for name in (*JOINT_FIELDS.values(), "added_nm")
             if (values := getattr(self, name)) is not None
         }
         return replace(self, servo=self.servo.of(chosen), **changes)
@@ -126,9 +136,6 @@ def driven_by_torques(trace: Trace) -> Trace:
 
     Raises:
       BadRecordingError: the recording has no measured torques.
-
-    Example:
-      >>> driven = driven_by_torques(trace)  # one of `read_traces`
     """
     if trace.torque_nm is None:
         raise BadRecordingError(
@@ -156,14 +163,12 @@ def filled(values: FloatArray) -> FloatArray:
 
 
 def stretches(flags: BoolArray) -> list[tuple[int, int]]:
-    """Runs of flagged rows; a single row that is not flagged interrupts no run.
-
-    Args:
-      flags: (T,) one flag a row.
-
-    Returns:
-      For each run its first row and the row after its last one.
-    """
+    """The `runs` of (T,) flags; a single row that is not flagged interrupts none."""
     closed = flags.copy()
     closed[1:-1] |= flags[:-2] & flags[2:]
-    return [(rows.start, rows.stop) for (rows,) in find_objects(label(closed)[0])]
+    return runs(closed)
+
+
+def runs(flags: BoolArray) -> list[tuple[int, int]]:
+    """First row of each run of (T,) flagged rows, and the row after its last one."""
+    return [(rows.start, rows.stop) for (rows,) in find_objects(label(flags)[0])]
