@@ -15,52 +15,38 @@ class Verb(NamedTuple):
     """Where the code of a verb of the command line is, and a summary of the verb.
 
     Attributes:
-      module: name of the verb's module in the package experiments.
-      config: name of an object in that module: the dataclass of the verb's options, or
-        a table (dict of `Verb`) of the verb's own verbs.
+      config: name of an object in the verb's module: the dataclass of its options, or a
+        table (dict of `Verb`) of the verb's own verbs.
       summary: a few words for the list of verbs.
+      module: the module in the package experiments; by default named like the verb.
     """
 
-    module: str
     config: str
     summary: str
+    module: str = ""
 
 
 VERBS = {
     "optimize-gait": Verb(
-        "optimize_gait",
-        "OptimizeGait",
-        "tune a gait in the sim, try it in both worlds",
+        "OptimizeGait", "tune a gait in the sim, try it in both worlds"
     ),
-    "evaluate": Verb("evaluate", "Evaluate", "measure speed and falls of gaits"),
-    "humanoids": Verb("humanoids", "Humanoids", "tune gaits for other humanoids"),
+    "evaluate": Verb("Evaluate", "measure speed and falls of gaits"),
+    "humanoids": Verb("Humanoids", "tune gaits for other humanoids"),
     "terrain-stress": Verb(
-        "terrain_stress",
-        "TerrainStress",
-        "find the roughest ground that gaits can walk",
+        "TerrainStress", "find the roughest ground that gaits can walk"
     ),
-    "transfer": Verb("transfer", "STUDIES", "repeat an experiment of the SGAT paper"),
-    "diagnose": Verb(
-        "diagnose", "Diagnose", "find the physics that a sim lacks, from recordings"
-    ),
-    "real-robots": Verb(
-        "real_robots",
-        "RealRobots",
-        "diagnose recordings of known real robots",
-    ),
-    "record": Verb(
-        "record", "Record", "make a recording, with hidden physics if wanted"
-    ),
+    "transfer": Verb("STUDIES", "repeat an experiment of the SGAT paper"),
+    "diagnose": Verb("Diagnose", "find the physics that a sim lacks, from recordings"),
+    "real-robots": Verb("RealRobots", "diagnose recordings of known real robots"),
+    "record": Verb("Record", "make a recording, with hidden physics if wanted"),
     "concealed": Verb(
-        "concealed", "STUDIES", "test the diagnosis on recordings with hidden physics"
+        "STUDIES", "test the diagnosis on recordings with hidden physics"
     ),
-    "visualize": Verb("visualize", "Visualize", "show rollouts and searches in Rerun"),
-    "render": Verb("render", "Render", "draw a film strip or a film of walks"),
-    "export": Verb("export", "Export", "write a robot as MJCF or URDF"),
-    "list": Verb("list_names", "List", "list the known robots, terrains or gaits"),
-    "doctor": Verb(
-        "doctor", "DoctorConfig", "report what is installed and what is missing"
-    ),
+    "visualize": Verb("Visualize", "show rollouts and searches in Rerun"),
+    "render": Verb("Render", "draw a film strip or a film of walks"),
+    "export": Verb("Export", "write a robot as MJCF or URDF"),
+    "list": Verb("List", "list the known robots, terrains or gaits", "list_names"),
+    "doctor": Verb("DoctorConfig", "report what is installed and what is missing"),
 }
 
 BAD_INPUT = 2
@@ -92,12 +78,13 @@ def choose(
     name, *options = arguments or ["--help"]
     if name in ("-h", "--help"):
         print(f"usage: {program} {kind.upper()} [options]\n")
-        for known, (_, _, summary) in verbs.items():
-            print(f"  {known:18}{summary}")
+        for known, verb in verbs.items():
+            print(f"  {known:18}{verb.summary}")
         print(f"\n{program} {kind.upper()} --help shows the options of a {kind}")
         return
     verb = _guarded(lambda: _verb(kind, name, verbs))
-    module = importlib.import_module(f"experiments.{verb.module}")
+    home = verb.module or name.replace("-", "_")
+    module = importlib.import_module(f"experiments.{home}")
     config = getattr(module, verb.config)
     if isinstance(config, dict):
         choose(config, f"{program} {name}", options, "study")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 from robots.rigid_body import Inertial
 from robots.scale import NAO_SIZE, Scale
@@ -241,11 +241,6 @@ class Description:
     def no_load_speed_rad_s(self) -> FloatArray:
         """(joints,) speed of each joint's motor without load [rad/s]."""
         return np.array([joint.motor.no_load_speed_rad_s for joint in self.links])
-
-    @cached_property
-    def parents(self) -> IntArray:
-        """(joints,) index of each joint's parent joint, -1 if that is the root link."""
-        return np.array([joint.parent for joint in self.links], np.intp)
 
     @property
     def mass_kg(self) -> float:

@@ -69,28 +69,18 @@ def coverage(residuals: FloatArray, levels: Sequence[float]) -> FloatArray:
     return np.array([(np.abs(residuals) <= bound).mean(axis=0) for bound in bounds])
 
 
-def lagged_pairs(
-    values: FloatArray, episode: IntArray, lag: int
-) -> tuple[FloatArray, FloatArray]:
-    """Rows (pairs, d) of values (N, d), and the rows `lag` ticks before them.
-
-    Both rows of a pair belong to the same episode; `episode` (N,) holds its number.
-
-    Raises:
-      BadValueError: no episode is longer than the lag.
-    """
-    same = episode[lag:] == episode[: len(episode) - lag]
-    if not same.any():
-        raise BadValueError(f"no episode is longer than {lag} ticks")
-    return values[lag:][same], values[: len(values) - lag][same]
-
-
 def autocorrelation(residuals: FloatArray, episode: IntArray, lags: int) -> FloatArray:
-    """(lags, d) correlation of residuals (N, d) with those 1 ... `lags` ticks ago."""
+    """(lags, d) correlation of residuals (N, d) with those 1 ... `lags` ticks ago.
+
+    Both are of the same episode, numbered by (N,); BadValueError if none is so long.
+    """
     off = residuals - residuals.mean(axis=0)
     rows = []
     for lag in range(1, lags + 1):
-        now, before = lagged_pairs(off, episode, lag)
+        same = episode[lag:] == episode[:-lag]
+        if not same.any():
+            raise BadValueError(f"no episode is longer than {lag} ticks")
+        now, before = off[lag:][same], off[:-lag][same]
         rows.append((now * before).mean(axis=0) / _variance(off))
     return np.array(rows)
 

@@ -167,17 +167,15 @@ class WalkEngine:
         active: BoolArray | None,
     ) -> None:
         """Refuse arrays whose shapes do not fit the number of robots."""
-        n = self.n
-        _require_shape("gyroscope_rad_s", gyroscope_rad_s, (n, 3))
-        _require_shape("foot_force_n", foot_force_n, (n, FOOT_SENSORS))
-        if active is not None:
-            _require_shape("active", active, (n,))
-        for name, value in vars(request).items():
-            if np.ndim(value) > 0:
-                _require_shape(name, value, (n,))
-
-
-def _require_shape(name: str, array: npt.ArrayLike, shape: tuple[int, ...]) -> None:
-    """Raise BadValueError with the array's name if it has another shape."""
-    if np.shape(array) != shape:
-        raise BadValueError(f"{name} has shape {np.shape(array)}; it must be {shape}")
+        robots = (self.n,)
+        wanted: list[tuple[str, npt.ArrayLike, tuple[int, ...]]] = [
+            ("gyroscope_rad_s", gyroscope_rad_s, (self.n, 3)),
+            ("foot_force_n", foot_force_n, (self.n, FOOT_SENSORS)),
+            ("active", np.ones(robots) if active is None else active, robots),
+        ]
+        given = vars(request).items()
+        wanted += [(name, value, robots) for name, value in given if np.ndim(value)]
+        for name, array, shape in wanted:
+            if np.shape(array) != shape:
+                found = np.shape(array)
+                raise BadValueError(f"{name} has shape {found}; it must be {shape}")

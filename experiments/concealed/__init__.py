@@ -3,8 +3,8 @@
 from experiments.command_line import Verb
 
 STUDIES = {
-    "make": Verb("concealed.make", "ConcealedMake", "draw cases and seal their truth"),
-    "run": Verb("concealed.run", "ConcealedRun", "diagnose the cases"),
-    "score": Verb("concealed.score", "ConcealedScore", "open the truth and count"),
+    "make": Verb("ConcealedMake", "draw cases and seal their truth", "concealed.make"),
+    "run": Verb("ConcealedRun", "diagnose the cases", "concealed.run"),
+    "score": Verb("ConcealedScore", "open the truth and count", "concealed.score"),
 }
 """The verbs of `groundwalk concealed`, the steps of a study, by name."""

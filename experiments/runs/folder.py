@@ -16,7 +16,7 @@ from experiments.runs.options import RunOptions, options_of
 from experiments.runs.repeat_command import repeat_command
 from groundwalk import __version__, json_data
 from groundwalk.errors import BadValueError, RunFolderError
-from groundwalk.files import write_bytes, write_text
+from groundwalk.files import write_text
 
 CONFIG, PROVENANCE, RESULT = "config.json", "provenance.json", "result.json"
 CHECKPOINT, HISTORY, RECORDINGS = "checkpoint.pkl", "history.json", "recordings"
@@ -116,10 +116,6 @@ class RunFolder:
     def write_text(self, name: str, content: str) -> None:
         """Write a text file; after an error no partial file remains."""
         write_text(self.path / name, content)
-
-    def write_bytes(self, name: str, content: bytes) -> None:
-        """Write a binary file; after an error no partial file remains."""
-        write_bytes(self.path / name, content)
 
     def read_json(self, name: str) -> dict[str, Any]:
         """Read a JSON file whose content is an object (a dict).

@@ -3,21 +3,21 @@
 from experiments.command_line import Verb
 
 STUDIES = {
-    "toy": Verb("transfer.toy", "TransferToy", "the paper's toy MDPs, solved exactly"),
-    "cliff": Verb("transfer.cliff", "TransferCliff", "cliff walking over noise"),
+    "toy": Verb("TransferToy", "the paper's toy MDPs, solved exactly", "transfer.toy"),
+    "cliff": Verb("TransferCliff", "cliff walking over noise", "transfer.cliff"),
     "inverted-pendulum": Verb(
-        "transfer.gym_domains",
         "TransferInvertedPendulum",
         "a noisy pendulum with a heavier pole",
+        "transfer.gym_domains",
     ),
     "half-cheetah": Verb(
-        "transfer.gym_domains", "TransferHalfCheetah", "noisy and heavier cheetahs"
+        "TransferHalfCheetah", "noisy and heavier cheetahs", "transfer.gym_domains"
     ),
-    "nao": Verb("transfer.nao", "TransferNao", "gaits for uneven ground"),
+    "nao": Verb("TransferNao", "gaits for uneven ground", "transfer.nao"),
     "nao-falls": Verb(
-        "transfer.nao_falls",
         "TransferNaoFalls",
         "does the grounded sim know which gaits fall?",
+        "transfer.nao_falls",
     ),
 }
 """The studies of this folder, by their names on the command line."""

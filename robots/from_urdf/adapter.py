@@ -15,7 +15,6 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError, BadValueError
 from robots.description import Description, Foot, Imu, Joint, Link, Motor, VisualMesh
 from robots.from_urdf.adaptation import Adaptation, urdf_path
@@ -31,8 +30,8 @@ from robots.from_urdf.leg_roles import Legs, find_legs
 from robots.from_urdf.package_paths import mesh_path
 from robots.from_urdf.posed_tree import PosedTree
 from robots.from_urdf.round_shapes import round_shapes
-from robots.from_urdf.servo_size import Pendulum, servo
-from robots.from_urdf.urdf_tree import UrdfShape, UrdfTree, read_urdf
+from robots.from_urdf.servo_size import servo
+from robots.from_urdf.urdf_tree import UrdfTree, read_urdf
 from robots.leg_axes import ANKLE, KNEE, ROLES, roles
 from robots.scale import Scale
 
@@ -139,14 +138,15 @@ class _Adapter:
         return float(ankle_m[2]) + self._feet[0].sole_height_m
 
     @cached_property
-    def _pendulum(self) -> Pendulum:
+    def _weight(self) -> tuple[float, float]:
+        """Mass [kg], and height of the centre of mass above the soles [m]."""
         whole = self.posed.hanging("")
-        return Pendulum(whole.mass_kg, float(whole.com_m[2]) - self._sole_m)
+        return whole.mass_kg, float(whole.com_m[2]) - self._sole_m
 
     @cached_property
     def _scale(self) -> Scale:
-        hip_m = sum(self._bones_m)
-        return Scale.of_robot(hip_m, self._pendulum.height_m, self._pendulum.mass_kg)
+        mass_kg, height_m = self._weight
+        return Scale.of_robot(sum(self._bones_m), height_m, mass_kg)
 
     @cached_property
     def _bones_m(self) -> tuple[float, float, float]:
@@ -196,7 +196,7 @@ class _Adapter:
             load = float(axis @ hanging.inertia_kg_m2 @ axis)
             load += hanging.mass_kg * float(arm_m @ arm_m)
         try:
-            return servo(effort or 0.0, speed or 0.0, self._pendulum, load)
+            return servo(effort or 0.0, speed or 0.0, *self._weight, load)
         except BadValueError as error:
             raise BadModelError(
                 f"{self.posed.tree.path}: joint {name}: {error}"
@@ -213,31 +213,22 @@ class _Adapter:
 
     def _meshes(self, joint: str) -> tuple[VisualMesh, ...]:
         """Existing mesh files of all links that move with a joint ("" for the root)."""
+        shapes = [
+            (self.posed.placed[link.name] @ shape.placement, shape.values)
+            for link in self.posed.carried(joint)
+            for shape in link.visual
+            if shape.kind == "mesh"
+        ]
         meshes = []
-        for link in self.posed.carried(joint):
-            for shape in link.visual:
-                if shape.kind == "mesh":
-                    at = self.posed.placed[link.name] @ shape.placement
-                    place = at.position_m - self.posed.origin_m(joint)
-                    mesh = _mesh(self.posed.tree.path, shape, place, at.rotation)
-                    if mesh is not None:
-                        meshes.append(mesh)
+        for at, values in shapes:
+            try:
+                path = mesh_path(self.posed.tree.path, values["filename"])
+            except BadModelError:
+                continue
+            x, y, z = (at.position_m - self.posed.origin_m(joint)).tolist()
+            turn = Rotation.from_matrix(at.rotation).as_quat(scalar_first=True)
+            w, i, j, k = turn
+            along = [float(word) for word in values.get("scale", "1 1 1").split()]
+            scale = along[0], along[1], along[2]
+            meshes.append(VisualMesh(path, (x, y, z), (w, i, j, k), scale))
         return tuple(meshes)
-
-
-def _mesh(
-    urdf: Path, shape: UrdfShape, place_m: FloatArray, rotation: FloatArray
-) -> VisualMesh | None:
-    try:
-        path = mesh_path(urdf, shape.values["filename"])
-    except BadModelError:
-        return None
-    x, y, z = place_m.tolist()
-    quaternion = Rotation.from_matrix(rotation).as_quat(scalar_first=True)
-    scale = [float(word) for word in shape.values.get("scale", "1 1 1").split()]
-    return VisualMesh(
-        path,
-        (x, y, z),
-        (quaternion[0], quaternion[1], quaternion[2], quaternion[3]),
-        (scale[0], scale[1], scale[2]),
-    )

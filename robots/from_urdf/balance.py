@@ -89,7 +89,7 @@ def find_shoulders(
             continue
         side = 1 if y_m > 0 else -1
         found[side] = max(
-            found.get(side, (0.0, "")), (_mass_kg(tree, joint.child), joint.name)
+            found.get(side, (0.0, "")), (tree.mass_kg(joint.child), joint.name)
         )
     names = [found[side][1] for side in (1, -1) if side in found]
     if len(names) < 2 or not all(_swings(tree, placed, legs, name) for name in names):
@@ -119,10 +119,3 @@ def _swings(
     joint = tree.joints[name]
     axis = legs.turn @ placed[joint.child].rotation @ joint.axis
     return bool(abs(axis[1]) > _ACROSS)
-
-
-def _mass_kg(tree: UrdfTree, link: str) -> float:
-    """Mass [kg] of a link and of all links below it."""
-    own = tree.links[link].inertial
-    below = (joint.child for joint in tree.joints.values() if joint.parent == link)
-    return (own.mass_kg if own else 0.0) + sum(_mass_kg(tree, name) for name in below)

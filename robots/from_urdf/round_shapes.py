@@ -68,32 +68,14 @@ def _carrier_m(posed: PosedTree, link: str) -> FloatArray:
 
 
 def _bones_m(posed: PosedTree, link: str) -> list[tuple[FloatArray, FloatArray]]:
-    """Start and end of the lines from a link's joint to the joints that it carries [m].
+    """Start and end in the root's frame [m] of lines from a link's joint to the next.
 
-    Points (3,) are in the root's frame; lines shorter than `_SHORTEST_M` are left out.
+    Joints that carry no mass are left out, and lines shorter than `_SHORTEST_M`.
     """
-    start = posed.placed[link].position_m
-    ends = _ends(posed, link)
+    start, tree = posed.placed[link].position_m, posed.tree
+    carried = [one.child for one in tree.joints.values() if one.parent == link]
+    ends = [posed.placed[child].position_m for child in carried if tree.mass_kg(child)]
     return [(start, end) for end in ends if np.linalg.norm(end - start) > _SHORTEST_M]
-
-
-def _ends(posed: PosedTree, link: str) -> list[FloatArray]:
-    """Positions (3,) in the root's frame [m] of a link's joints that carry any mass."""
-    return [
-        posed.placed[joint.child].position_m
-        for joint in posed.tree.joints.values()
-        if joint.parent == link and _carries_mass(posed, joint.child)
-    ]
-
-
-def _carries_mass(posed: PosedTree, link: str) -> bool:
-    if posed.tree.links[link].inertial is not None:
-        return True
-    return any(
-        _carries_mass(posed, joint.child)
-        for joint in posed.tree.joints.values()
-        if joint.parent == link
-    )
 
 
 def _capsule(start: FloatArray, end: FloatArray, radius_m: float) -> Capsule:

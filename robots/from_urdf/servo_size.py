@@ -9,61 +9,23 @@ of sqrt(g / h), so that a robot of any size stands as firmly as the NAO.
 """
 
 import math
-from dataclasses import dataclass
 
 from groundwalk.errors import BadValueError
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Motor
 
-
-@dataclass(frozen=True)
-class Firmness:
-    """Natural frequency and damping ratio with which a servo holds its load.
-
-    Attributes:
-      frequency: natural frequency as a multiple of sqrt(g / h), h the height of the
-        robot's centre of mass above the soles.
-      damping: damping ratio.
-    """
-
-    frequency: float
-    damping: float
-
-
-# They come from the NAO in nao.toml, 5.305 kg with its centre of mass 0.277 m above the
-# soles: its legs' pitch joints have kp = 59.9 N m/rad and kd = 1.216 N m s/rad, its
-# shoulders 25.9 and 0.41 for an arm of 0.008 kg m^2.
-IN_STANCE = Firmness(frequency=2.0, damping=0.19)
-FREE = Firmness(frequency=9.0, damping=0.5)
-
-
-@dataclass(frozen=True)
-class Pendulum:
-    """The robot as an inverted pendulum on one ankle.
-
-    Attributes:
-      mass_kg: mass of the robot [kg].
-      height_m: height of the centre of mass above the soles [m].
-    """
-
-    mass_kg: float
-    height_m: float
-
-    @property
-    def frequency_rad_s(self) -> float:
-        """Gravity's rate of toppling, sqrt(g / h) [rad/s], h the height of the mass."""
-        return math.sqrt(GRAVITY_M_S2 / self.height_m)
-
-    @property
-    def inertia_kg_m2(self) -> float:
-        """Inertia about the ankle [kg m^2], with all mass in one point."""
-        return self.mass_kg * self.height_m**2
+# Natural frequency as a multiple of sqrt(g / h), and damping ratio. They come from the
+# NAO in nao.toml, 5.305 kg with its centre of mass 0.277 m above the soles: its legs'
+# pitch joints have kp = 59.9 N m/rad and kd = 1.216 N m s/rad, its shoulders 25.9 and
+# 0.41 for an arm of 0.008 kg m^2.
+IN_STANCE, FREE = (2.0, 0.19), (9.0, 0.5)
 
 
 def servo(
     effort_nm: float,
     speed_rad_s: float,
-    pendulum: Pendulum,
+    mass_kg: float,
+    height_m: float,
     hanging_kg_m2: float | None,
 ) -> Motor:
     """Make a servo whose stall torque and no-load speed are a URDF's joint limits.
@@ -74,7 +36,8 @@ def servo(
     Args:
       effort_nm: effort limit of the joint [N m].
       speed_rad_s: velocity limit of the joint [rad/s].
-      pendulum: the robot.
+      mass_kg: mass of the robot [kg].
+      height_m: height of its centre of mass above the soles [m].
       hanging_kg_m2: inertia of the links below the joint about its axis [kg m^2]; None
         for a joint of a leg.
 
@@ -85,16 +48,17 @@ def servo(
         raise BadValueError(
             f"effort {effort_nm} N m and speed {speed_rad_s} rad/s must be positive"
         )
-    own = pendulum.frequency_rad_s
+    own = math.sqrt(GRAVITY_M_S2 / height_m)
     if hanging_kg_m2 is None:
-        firm, inertia, topple = IN_STANCE, pendulum.inertia_kg_m2, own**2
+        (frequency, damping), inertia = IN_STANCE, mass_kg * height_m**2
+        topple = own**2
     else:
-        firm, inertia, topple = FREE, hanging_kg_m2, 0.0
-    w = firm.frequency * own
+        (frequency, damping), inertia, topple = FREE, hanging_kg_m2, 0.0
+    w = frequency * own
     return Motor(
         stall_torque_nm=effort_nm,
         no_load_speed_rad_s=speed_rad_s,
         kp_nm_rad=inertia * (w**2 + topple),
-        kd_nm_s_rad=max(2 * firm.damping * inertia * w, effort_nm / speed_rad_s),
+        kd_nm_s_rad=max(2 * damping * inertia * w, effort_nm / speed_rad_s),
         rotor_kg_m2=0.0,
     )

@@ -125,6 +125,12 @@ class UrdfTree:
         """For each link but the root, the joint of which it is the child."""
         return {joint.child: joint for joint in self.joints.values()}
 
+    def mass_kg(self, link: str) -> float:
+        """Mass [kg] of a link and of all links below it."""
+        own = self.links[link].inertial
+        below = [one.child for one in self.joints.values() if one.parent == link]
+        return (own.mass_kg if own else 0.0) + sum(map(self.mass_kg, below))
+
     def chain(self, link: str) -> list[str]:
         """Names of the moving joints on the path from the root to a link."""
         names: list[str] = []

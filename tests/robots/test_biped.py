@@ -105,12 +105,9 @@ def test_legs_that_cannot_be(changes, name):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"left_leg": (0, 1, 2, 3, 4)}, "left_leg must name 6"),
         ({"right_leg": (0, 1, 2, 3, 4, 5)}, "must differ"),
         ({"left_arm": (12, 20)}, "must differ and be 0 to 19"),
-        ({"max_speed_rad_s": np.ones(19)}, "max_speed_rad_s has shape"),
         ({"max_speed_rad_s": np.zeros(20)}, "max_speed_rad_s must be positive"),
-        ({"foot_sensor_xy_m": np.zeros((4, 2))}, "foot_sensor_xy_m has shape"),
         ({"joint_range_rad": np.zeros((20, 2))}, "joint_range_rad must rise"),
     ],
 )

@@ -6,7 +6,7 @@ import pytest
 
 from groundwalk.errors import BadValueError
 from robots.engine_models.mjcf import mujoco_spec
-from robots.from_urdf.servo_size import FREE, IN_STANCE, Pendulum, servo
+from robots.from_urdf.servo_size import FREE, IN_STANCE, servo
 from robots.scale import NAO_CENTRE_M, NAO_HIP_M, NAO_KG, NAO_SIZE, Scale
 
 
@@ -40,24 +40,23 @@ def test_sizes_that_no_robot_has(wrong):
 
 def test_a_servo_in_the_stance():
     """10 kg at 0.981 m: the pendulum's frequency is sqrt(10) rad/s, m h^2 9.62."""
-    pendulum = Pendulum(10.0, 0.981)
-    motor = servo(100.0, 20.0, pendulum, None)
-    inertia, w = 10 * 0.981**2, IN_STANCE.frequency * np.sqrt(10)
+    motor = servo(100.0, 20.0, 10.0, 0.981, None)
+    inertia, w = 10 * 0.981**2, IN_STANCE[0] * np.sqrt(10)
     assert motor.kp_nm_rad == pytest.approx(inertia * (w**2 + 10))
-    assert motor.kd_nm_s_rad == pytest.approx(2 * IN_STANCE.damping * inertia * w)
+    assert motor.kd_nm_s_rad == pytest.approx(2 * IN_STANCE[1] * inertia * w)
 
 
 def test_a_free_servo_and_its_back_emf():
     """A light load: the back-EMF of 2 N m s/rad damps more than the rule asks."""
-    motor = servo(10.0, 5.0, Pendulum(10.0, 0.981), 0.01)
-    w = FREE.frequency * np.sqrt(10)
+    motor = servo(10.0, 5.0, 10.0, 0.981, 0.01)
+    w = FREE[0] * np.sqrt(10)
     assert motor.kp_nm_rad == pytest.approx(0.01 * w**2)
     assert motor.kd_nm_s_rad == 2.0
 
 
 def test_the_nao_stands_as_firmly_as_the_rule_says(nao):
     """Its pitch and roll joints have 59.9 and 92.1 N m/rad; the rule is in between."""
-    motor = servo(7.8, 6.4, Pendulum(NAO_KG, NAO_CENTRE_M), None)
+    motor = servo(7.8, 6.4, NAO_KG, NAO_CENTRE_M, None)
     gains = {joint.motor.kp_nm_rad for joint in nao.links[1:6]}
     assert min(gains) < motor.kp_nm_rad < max(gains)
 
@@ -65,7 +64,7 @@ def test_the_nao_stands_as_firmly_as_the_rule_says(nao):
 def test_a_motor_needs_torque_and_speed():
     for effort, speed in ((0.0, 1.0), (1.0, 0.0)):
         with pytest.raises(BadValueError, match="must be positive"):
-            servo(effort, speed, Pendulum(1.0, 1.0), None)
+            servo(effort, speed, 1.0, 1.0, None)
 
 
 def test_models_of_an_adapted_robot_compile():
