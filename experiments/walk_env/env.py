@@ -1,5 +1,6 @@
 """The walking robot as a Gymnasium environment."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, get_args
 
@@ -11,16 +12,16 @@ from gymnasium.spaces import Box
 import robots
 from experiments.runs.gait_files import load_gait
 from experiments.walk_env.episode import WalkEpisode
-from experiments.walk_env.senses_table import senses_box, senses_of
 from experiments.walk_env.world import EnvWorld, WorldName, episode_seeds
 from experiments.walking.trials import SEARCH_TRIAL, TrialRules, reward_cm_s
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 from robots import Description
+from robots.leg_geometry import FOOT_SENSORS
 from terrain import Heightfield
 from walk_engine import PARAMETERS, Gait
 from walk_engine.gait import from_unit
-from worlds import FALLS, World, WorldOptions
+from worlds import FALLS, TICK_S, World, WorldOptions
 
 if TYPE_CHECKING:
     from sgat.transformers.transformer import Transformer
@@ -135,50 +136,48 @@ class WalkEnv(Environment):
         self._joints = len(description.joints)
         wide = self._joints if action == "residual" else len(PARAMETERS)
         self.action_space = Box(-1.0, 1.0, (wide,), np.float32)
-        self._box = self.observation_space = senses_box(self._joints)
+        self._box = self.observation_space = _observation_space(self._joints)
         self._world: World | None = None
         self._episode: WalkEpisode | None = None
 
     def reset(
         self, *, seed: int | None = None, options: Info | None = None
     ) -> tuple[FloatArray, Info]:
-        """Start an episode; everything random in it follows from the seed.
+        """Start an episode, and return the observation and `info` of the class.
 
-        Args:
-          seed: seed of this episode and all that follow; see `gymnasium.Env.reset`.
-          options: not used.
-
-        Returns:
-          The observation, whose columns the class lists, and `info`.
+        Everything random in it, and in all episodes that follow, comes from the seed;
+        see `gymnasium.Env.reset`. `options` are not used.
         """
         super().reset(seed=seed)
         self.close()
         of_ground, of_noise, self._of_pose = episode_seeds(self.np_random)
         self._world = self._place.make(of_ground, of_noise)
-        self._begin(self._gait)
-        return self._seen(), self._info()
+        return self._told(self._begin(self._gait))
 
     def step(self, action: FloatArray) -> tuple[FloatArray, float, bool, bool, Info]:
-        """One tick with a residual, or one whole rollout with a gait.
-
-        Args:
-          action: (joints,) residual or (16,) gait, from -1 to 1.
+        """One tick with a residual (joints,), or one whole rollout with a gait (16,).
 
         Returns:
           Observation, reward, terminated, truncated and `info`; see the class.
         """
-        if self._episode is None:
+        episode = self._episode
+        if episode is None:
             raise ResetNeeded("call reset before step")
         asked = np.clip(np.asarray(action, float), -1.0, 1.0)
         if self._action == "gait":
-            self._begin(Gait.from_vector(from_unit((asked + 1.0) / 2.0)))
-            reward = self._walk_to_the_end()
+            episode = self._begin(Gait.from_vector(from_unit((asked + 1.0) / 2.0)))
+            before = 0.0
+            while not episode.is_over:
+                episode.step(np.zeros(self._joints))
         else:
-            reward = self._tick(self._residual_rad * asked)
-        fell = self._episode.ended in FALLS
-        terminated = fell or self._action == "gait"
-        truncated = self._episode.is_over and not terminated
-        return self._seen(), reward, terminated, truncated, self._info()
+            before = self._worth(episode)
+            if not episode.is_over:
+                episode.step(self._residual_rad * asked)
+        reward = self._worth(episode) - before
+        terminated = episode.ended in FALLS or self._action == "gait"
+        truncated = episode.is_over and not terminated
+        seen, info = self._told(episode)
+        return seen, reward, terminated, truncated, info
 
     def close(self) -> None:
         """Close the world and its processes."""
@@ -186,39 +185,35 @@ class WalkEnv(Environment):
             self._world.close()
         self._world = self._episode = None
 
-    def _begin(self, gait: Gait) -> None:
+    def _begin(self, gait: Gait) -> WalkEpisode:
         assert self._world is not None
         self._episode = WalkEpisode(self._world, gait, self._rules, self._of_pose)
+        return self._episode
 
-    def _tick(self, added_rad: FloatArray) -> float:
-        """Walk for one tick, adding (joints,) [rad] to commands; its reward [cm/s]."""
-        assert self._episode is not None
-        before = self._worth()
-        if not self._episode.is_over:
-            self._episode.step(added_rad)
-        return self._worth() - before
+    def _worth(self, episode: WalkEpisode) -> float:
+        return float(reward_cm_s(episode.trials(), self._rules.limit_s)[0])
 
-    def _walk_to_the_end(self) -> float:
-        assert self._episode is not None
-        nothing = np.zeros(self._joints)
-        while not self._episode.is_over:
-            self._episode.step(nothing)
-        return self._worth()
-
-    def _worth(self) -> float:
-        assert self._episode is not None
-        trials = self._episode.trials()
-        return float(reward_cm_s(trials, self._rules.limit_s)[0])
-
-    def _seen(self) -> FloatArray:
-        assert self._episode is not None
-        return senses_of(self._episode, self._box)
-
-    def _info(self) -> Info:
-        assert self._episode is not None
-        trials = self._episode.trials()
-        return {
-            "distance_m": float(trials.distance_m[0]),
-            "time_s": float(trials.time_s[0]),
-            "ended": str(trials.ended[0]),
+    def _told(self, episode: WalkEpisode) -> tuple[FloatArray, Info]:
+        """Observation and `info` after the last tick."""
+        seen = np.clip(episode.senses(), self._box.low, self._box.high)
+        return np.asarray(seen), {
+            "distance_m": episode.distance_m,
+            "time_s": episode.ticks * TICK_S,
+            "ended": str(episode.ended),
         }
+
+
+def _observation_space(joints: int) -> Box:
+    turn_rad, fastest_rad_s, hardest_m_s2 = 2 * math.pi, 50.0, 1000.0
+    columns = (
+        (joints, -turn_rad, turn_rad),
+        (joints, -fastest_rad_s, fastest_rad_s),
+        (3, -fastest_rad_s, fastest_rad_s),
+        (3, -hardest_m_s2, hardest_m_s2),
+        (FOOT_SENSORS, 0.0, 10_000.0),
+        (joints, -turn_rad, turn_rad),
+        (1, -1.0, 1.0),
+        (1, 0.0, 10.0),
+    )
+    counts, low, high = zip(*columns, strict=True)
+    return Box(np.repeat(low, counts), np.repeat(high, counts), dtype=np.float64)

@@ -35,11 +35,9 @@ class WalkEpisode:
         self._ask()
 
     def step(self, added_rad: FloatArray) -> None:
-        """Walk for one tick.
+        """Walk for one tick with an addition (joints,) to the engine's command [rad].
 
-        Args:
-          added_rad: (joints,) addition to the walk engine's command [rad]; the sum is
-            held within the joints' ranges. The engine does not see it.
+        The sum is held within the joints' ranges. The engine does not see the addition.
         """
         low, high = self._world.description.joint_range_rad.T
         # the engine's own commands may be beyond a joint's range by rounding
@@ -66,15 +64,21 @@ class WalkEpisode:
         out_of_time = self.ticks >= round(self._rules.limit_s / TICK_S)
         return out_of_time or not self._world.active[0]
 
-    @property
-    def support(self) -> float:
-        """The supporting foot: 1 left, -1 right, 0 both."""
-        return float(self._engine.support[0])
+    def senses(self) -> FloatArray:
+        """(columns,) measurements of the last tick and the walk engine's next command.
 
-    @property
-    def step_time_s(self) -> float:
-        """Time since the current step began [s]."""
-        return float(self._engine.step_time_s[0])
+        `WalkEnv` lists columns and units.
+        """
+        measured = list(vars(self.observation).values())[1:]
+        engine = self._engine
+        return np.concatenate(
+            [
+                *(values[0] for values in measured),
+                self.command_rad,
+                engine.support,
+                engine.step_time_s,
+            ]
+        )
 
     def trials(self) -> Trials:
         """Result of the trial so far."""

@@ -1,7 +1,6 @@
 """The world of an episode of the Gymnasium environment."""
 
 import copy
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
@@ -19,67 +18,56 @@ if TYPE_CHECKING:
 WorldName = Literal["sim", "real", "grounded"]
 
 
-@dataclass(frozen=True, eq=False)
 class EnvWorld:
-    """Makes a world with one robot for each episode.
+    """Makes an episode's world, with one robot, from the arguments of `WalkEnv`."""
 
-    Attributes:
-      name: "sim", "real", or "grounded": the sim behind an action transformer.
-      description: the robot.
-      terrain: ground in words, drawn anew for each episode, or a fixed ground; the
-        world's own if None.
-      transformer: action transformer of a grounded world: an object, which is copied so
-        that no two environments share one, or the folder of a written one.
-      options: options of the sim or the real world; its own if None.
-    """
+    def __init__(
+        self,
+        name: WorldName,
+        description: Description,
+        terrain: str | Heightfield | None,
+        transformer: "Transformer | str | Path | None",
+        options: WorldOptions | None,
+    ) -> None:
+        """Refuse arguments that do not fit together; read or copy the transformer.
 
-    name: WorldName
-    description: Description
-    terrain: str | Heightfield | None = None
-    transformer: "Transformer | str | Path | None" = None
-    options: WorldOptions | None = None
-
-    def __post_init__(self) -> None:
-        """Refuse arguments that do not fit together; read or copy the transformer."""
-        if self.name not in get_args(WorldName):
-            raise UnknownNameError("world", self.name, get_args(WorldName))
-        if (self.name == "grounded") != (self.transformer is not None):
+        A copy, so that no two environments share one.
+        """
+        if name not in get_args(WorldName):
+            raise UnknownNameError("world", name, get_args(WorldName))
+        if (name == "grounded") != (transformer is not None):
             raise BadValueError(
                 "a grounded world, and no other, needs a transformer: an object, or "
                 "the folder that sgat.transformers.catalogue has written"
             )
-        terrain = self.terrain or worlds.kind(self.inner).terrain
-        if isinstance(terrain, str):
-            parse(terrain)
-        object.__setattr__(self, "terrain", terrain)
-        object.__setattr__(self, "transformer", _own(self.transformer))
+        self._inner = "sim" if name == "grounded" else name
+        self._description, self._options = description, options
+        self._terrain = terrain or worlds.kind(self._inner).terrain
+        if isinstance(self._terrain, str):
+            parse(self._terrain)
+        if isinstance(transformer, str | Path):
+            from sgat.transformers.catalogue import read_transformer
 
-    @property
-    def inner(self) -> str:
-        """Name of the world that computes the physics: "sim" or "real"."""
-        return "sim" if self.name == "grounded" else self.name
+            self._transformer: Transformer | None = read_transformer(Path(transformer))
+        else:
+            self._transformer = copy.deepcopy(transformer)
 
     def make(
         self, of_ground: np.random.SeedSequence, of_noise: np.random.SeedSequence
     ) -> World:
         """The world of one episode, from the seeds of its ground and of its noise."""
-        grounds = [self._ground(of_ground)]
-        robot, seeds = self.description, [of_noise]
-        world = worlds.make(self.inner, robot, grounds, seeds, self.options)
-        if self.transformer is None:
+        ground, robot = self._terrain, self._description
+        if isinstance(ground, str):
+            number = int(of_ground.generate_state(1)[0])
+            ground = TerrainSpec(*parse(ground), seed=number).make()
+        world = worlds.make(self._inner, robot, [ground], [of_noise], self._options)
+        if self._transformer is None:
             return world
+
         from sgat.walks.walk_senses import leg_senses
         from sgat.walks.wrapped_worlds import GroundedWorld
 
-        assert not isinstance(self.transformer, str | Path)
-        senses = leg_senses(self.description)
-        return GroundedWorld(world, senses, self.transformer, [of_noise])
-
-    def _ground(self, seed: np.random.SeedSequence) -> Heightfield:
-        if isinstance(self.terrain, Heightfield):
-            return self.terrain
-        number = int(seed.generate_state(1)[0])
-        return TerrainSpec(*parse(str(self.terrain)), seed=number).make()
+        return GroundedWorld(world, leg_senses(robot), self._transformer, [of_noise])
 
 
 def episode_seeds(
@@ -89,11 +77,3 @@ def episode_seeds(
     root = np.random.SeedSequence(int(generator.integers(2**63)))
     ground, noise, pose = root.spawn(3)
     return ground, noise, pose
-
-
-def _own(given: "Transformer | str | Path | None") -> "Transformer | None":
-    if not isinstance(given, str | Path):
-        return copy.deepcopy(given)
-    from sgat.transformers.catalogue import read_transformer
-
-    return read_transformer(Path(given))

@@ -6,10 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from groundwalk.arrays import BoolArray, FloatArray
-from robots.description import SENSORS_PER_FOOT, Description
+from robots import Description
 from worlds import Observation, Recording, RecordingMetadata, ServoGains, Truth
-
-_AXES = ("x", "y", "z")
+from worlds.recordings.columns import SUPPORT, TIME, vector_columns
 
 
 class Recorder:
@@ -23,12 +22,7 @@ class Recorder:
     """
 
     def __init__(self, description: Description, robots: Sequence[int]) -> None:
-        """Make a recorder without any ticks.
-
-        Args:
-          description: the robot model.
-          robots: indices of the robots to record among the world's n robots.
-        """
+        """Record the robots with these indices among the world's n robots."""
         self._description = description
         self._robots = list(robots)
         self._rows: dict[int, list[FloatArray]] = {robot: [] for robot in robots}
@@ -52,47 +46,34 @@ class Recorder:
         """
         for robot in self._robots:
             if active[robot]:
-                parts = [
-                    *(values[robot] for values in vars(observation).values()),
-                    *(values[robot] for values in vars(truth).values()),
-                    command_rad[robot],
-                    np.asarray(support)[robot],
-                ]
-                self._rows[robot].append(
-                    np.concatenate(list(map(np.atleast_1d, parts)))
-                )
+                measured = (*vars(observation).values(), *vars(truth).values())
+                every = (*measured, command_rad, np.asarray(support))
+                self._rows[robot].append(np.hstack([part[robot] for part in every]))
 
     def recording(self, robot: int, metadata: RecordingMetadata) -> Recording:
         """Make the recording of the robot with this index in the world."""
         table = np.array(self._rows[robot]).T
         columns = dict(zip(self._names(), table, strict=True))
-        for side in ("left", "right"):
-            sensors = [
-                columns[f"foot_force.{side}.{name}"] for name in SENSORS_PER_FOOT
-            ]
-            columns[f"foot_force.{side}"] = np.sum(sensors, axis=0)
+        for side in ("foot_force.left", "foot_force.right"):
+            sensors = [columns[name] for name in vector_columns(side)]
+            columns[side] = np.sum(sensors, axis=0)
         return Recording(columns, metadata)
 
     def _names(self) -> list[str]:
         """Names of the columns, in the order in which `tick` adds their values."""
         joints = self._description.joints
+        vectors = (
+            "gyroscope", "accelerometer", "foot_force.left", "foot_force.right",
+            "base.position", "base.orientation", "base.linear_velocity",
+            "base.angular_velocity",
+        )  # fmt: skip
         return [
-            "time",
+            TIME,
             *(f"position.{joint}" for joint in joints),
             *(f"velocity.{joint}" for joint in joints),
-            *(f"gyroscope.{axis}" for axis in _AXES),
-            *(f"accelerometer.{axis}" for axis in _AXES),
-            *(
-                f"foot_force.{side}.{name}"
-                for side in ("left", "right")
-                for name in SENSORS_PER_FOOT
-            ),
-            *(f"base.position.{axis}" for axis in _AXES),
-            *(f"base.orientation.{axis}" for axis in ("w", *_AXES)),
-            *(f"base.linear_velocity.{axis}" for axis in _AXES),
-            *(f"base.angular_velocity.{axis}" for axis in _AXES),
+            *(name for vector in vectors for name in vector_columns(vector)),
             *(f"command.{joint}" for joint in joints),
-            "support",
+            SUPPORT,
         ]
 
 
