@@ -30,9 +30,8 @@ from experiments.runs.gait_files import short_name
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run
 from experiments.walking.evaluation import Study, evaluate, keep
-from experiments.walking.search import check_search
+from experiments.walking.search import Budget, check_search, tune
 from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
-from experiments.walking.tuning import Budget, tune
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from robots import Description

@@ -10,10 +10,8 @@ from experiments.grounded_walks.courses import (
     SimPlace,
     noisy_sim,
 )
-from experiments.grounded_walks.data import walk
-from experiments.grounded_walks.models import WalkModels
-from experiments.grounded_walks.sim import GroundedSim, walk_in_sim
-from experiments.grounded_walks.step import GroundingStep
+from experiments.grounded_walks.data import GroundedSim, walk, walk_in_sim
+from experiments.grounded_walks.models import GroundingStep, WalkModels
 
 __all__ = [
     "GroundedSim",

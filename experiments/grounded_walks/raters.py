@@ -9,8 +9,13 @@ import robots
 import terrain
 import worlds
 from experiments.grounded_walks.courses import RealCourse
-from experiments.grounded_walks.data import ON_COURSE, WALK
-from experiments.grounded_walks.sim import ROBOT, GroundedSim, walk_in_sim
+from experiments.grounded_walks.data import (
+    ON_COURSE,
+    ROBOT,
+    WALK,
+    GroundedSim,
+    walk_in_sim,
+)
 from experiments.walking.evaluation import MOST_AT_ONCE
 from experiments.walking.trials import TrialRules, Trials, reward_cm_s, walk_trials
 from groundwalk.arrays import FloatArray

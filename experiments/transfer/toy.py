@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from experiments.command_line import run_verb
 from experiments.reports.report import markdown_table
@@ -12,7 +13,6 @@ from experiments.runs.folder import RESULT, open_run
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
 from experiments.transfer.claims import Claim, print_study, write_transfer_page
-from experiments.transfer.toy_mdps import TOYS, Toy
 from groundwalk.arrays import FloatArray
 from sgat.tabular.grounding import counted_forward_model, grounded_sim
 from sgat.tabular.mdp import FiniteMdp
@@ -25,16 +25,57 @@ COLUMNS = (
     "real world", "planned in", "values of a1, a2, ...", "best", "in the paper",
     "from counts", "worth on real",
 )  # fmt: skip
-NOTES = (
-    "Each world is one choice; the value of an action is the mean reward of what it "
-    "leads to.",
-    "Values are exact: the forward models are the real world's own probabilities. "
-    "Counted from",
-    "{episodes} random real transitions instead, they lead to the action under "
-    '"from counts".',
-)
+NOTES = """\
+Each world is one choice; the value of an action is the mean reward of what it leads to.
+Values are exact: the forward models are the real world's own probabilities. Counted from
+{episodes} random real transitions instead, they lead to the action under "from counts".\
+"""  # noqa: E501
 FIRST = 0
 """Number of the state in which the choice is made."""
+
+
+@dataclass(frozen=True, eq=False)
+class Toy:
+    """A simulator, a real world, and the SGAT paper's statements about them.
+
+    `figures` are those of the paper, counted in its LaTeX source; `best` is the best
+    action according to it, by the world that is planned in.
+    """
+
+    figures: str
+    sim: FiniteMdp
+    real: FiniteMdp
+    best: dict[str, str]
+
+
+def choice(rewards: npt.ArrayLike, chances: npt.ArrayLike) -> FiniteMdp:
+    """A world with a single step, from s0 into one of the states s1, s2, ...
+
+    Each has a reward for entering it, and a chance in (actions, states).
+    """
+    reward = np.concatenate([[0.0], np.asarray(rewards, np.float64)])
+    outcomes = np.asarray(chances, np.float64)
+    transition = np.zeros((len(reward), len(outcomes), len(reward)))
+    transition[0, :, 1:] = outcomes
+    transition[1:] = np.eye(len(reward))[1:, np.newaxis]
+    return FiniteMdp(transition, reward, np.arange(len(reward)) > 0)
+
+
+TOYS = {
+    "deterministic": Toy(
+        "figure 3",
+        sim=choice([1, -1], [[1, 0], [0, 1]]),
+        real=choice([1, -1], [[0, 1], [1, 0]]),
+        best={"sim": "a1", "GAT": "a2", "SGAT": "a2", "real": "a2"},
+    ),
+    "stochastic": Toy(
+        "figures 4 and 5",
+        sim=choice([1, -1, 10], np.eye(3)),
+        real=choice([1, -1, 10], [[1.0, 0.0, 0.0], [0.0, 0.8, 0.2], [0.0, 1.0, 0.0]]),
+        best={"sim": "a3", "GAT": "a1", "SGAT": "a2", "real": "a2"},
+    ),
+}
+"""The toys, by whether their real world is deterministic or stochastic."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +106,8 @@ def main(config: TransferToy) -> None:
         for name, toy in result["toys"].items()
         for planned in toy["planned"]
     ]
-    notes = [line.format(episodes=config.episodes) for line in NOTES]
-    body = [*markdown_table(COLUMNS, rows), "", *notes]
+    notes = NOTES.format(episodes=config.episodes)
+    body = [*markdown_table(COLUMNS, rows), "", notes]
     write_transfer_page(folder, TITLE, claims, body, [_answer(result["toys"])])
     print_study(config.json, folder, result, COLUMNS, rows)
 
@@ -93,7 +134,14 @@ def _solve_all(config: TransferToy) -> dict[str, Any]:
         for name, toy in TOYS.items():
             rows = solve(toy, config.episodes, generator)
             solved[name] = {"figures": toy.figures, "planned": rows}
-            claims.append(_claim(name, toy, rows).to_json())
+            found = {row["world"]: row["best"] for row in rows}
+            claim = Claim(
+                f"the best actions with a {name} real world are those of the paper "
+                f"({toy.figures})",
+                found == toy.best,
+                ", ".join(f"{action} in {world}" for world, action in found.items()),
+            )
+            claims.append(claim.to_json())
             bar.advance()
     return {"toys": solved, "claims": claims}
 
@@ -141,16 +189,6 @@ def _first_values(mdp: FiniteMdp) -> FloatArray:
 
 def _best(mdp: FiniteMdp) -> str:
     return f"a{policy_iteration(mdp)[FIRST] + 1}"
-
-
-def _claim(name: str, toy: Toy, rows: list[dict[str, Any]]) -> Claim:
-    found = {row["world"]: row["best"] for row in rows}
-    return Claim(
-        f"the best actions with a {name} real world are those of the paper "
-        f"({toy.figures})",
-        found == toy.best,
-        ", ".join(f"{action} in {world}" for world, action in found.items()),
-    )
 
 
 def _texts(toy: str, row: dict[str, Any]) -> list[str]:

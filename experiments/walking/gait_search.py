@@ -15,7 +15,13 @@ from experiments.runs.folder import CHECKPOINT, HISTORY, RunFolder
 from experiments.runs.gait_files import load_gait
 from experiments.runs.options import check_at_least
 from experiments.walking.recorder import Recorder
-from experiments.walking.search import GaitSearch, check_search
+from experiments.walking.search import (
+    RATINGS,
+    GaitSearch,
+    best_mean,
+    check_search,
+    run_search,
+)
 from experiments.walking.sims import check_correction, make_sim
 from experiments.walking.trials import (
     FALL_PENALTY_CM_S,
@@ -25,7 +31,6 @@ from experiments.walking.trials import (
     reward_cm_s,
     walk_trials,
 )
-from experiments.walking.tuning import RATINGS, best_mean, run_search
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield, TerrainSpec, parse
 from walk_engine import Gait

@@ -1,12 +1,23 @@
-"""CMA-ES (evolution strategy) over the 16 gait parameters, scaled to [0, 1]."""
+"""CMA-ES over the 16 gait parameters, scaled to [0, 1], and searches with it.
+
+The result of a search is the mean gait of one generation's distribution. Because gaits
+close to a fast gait may fall at once, the mean of the last generation may be bad. After
+the search the means of all generations are therefore rated again, with new random
+numbers, and the best one is the result.
+"""
 
 import pickle
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 
+from experiments.runs.progress import progress
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError
+from groundwalk.errors import BadValueError, RunFolderError
+from groundwalk.files import write_bytes
 from walk_engine.gait import PARAMETERS, Gait, from_unit, to_unit
 
 SMALLEST_POPULATION = 4
@@ -118,3 +129,131 @@ class GaitSearch:
         if not isinstance(search, cls):
             raise BadValueError("these bytes hold no gait search")
         return search
+
+
+Entry = dict[str, Any]
+"""The record of one generation as JSON values, with its `mean_reward` [cm/s]."""
+
+MEAN = "mean_gait"
+"""Key, in the record of a generation, of the mean gait that it began with."""
+
+RATINGS = 10
+"""Number of ratings of every generation's mean gait after the search."""
+
+Rater = Callable[[FloatArray, np.random.SeedSequence], FloatArray]
+"""Function that rates n gaits, vectors (n, 16), and returns their rewards (n,) [cm/s].
+
+Its second argument is a seed, from which it draws the same random numbers for all n
+gaits, so that rewards differ only because of the gaits."""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The size of a search.
+
+    Attributes:
+      population: number of gaits tried in each generation.
+      generations: number of generations.
+      sigma: standard deviation of the first generation, as a share of each parameter's
+        range.
+    """
+
+    population: int
+    generations: int
+    sigma: float
+
+    @property
+    def rated(self) -> int:
+        """Total number of ratings: samples and means in the search, means after it."""
+        means = self.generations + 1
+        return self.generations * (self.population + 1) + RATINGS * means
+
+
+def run_search(
+    checkpoint: Path,
+    begin: Callable[[], GaitSearch],
+    generation: Callable[[int, GaitSearch], Entry],
+    generations: int,
+    note: Callable[[list[Entry]], object] = lambda entries: None,
+) -> FloatArray:
+    """Run those generations of a search that are not in the checkpoint yet.
+
+    Args:
+      checkpoint: a file that is written after every generation.
+      begin: makes the search if there is no checkpoint.
+      generation: function of the generation's number (from 0) and the search, which
+        asks the search for gaits, rates them, tells the rewards and returns a record.
+      generations: total number of generations.
+      note: called after each generation with the records of all generations so far;
+        each record contains the `mean_gait` that its generation began with.
+
+    Returns:
+      (generations + 1, 16) vectors of the mean gaits, from the first to the last.
+
+    Raises:
+      RunFolderError: the checkpoint is damaged, or of an old version of groundwalk.
+    """
+    search, entries = _read(checkpoint) if checkpoint.exists() else (begin(), [])
+    with progress("search", generations, done=len(entries)) as bar:
+        for number in range(len(entries), generations):
+            mean = dict(search.mean)
+            entry = generation(number, search)
+            entries.append({"generation": number, MEAN: mean, **entry})
+            state = {"search": search.to_bytes(), "history": entries}
+            write_bytes(checkpoint, pickle.dumps(state))
+            note(entries)
+            bar.advance(f"mean gait {entries[-1]['mean_reward']:.1f} cm/s")
+    means = [Gait.from_mapping(entry[MEAN]) for entry in entries]
+    return np.array([mean.to_vector() for mean in (*means, search.mean)])
+
+
+def best_mean(means: FloatArray, ratings: Sequence[FloatArray]) -> Gait:
+    """The mean gait, of vectors (n, 16), with the best average of its rewards (n,)."""
+    return Gait.from_vector(means[np.mean(ratings, axis=0).argmax()])
+
+
+def tune(
+    checkpoint: Path,
+    start: Gait,
+    budget: Budget,
+    rater: Rater,
+    seed: np.random.SeedSequence,
+) -> Gait:
+    """Search for the best gait, and choose it among the means of all generations.
+
+    Args:
+      checkpoint: a file that is written after every generation.
+      start: the mean of the first generation.
+      budget: size of the search.
+      rater: rates gaits in the search, and `RATINGS` times after it.
+      seed: seed of the search and of all ratings.
+    """
+    of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
+
+    def generation(number: int, search: GaitSearch) -> Entry:
+        tried = np.vstack([search.ask(), search.mean.to_vector()])
+        rewards = rater(tried, of_walks[number])
+        search.tell(rewards[:-1])
+        return {"mean_reward": float(rewards[-1])}
+
+    means = run_search(
+        checkpoint,
+        lambda: GaitSearch(start, budget.population, budget.sigma, of_search),
+        generation,
+        budget.generations,
+    )
+    return best_mean(means, [rater(means, one) for one in of_ratings.spawn(RATINGS)])
+
+
+def _read(checkpoint: Path) -> tuple[GaitSearch, list[Entry]]:
+    try:
+        state = pickle.loads(checkpoint.read_bytes())
+    except (pickle.UnpicklingError, EOFError, ValueError) as error:
+        raise RunFolderError(f"{checkpoint} is damaged: {error}") from None
+    search, entries = GaitSearch.from_bytes(state["search"]), state["history"]
+    if not all(MEAN in entry for entry in entries):
+        raise RunFolderError(
+            f"{checkpoint} is of an earlier version, which did not keep the mean "
+            "gaits; begin again in another folder"
+        )
+    return search, entries

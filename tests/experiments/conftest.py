@@ -24,19 +24,17 @@ def in_this_process(monkeypatch):
 @pytest.fixture
 def short_walks(monkeypatch):
     """Walks of the NAO studies that end soon: where they lead to does not matter."""
-    from experiments.grounded_walks.data import walk
-    from experiments.grounded_walks.sim import walk_in_sim
+    from experiments.grounded_walks.data import walk, walk_in_sim
     from experiments.walking.evaluation import Study
 
     def short_walk(place, robot, vectors, seed, exploration_rad=(0.0,), rules=SHORT):
         return walk(place, robot, vectors, seed, exploration_rad, rules)
 
     short = {
-        "grounded_walks.records.ON_COURSE": TO_THE_LUMPS,
-        "grounded_walks.records.walk": short_walk,
+        "grounded_walks.data.ON_COURSE": TO_THE_LUMPS,
+        "grounded_walks.data.walk": short_walk,
         "grounded_walks.models.ON_COURSE": SHORT,
-        "grounded_walks.step.ON_COURSE": SHORT,
-        "grounded_walks.step.WALK": SHORT,
+        "grounded_walks.models.WALK": SHORT,
         "transfer.nao_falls.walk": short_walk,
         "transfer.nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
         "transfer.nao_studies.study.Study": partial(Study, rules=SHORT),

@@ -1,11 +1,12 @@
 """Measures of the groundings' forward models, before gaits walk in grounded sims."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import robots
+from experiments.grounded_walks.data import ROBOT
 from experiments.grounded_walks.models import (
     ENSEMBLE,
     GAT,
@@ -14,7 +15,6 @@ from experiments.grounded_walks.models import (
     UNEVEN,
     WalkModels,
 )
-from experiments.grounded_walks.sim import ROBOT
 from groundwalk.arrays import FloatArray
 from robots import biped
 from sgat.grounding_report import grounding_report
@@ -39,18 +39,11 @@ TICK_MS = 10
 """Control tick [ms]."""
 
 MEASURE_HEADINGS = (
-    "grounding",
-    "R² joints",
-    "R² gyroscope",
-    "R² tilt",
-    "10 ticks ahead, joints [mrad]",
-    "log-likelihood",
-    "within 90 %",
-    "lag-1 correlation",
-    "excess kurtosis",
-    "action shift [mrad]",
+    "grounding", "R² joints", "R² gyroscope", "R² tilt",
+    "10 ticks ahead, joints [mrad]", "log-likelihood", "within 90 %",
+    "lag-1 correlation", "excess kurtosis", "action shift [mrad]",
     "action spread [mrad]",
-)
+)  # fmt: skip
 
 Measures = Mapping[str, Mapping[str, Any]]
 
@@ -58,16 +51,9 @@ Measures = Mapping[str, Mapping[str, Any]]
 def measures_of(
     models: WalkModels, unseen: Transitions, seed: np.random.SeedSequence
 ) -> dict[str, dict[str, Any]]:
-    """Measure the models of the groundings `MEASURED` on held-out real walks.
+    """Measure the models of the groundings `MEASURED` on real walks they have not seen.
 
-    Args:
-      models: models learned from other walks.
-      unseen: transitions of real walks that the models have not seen.
-      seed: seed of the transformers' noise.
-
-    Returns:
-      For each grounding the measures of `grounding_report`, and the mean and standard
-      deviation of what its transformer adds to each joint's command [rad].
+    from collections.abc import Mapping
     """
     senses = leg_senses(robots.get(ROBOT))
     found = {}
@@ -101,7 +87,7 @@ def _added(
 
 def measure_rows(measures: Measures) -> list[list[str]]:
     """A row of texts for each grounding: medians over joints or a state's columns."""
-    joints = _leg_joints()
+    joints = len(leg_senses(robots.get(ROBOT)).joints)
     rows = []
     for name, found in measures.items():
         share = np.array(found["one_step_r_squared"], float)
@@ -127,21 +113,18 @@ def measure_rows(measures: Measures) -> list[list[str]]:
 
 
 def measures_figure(measures: Measures) -> "Figure":
-    """Four panels on how well the forward models of each grounding predict.
-
-    From left to right: share of one tick's change that is predicted; error of the
-    joints [mrad] over the time predicted ahead [ms]; share of residuals within each
-    interval; correlation of residuals over time.
-    """
+    """Four panels on how well the forward models of each grounding predict."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11.0, 3.4), dpi=160, layout="constrained")
     shares, growth, calibration, memory = figure.subplots(1, 4)
-    names = _outcome_names()
+    legs = biped(description := robots.get(ROBOT))
+    joints = [description.joints[i] for i in (*legs.left_leg, *legs.right_leg)]
+    names = [*joints, "gyro x", "gyro y", "gyro z", "tilt x", "tilt y"]
     for k, (name, found) in enumerate(measures.items()):
         share = np.array(found["one_step_r_squared"], float)
         shares.barh(np.arange(len(share)) + 0.4 * k, share, 0.4, label=name)
-        ahead = 1e3 * np.array(found["multi_step_error"], float)[:, : _leg_joints()]
+        ahead = 1e3 * np.array(found["multi_step_error"], float)[:, : len(joints)]
         ticks = TICK_MS * np.arange(1, len(ahead) + 1)
         growth.plot(ticks, np.median(ahead, axis=1), marker=".")
         within = np.median(np.array(found["coverage"], float), axis=1)
@@ -159,14 +142,3 @@ def measures_figure(measures: Measures) -> "Figure":
     for panel in (shares, growth, calibration, memory):
         panel.spines[["top", "right"]].set_visible(False)
     return figure
-
-
-def _leg_joints() -> int:
-    return len(leg_senses(robots.get(ROBOT)).joints)
-
-
-def _outcome_names() -> Sequence[str]:
-    description = robots.get(ROBOT)
-    legs = biped(description)
-    joints = [description.joints[i] for i in (*legs.left_leg, *legs.right_leg)]
-    return [*joints, "gyro x", "gyro y", "gyro z", "tilt x", "tilt y"]

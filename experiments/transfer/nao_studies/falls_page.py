@@ -25,13 +25,9 @@ GOAL = 0.7
 MEASURES = "measures"
 """Key of the models' measures in the run's results."""
 HEADINGS = (
-    "grounding",
-    "falls: correlation",
-    "rmse",
-    "mean rate",
-    "speed: correlation",
+    "grounding", "falls: correlation", "rmse", "mean rate", "speed: correlation",
     "rmse [cm/s]",
-)
+)  # fmt: skip
 
 Row = dict[str, Any]
 """Numbers of a grounding: its name, and how well it predicts fall rates and speeds."""
@@ -64,20 +60,17 @@ def correlation(predicted: FloatArray, real: FloatArray) -> float | None:
 
 def table_of(rows: Sequence[Row]) -> list[list[str]]:
     """A row of texts for each grounding, under `HEADINGS`."""
-    table = []
-    for row in rows:
-        falls, speed = row["fall_rate"], row["speed_cm_s"]
-        table.append(
-            [
-                row["grounding"],
-                _number(falls["correlation"]),
-                f"{falls['rmse']:.2f}",
-                f"{falls['predicted_mean']:.2f} (real {falls['real_mean']:.2f})",
-                _number(speed["correlation"]),
-                f"{speed['rmse']:.1f}",
-            ]
-        )
-    return table
+    return [
+        [
+            row["grounding"],
+            _number(row["fall_rate"]["correlation"]),
+            "{rmse:.2f}".format(**row["fall_rate"]),
+            "{predicted_mean:.2f} (real {real_mean:.2f})".format(**row["fall_rate"]),
+            _number(row["speed_cm_s"]["correlation"]),
+            "{rmse:.1f}".format(**row["speed_cm_s"]),
+        ]
+        for row in rows
+    ]
 
 
 def correlation_interval(r: float, pairs: int) -> tuple[float, float]:

@@ -5,16 +5,15 @@ from typing import Any
 
 from experiments.grounded_walks.courses import RealCourse
 from experiments.grounded_walks.data import ON_COURSE, WALK
-from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
+from experiments.grounded_walks.models import GAT, LUMPS_MARGIN, NONE, SGAT, UNEVEN
 from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S
-from experiments.grounded_walks.step import LUMPS_MARGIN
 from experiments.reports.report import markdown_table
 from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.figure import FIGURE
+from experiments.walking.search import RATINGS
 from experiments.walking.trials import FALL_PENALTY_CM_S
-from experiments.walking.tuning import RATINGS
 from sgat.transformers.catalogue import groundings
 from terrain import Flat, Lumps, configuration, parse
 

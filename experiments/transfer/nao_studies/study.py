@@ -15,12 +15,13 @@ import numpy as np
 import robots
 import worlds
 from experiments.grounded_walks.courses import Places, RealCourse
-from experiments.grounded_walks.data import WALK
+from experiments.grounded_walks.data import ROBOT, WALK, GroundedSim
 from experiments.grounded_walks.models import (
     GAT,
     NONE,
     SGAT,
     UNEVEN,
+    GroundingStep,
     action_envelope,
 )
 from experiments.grounded_walks.raters import (
@@ -28,8 +29,6 @@ from experiments.grounded_walks.raters import (
     rate_on_real,
     rate_randomised,
 )
-from experiments.grounded_walks.sim import ROBOT, GroundedSim
-from experiments.grounded_walks.step import GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.transfer.nao_studies.page import (
@@ -39,9 +38,8 @@ from experiments.transfer.nao_studies.page import (
     worth_cm_s,
 )
 from experiments.walking.evaluation import Study, evaluate
-from experiments.walking.search import check_search
+from experiments.walking.search import Budget, Rater, check_search, tune
 from experiments.walking.sims import check_correction
-from experiments.walking.tuning import Budget, Rater, tune
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transformers.catalogue import grounding
 from sgat.walks.gait_cloud import GaitCloud

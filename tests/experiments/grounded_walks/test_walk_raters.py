@@ -1,14 +1,13 @@
 import numpy as np
 import pytest
 
-from experiments.grounded_walks.data import WALK
+from experiments.grounded_walks.data import WALK, GroundedSim, walk_in_sim
+from experiments.grounded_walks.models import GroundingStep
 from experiments.grounded_walks.raters import (
     random_dynamics,
     rate_in_sim,
     rate_randomised,
 )
-from experiments.grounded_walks.sim import GroundedSim, walk_in_sim
-from experiments.grounded_walks.step import GroundingStep
 from groundwalk.errors import UnknownNameError
 from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import gaits
@@ -68,7 +67,7 @@ def test_worlds_are_closed_after_a_walk_and_after_an_error(monkeypatch, fails):
         if fails:
             raise RuntimeError
 
-    name = "experiments.grounded_walks.sim."
+    name = "experiments.grounded_walks.data."
     monkeypatch.setattr(name + "world_at", lambda *_: Inside())
     monkeypatch.setattr(name + "walk_trials", walked)
     if fails:

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from experiments.transfer import toy as transfer_toy
-from experiments.transfer.toy import TransferToy, main, solve
-from experiments.transfer.toy_mdps import TOYS, choice
+from experiments.transfer.toy import TOYS, TransferToy, choice, main, solve
 from groundwalk.errors import BadValueError, GroundwalkError
 
 # Values by hand from the paper's figures: 0.8 * -1 + 0.2 * 10 = 1.2.

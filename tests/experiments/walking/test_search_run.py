@@ -3,8 +3,7 @@ import pickle
 import numpy as np
 import pytest
 
-from experiments.walking.search import GaitSearch
-from experiments.walking.tuning import best_mean, run_search
+from experiments.walking.search import GaitSearch, best_mean, run_search
 from groundwalk.errors import RunFolderError
 from walk_engine import gaits
 from walk_engine.gait import PARAMETERS

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from experiments.walking.tuning import RATINGS, Budget, tune
+from experiments.walking.search import RATINGS, Budget, tune
 from walk_engine import gaits
 from walk_engine.gait import PARAMETERS
 
