@@ -53,7 +53,9 @@ def measures_of(
 ) -> dict[str, dict[str, Any]]:
     """Measure the models of the groundings `MEASURED` on real walks they have not seen.
 
-    from collections.abc import Mapping
+    The seed is that of the transformers' noise. The result has, for each grounding, the
+    measures of `grounding_report`, and the mean and standard deviation of what its
+    transformer adds to each joint's command [rad].
     """
     senses = leg_senses(robots.get(ROBOT))
     found = {}
