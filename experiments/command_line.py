@@ -101,8 +101,8 @@ def run_verb(
     """Parse a verb's options, do its work, and exit.
 
     Args:
-      config_type: dataclass of the verb's options, which checks their values. After
-        Ctrl-C its text `if_interrupted`, if any, is printed: how to continue.
+      config_type: dataclass of the options. After Ctrl-C its text `if_interrupted`, if
+        any, is printed: how to continue.
       verb: does the work; an integer that it returns is the exit status.
       program: name of the command in its help; by default the script's name.
       arguments: the words to parse; by default those of the process.
@@ -116,10 +116,8 @@ def run_verb(
 def run_script(main: Callable[..., object]) -> None:
     """Run a function as a script whose command-line options are its arguments.
 
-    Errors that the user can correct are printed as one line, with exit status 2.
-
-    Args:
-      main: a function whose arguments have types and are described in its docstring.
+    These have types, and are described in its docstring. Errors that the user can
+    correct are printed as one line, with exit status 2.
 
     Example:
       >>> if __name__ == "__main__":

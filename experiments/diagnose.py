@@ -94,11 +94,7 @@ class Diagnose(RunOptions):
     audit_only: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse invalid options.
-
-        Raises:
-          BadValueError: there is no recording or no robot, or a number is out of range.
-        """
+        """Refuse invalid options before anything is written."""
         super().__post_init__()
         if self.resume is None and not self.recordings:
             raise BadValueError("no recording is given; give one at least")
@@ -244,9 +240,7 @@ def _write(
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:
     """Write the model with the effects found, if any, into the run folder.
 
-    Args:
-      folder: the run's folder; gets `corrected.xml` and `corrected.json`.
-      found: the diagnosis.
+    The files are `corrected.xml` and `corrected.json`.
     """
     if not found.verdict.effects:
         return

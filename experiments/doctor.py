@@ -29,11 +29,7 @@ def print_findings(findings: Sequence[Finding]) -> None:
 
 
 def main(config: DoctorConfig) -> int:
-    """Run all checks of this machine, and print their findings.
-
-    Returns:
-      The exit status: 0 if everything that is required works, else 1.
-    """
+    """Print the findings of all checks; the exit status is 1 if one fails."""
     findings = examine()
     works = all(finding.state is not State.FAIL for finding in findings)
     if config.json:

@@ -103,11 +103,7 @@ def main(config: OptimizeGait) -> None:
 def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
     """Tune a gait in the sim, and try it in both worlds.
 
-    Args:
-      config: the options of the search and of the evaluation.
-
-    Returns:
-      The run's folder with all results, and the tuned gait.
+    The results are the run's folder and the tuned gait.
 
     Raises:
       GroundwalkError: the run's folder exists already, or cannot be continued.

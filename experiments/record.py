@@ -114,9 +114,6 @@ def main(config: Record) -> None:
 def make_recording(config: Record) -> Recording:
     """Move a robot, write the recording into `config.out`, and return it.
 
-    Args:
-      config: the robot, its motion, its hidden physics and the file.
-
     Raises:
       GroundwalkError: the robot fell, or its simulation diverged.
 

@@ -135,11 +135,7 @@ def _walk_cells(
 
 
 def _state(folder: RunFolder, gaits: Mapping[str, Gait]) -> dict[str, Any]:
-    """The stored state of a run: its gaits, and the cells done (none in a new run).
-
-    Raises:
-      BadValueError: a gait's file has changed since the run began.
-    """
+    """The stored state of a run; BadValueError if a gait has changed since it began."""
     now = {name: dict(gait) for name, gait in gaits.items()}
     state = folder.read_json(HISTORY) if folder.has(HISTORY) else {"gaits": now}
     if state["gaits"] != now:

@@ -88,12 +88,7 @@ def main(config: Visualize) -> None:
 
 
 def check_paths(paths: Sequence[Path]) -> None:
-    """Refuse paths that do not exist.
-
-    Raises:
-      BadValueError: no path is given.
-      BadRecordingError: a path does not exist.
-    """
+    """Refuse paths that do not exist (BadRecordingError), or none (BadValueError)."""
     if not paths:
         raise BadValueError("no run folder and no recording is given; name some")
     for path in paths:
@@ -102,11 +97,9 @@ def check_paths(paths: Sequence[Path]) -> None:
 
 
 def gather(paths: Sequence[Path]) -> dict[str, Recording]:
-    """Read recordings, by the names under which they are shown.
+    """Read recordings of run folders and files, by the names that are shown.
 
-    Args:
-      paths: run folders and recordings. If there are several, the name of a run's
-        recording begins with the name of its folder.
+    With several paths, the name of a run's recording begins with that of its folder.
 
     Raises:
       BadRecordingError: a file is no recording.

@@ -21,12 +21,9 @@ class UnknownNameError(GroundwalkError):
     """A name is unknown; the message lists the known ones and suggests the nearest."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
-        """Compose the message.
+        """Compose the message from the kind of thing that the name should stand for.
 
-        Args:
-          kind: the kind of thing that the name should stand for, for example "robot".
-          name: the unknown name.
-          known: every name that would have been right.
+        `kind` is for example "robot"; `known` are all names that would have been right.
         """
         names = sorted(known)
         close = nearest_name(str(name), names)

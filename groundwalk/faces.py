@@ -10,11 +10,8 @@ def lazy_face(
 ) -> Callable[[str], Any]:
     """Make a package's `__getattr__` (PEP 562) that imports public names on first use.
 
-    Importing the package itself then stays quick.
-
-    Args:
-      package: the package's `__name__`.
-      modules: for each module, its path relative to the package and its public names.
+    Importing the package, called `package`, then stays quick. `modules` holds the
+    public names of each module, by its path relative to the package.
 
     Example:
       >>> __getattr__ = lazy_face(__name__, {"traces.trace": ["Trace"]})

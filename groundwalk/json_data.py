@@ -64,11 +64,7 @@ def from_plain(
 
 
 def parse_json(text: str | bytes, where: str) -> Any:
-    """Read JSON text.
-
-    Args:
-      text: the text.
-      where: name of the text in error messages, such as "oracle".
+    """Read JSON text, called `where` in error messages, such as "oracle".
 
     Raises:
       BadValueError: the text is not JSON, or it contains NaN or an infinity.
@@ -80,19 +76,11 @@ def parse_json(text: str | bytes, where: str) -> Any:
 
 
 def parse_object(text: str | bytes, where: str, version: int) -> dict[str, object]:
-    """Read JSON text that holds one object with a "format" key.
-
-    Args:
-      text: the text.
-      where: name of the text in error messages, such as "metadata".
-      version: the only format number that is accepted.
-
-    Returns:
-      The object without its "format" key.
+    """Read JSON text that holds one object; the result lacks its "format" key.
 
     Raises:
-      BadValueError: the text is not JSON, contains NaN or an infinity, is no object, or
-        its "format" is missing or another number.
+      BadValueError: the text (called `where`, such as "metadata") is not JSON, contains
+        NaN or an infinity, is no object, or its "format" is not this version.
     """
     plain = parse_json(text, where)
     if not isinstance(plain, dict):
@@ -108,14 +96,9 @@ def parse_object(text: str | bytes, where: str, version: int) -> dict[str, objec
 def check_number(name: str, value: float, low: float, high: float = math.inf) -> None:
     """Refuse a value that is no finite number between two inclusive bounds.
 
-    Args:
-      name: name of the value in the error message.
-      value: the value to be checked.
-      low: the smallest number allowed.
-      high: the largest number allowed.
-
     Raises:
-      BadValueError: the value is no number, not finite or out of bounds.
+      BadValueError: the value is no number, not finite or out of bounds; the message
+        begins with its name.
     """
     if not (is_number(value) and low <= value <= high):
         span = f"from {low:g} to {high:g}" if high < math.inf else f"from {low:g} up"
@@ -128,10 +111,7 @@ def _refuse_constant(constant: str) -> NoReturn:
 
 
 def _one_line(error: BaseException, where: str) -> GroundwalkError:
-    """Make one error with a one-line message from the first of cattrs' nested errors.
-
-    The message continues `where` to the wrong key, as in "verdict.effects[2].place".
-    """
+    """One error from the first of cattrs' nested ones: "verdict.effects[2] ..."."""
     while isinstance(error, BaseValidationError):
         error = error.exceptions[0]
         for note in getattr(error, "__notes__", []):

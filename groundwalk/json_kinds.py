@@ -90,10 +90,7 @@ def converter(complete: bool) -> Converter:
 
 
 def _is_choice(kind: Any) -> bool:
-    """Whether a type is `object`, or a union of several types besides None.
-
-    A value of such a type is not converted: the dataclass that holds it checks it.
-    """
+    """Whether a type is `object` or a union: the dataclass that holds it checks it."""
     parts = set(get_args(kind)) - {type(None)}
     return kind is object or (get_origin(kind) in (Union, UnionType) and len(parts) > 1)
 

@@ -92,10 +92,7 @@ def _by_role(description: Description, leg: _Leg) -> _Leg:
 
 
 def _arm(description: Description, legs: set[int], side: int) -> _Leg | None:
-    """Indices of shoulder pitch and roll of the arm on one side; None without an arm.
-
-    `legs` are the indices of both legs' joints; `side` is 1 left, -1 right.
-    """
+    """Shoulder pitch and roll of the arm on one side (1 left, -1 right)."""
     for i, joint in enumerate(description.links):
         if joint.parent < 0 and i not in legs and joint.origin_m[1] * side > 0:
             for k, after in enumerate(description.links):
@@ -139,9 +136,8 @@ def _geometry(description: Description, leg: _Leg) -> LegGeometry:
 def _like(description: Description, chain: _Leg, leg: _Leg) -> LegGeometry:
     """Approximate a leg whose hip axes do not meet by a leg whose axes do.
 
-    The approximation has its hip on the hip pitch axis, straight above the foot, its
-    ankle on the ankle pitch axis, and the thigh and shin lengths seen from the side.
-    `chain` has the joints from hip to foot, `leg` those from yaw to ankle roll by role.
+    It has the hip on the hip pitch axis, straight above the foot, the ankle on the
+    ankle pitch axis, and the thigh and shin lengths seen from the side.
     """
     at = _places(description, chain)
     _, _, pitch, knee, ankle, _ = (at[chain.index(joint)] for joint in leg)

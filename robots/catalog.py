@@ -29,9 +29,8 @@ def names() -> list[str]:
 def get(name: str) -> Description:
     """Describe a robot by its name, or from a file.
 
-    Args:
-      name: one of `robots.names()`, or the path of a file: a URDF (.urdf) of a robot on
-        two legs, or a TOML file (.toml) like robots/nao.toml or that completes a URDF.
+    A file is a URDF (.urdf) of a robot on two legs, or a TOML file (.toml) like
+    robots/nao.toml or that completes a URDF.
 
     Raises:
       UnknownNameError: there is no such robot.

@@ -97,9 +97,7 @@ class Motor:
     def drive_nm(self, error_rad: FloatArray, velocity_rad_s: FloatArray) -> FloatArray:
         """Drive voltage as the stall torque (n,) it would give [N m], before its limit.
 
-        Args:
-          error_rad: (n,) command minus position of the joint [rad].
-          velocity_rad_s: (n,) velocity of the joint [rad/s].
+        From (n,) commands minus positions [rad], and velocities of the joint [rad/s].
         """
         damping = self.kd_nm_s_rad - self.back_emf_nm_s_rad
         return np.asarray(self.kp_nm_rad * error_rad - damping * velocity_rad_s)

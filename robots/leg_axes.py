@@ -13,17 +13,12 @@ _CLEAR = 0.9
 
 
 def roles(axes: FloatArray) -> tuple[int, ...]:
-    """Find yaw, roll, pitch, knee, ankle pitch and ankle roll among a leg's joints.
+    """Indices of yaw, roll, pitch, knee, ankle pitch and ankle roll among a leg's axes.
 
-    The order of the three hip joints is the one in which yaw, roll and pitch axes are
-    closest to z, x and y in sum; the NAO's yaw axis leans by 45 degrees. The order of
-    ankle pitch and roll is found in the same way. The fourth joint is the knee.
-
-    Args:
-      axes: (6, 3) unit vectors of the joints from hip to foot; x forward, y left, z up.
-
-    Returns:
-      For each role in that order, the index of its joint in `axes`.
+    The unit vectors (6, 3) go from hip to foot; x is forward, y left, z up. The order
+    of the three hip joints is the one in which yaw, roll and pitch axes are closest to
+    z, x and y in sum; the NAO's yaw axis leans by 45 degrees. The order of ankle pitch
+    and roll is found in the same way. The fourth joint is the knee.
 
     Raises:
       ValueError: the knee's axis is not close to y.
@@ -36,12 +31,7 @@ def roles(axes: FloatArray) -> tuple[int, ...]:
 
 
 def _closest(axes: FloatArray, wanted: tuple[int, ...]) -> tuple[int, ...]:
-    """Order of k axes in which they are closest, in sum, to wanted coordinate axes.
-
-    Args:
-      axes: (k, 3) unit vectors.
-      wanted: k indices of coordinate axes: 0 x, 1 y, 2 z.
-    """
+    """Order of axes (k, 3) in which they are closest, in sum, to k coordinate axes."""
     return max(
         itertools.permutations(range(len(axes))),
         key=lambda order: float(np.abs(axes[list(order), list(wanted)]).sum()),

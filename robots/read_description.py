@@ -77,10 +77,7 @@ def read_description(path: Path) -> Description:
 
 
 def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatArray]:
-    """The next moving joint (or root) above a joint, and the parent's position in it.
-
-    The position (3,) [m] of the direct parent is not zero if that parent is fixed.
-    """
+    """The next moving joint (or root) above, and the direct parent's place there."""
     offset = np.zeros(3)
     parent = joints[name]["parent"]
     while parent != root:
@@ -94,10 +91,7 @@ def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatA
 
 
 def _carrier(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatArray]:
-    """The moving joint (or root) with which a joint's link moves, and its position.
-
-    The position (3,) [m] is the link's in the frame of that joint (or root).
-    """
+    """The moving joint (or root) that carries a link, and its place there [m]."""
     if not joints[name].get("fixed", False):
         return name, np.zeros(3)
     parent, offset = _parent(name, joints, root)
@@ -111,10 +105,7 @@ def _link(
     carrier: dict[str, tuple[str, FloatArray]],
     own: Table,
 ) -> Link:
-    """Make the link of a moving joint or the root, with all fixed links merged in.
-
-    `carrier` has, by joint, the owner of its link and the link's position in it [m].
-    """
+    """The link of a moving joint or the root, with all fixed links merged in."""
     bodies = [_inertial(own)]
     shapes = [_capsule(shape, np.zeros(3)) for shape in own.get("shapes", ())]
     for name, (carried_by, offset) in carrier.items():

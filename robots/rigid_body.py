@@ -40,16 +40,12 @@ class Inertial:
         return Inertial(self.mass_kg, self.com_m + offset_m, self.inertia_kg_m2)
 
     def with_rotor(self, axis: FloatArray, rotor_kg_m2: float) -> "Inertial":
-        """This body with a geared rotor's inertia about the joint axis added.
+        """This body with a geared rotor's inertia about the joint axis (3,) added.
 
         The rotor is a thin disc fixed to the link, which MuJoCo and Bullet can both
         simulate: Bullet has no joint armature, and a torque from outside in its place
         makes the simulation unstable. A thin disc's inertia across its axis is half of
-        that about it, so that its matrix is J (E + a a^T) / 2.
-
-        Args:
-          axis: (3,) unit vector a of the joint axis.
-          rotor_kg_m2: the rotor's inertia J times the gear ratio squared [kg m^2].
+        that about it, J = `rotor_kg_m2`, so that its matrix is J (E + a a^T) / 2.
         """
         disc = rotor_kg_m2 * (np.eye(3) + np.outer(axis, axis)) / 2
         return Inertial(self.mass_kg, self.com_m, self.inertia_kg_m2 + disc)

@@ -37,12 +37,9 @@ class Scale:
 
     @classmethod
     def of_robot(cls, hip_m: float, centre_m: float, mass_kg: float) -> "Scale":
-        """Compute the size of a robot relative to the NAO.
+        """Size relative to the NAO, from heights above the sole with straight legs [m].
 
-        Args:
-          hip_m: height of the hip above the sole with straight legs [m].
-          centre_m: height of the centre of mass above the sole when standing [m].
-          mass_kg: mass of the robot [kg].
+        `hip_m` is that of the hips, `centre_m` that of the centre of mass.
         """
         return cls(
             hip_m / NAO_HIP_M, math.sqrt(centre_m / NAO_CENTRE_M), mass_kg / NAO_KG
@@ -54,11 +51,9 @@ class Scale:
         return self.length / self.time
 
     def of(self, unit: str) -> float:
-        """Factor that turns a value for the NAO into one for this robot.
+        """Factor from values for the NAO to those for this robot, by their unit.
 
-        Args:
-          unit: unit of the value: "m", "s", "m/s", "rad/s", "rad/m", "N", or one of
-            "1", "m/m" and "rad", whose factor is 1.
+        Units are "m", "s", "m/s", "rad/s", "rad/m", "N", "1", "m/m" and "rad".
         """
         factors = {
             "m": self.length,

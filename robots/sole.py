@@ -19,15 +19,9 @@ fifteen corners need a quarter more computing time."""
 
 
 def rim_points(outline_m: FloatArray, count: int = RIM_POINTS) -> FloatArray:
-    """Reduce a convex outline to corners that keep most of its area.
+    """Reduce a convex outline (points, 2) [m] to `count` corners with most of its area.
 
-    Args:
-      outline_m: (points, 2) corners in order along the outline [m].
-      count: number of corners to keep; all are kept if the outline has fewer.
-
-    Returns:
-      (count, 2) corners [m], left after removing one by one the corner whose removal
-      costs the least area.
+    The corner whose removal costs the least area is removed again and again.
     """
     corners = outline_m
     while len(corners) > count:
@@ -50,21 +44,14 @@ def contact_points(foot: Foot) -> FloatArray:
 
 
 def sensor_shares(sensors_m: FloatArray, points_m: FloatArray) -> FloatArray:
-    """Shares of a foot's four sensors in a vertical force at each point of the sole.
+    """(points, 4) shares of a foot's sensors in a vertical force at points (points, 2).
 
-    The sole is a stiff plate on four equal springs at the sensors' positions s_i, so
-    that the share of a sensor is linear in its position, w_i = a + b.(s_i - c) with the
-    centre c of the springs. Force and moments at a point p balance: sum w_i = 1 and
-    sum w_i s_i = p, which gives w_i = 1/4 + (s_i - c)^T S^-1 (p - c) with
-    S = sum (s_i - c)(s_i - c)^T. A point outside of the springs has negative shares, as
-    the plate tips; a sensor whose sum over all points is negative should read 0.
-
-    Args:
-      sensors_m: (4, 2) positions of the sensors [m].
-      points_m: (points, 2) positions of the forces [m].
-
-    Returns:
-      (points, 4) shares, each row adding up to one.
+    The sole is a stiff plate on four equal springs at the sensors' positions s_i (4, 2)
+    [m], so that the share of a sensor is linear in its position, w_i = a + b.(s_i - c)
+    with the centre c of the springs. Force and moments at a point p balance: sum w_i =
+    1 and sum w_i s_i = p, which gives w_i = 1/4 + (s_i - c)^T S^-1 (p - c) with S = sum
+    (s_i - c)(s_i - c)^T. A point outside of the springs has negative shares, as the
+    plate tips; a sensor whose sum over all points is negative should read 0.
     """
     centre = sensors_m.mean(axis=0)
     arms = sensors_m - centre

@@ -55,15 +55,9 @@ class Excitation:
     def commands(
         self, motion: str, time_s: FloatArray, rng: np.random.Generator
     ) -> FloatArray:
-        """Draw the commands of a motion at random.
+        """Draw the commands of one of `MOTIONS` at random.
 
-        Args:
-          motion: one of `MOTIONS`.
-          time_s: (T,) times of the commands [s], beginning with 0.
-          rng: draws frequencies, phases and levels.
-
-        Returns:
-          (T, j) position targets [rad].
+        They are (T, j) position targets [rad] for times (T,) [s], beginning with 0.
 
         Raises:
           UnknownNameError: the motion is unknown.

@@ -33,16 +33,9 @@ WALK_SPEEDS = (0.06, 0.16)
 def standing_commands(
     description: Description, motion: str, time_s: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
-    """Draw the commands of a motion with both feet on the ground at random.
+    """Draw the commands of one of `STANDING_MOTIONS` of a biped at random.
 
-    Args:
-      description: the robot model of a biped.
-      motion: one of `STANDING_MOTIONS`.
-      time_s: (T,) times of the commands [s], beginning with 0.
-      rng: draws speeds, depths and the motion of the arms.
-
-    Returns:
-      (T, joints) position targets [rad].
+    They are (T, joints) position targets [rad] for times (T,) [s], beginning with 0.
 
     Raises:
       UnknownNameError: the motion is unknown.
@@ -109,14 +102,9 @@ def walking_feed(
 ) -> tuple[FloatArray, Callable[[int, BodySense], FloatArray]]:
     """Make the start pose of a walk, and a function that computes its commands.
 
-    Args:
-      description: the robot model of a biped.
-      rng: draws the walking speed.
-      rest_rows: number of ticks for which the robot stands before it walks.
-
-    Returns:
-      The start pose (joints,) [rad], and a function of the tick's number and of the
-      robot's measurements that returns the commands (joints,) [rad].
+    The biped stands for `rest_rows` ticks before it walks, at a random speed. The
+    function of the tick's number and of the measurements returns commands (joints,)
+    [rad].
     """
     body = biped(description)
     engine = WalkEngine(body, [gaits.get("walk2014")], TICK_S)

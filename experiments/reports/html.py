@@ -29,14 +29,10 @@ def render(template: str, **values: Any) -> str:
 
 
 def body_html(markdown: str, folder: Path) -> str:
-    """Convert Markdown with tables to HTML, and embed its pictures.
+    """Convert Markdown with tables to HTML, and embed its pictures from a folder.
 
     HTML within the Markdown is shown as text. A picture that is missing, or in another
     folder, is replaced by its caption.
-
-    Args:
-      markdown: the text.
-      folder: folder of the pictures.
     """
     return str(_parser().render(markdown, {FOLDER: folder}))
 

@@ -34,12 +34,7 @@ class Origin:
 
     @classmethod
     def of(cls, provenance: Mapping[str, Any], settings: Mapping[str, Any]) -> Self:
-        """Make the origin from a run's provenance.
-
-        Args:
-          provenance: content of the run's provenance.json.
-          settings: values of the options by name; options that are None are left out.
-        """
+        """Make the origin from the content of provenance.json and options by name."""
         known = [provenance, *provenance.get("resumed", ())]
         versions = {
             "groundwalk": provenance.get("groundwalk"),

@@ -59,20 +59,13 @@ class Report:
         )
 
     def write(self, folder: Path, page: str = PAGE) -> None:
-        """Write the page as Markdown (file `page`) and as `report.html`.
-
-        Both files are written into the folder of the pictures.
-        """
+        """Write the page as Markdown and as `report.html` into the pictures' folder."""
         write_text(folder / page, self.to_markdown())
         write_text(folder / REPORT, self.to_html(folder))
 
 
 def markdown_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     """A table as lines of Markdown; columns of numbers are aligned to the right.
-
-    Args:
-      columns: the headings.
-      rows: the cells, one text for each column.
 
     Example:
       >>> markdown_table(["gait", "falls"], [["start", "1/10"]])

@@ -40,17 +40,10 @@ _FLAT = 1e-9
 
 
 def wilson(hits: int, trials: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a probability, from the count of hits.
+    """Lower and upper end of Wilson's 95 % interval of a probability, from counts.
 
     Unlike p +- 1.96 sqrt(p (1 - p) / n), it does not shrink to a point if all or none
     of the trials were hits.
-
-    Args:
-      hits: number of hits.
-      trials: number of trials, at least one.
-
-    Returns:
-      Lower and upper end of the interval, both from 0 to 1.
 
     Example:
       >>> low, high = wilson(0, 10)

@@ -18,14 +18,10 @@ def print_table(
     rows: Sequence[Sequence[str]],
     colours: Sequence[str] = (),
 ) -> None:
-    """Print a table.
+    """Print a table; in a file or pipe (and without rich) lines are never wrapped.
 
-    In a file or a pipe (and without the package rich) its lines are never wrapped.
-
-    Args:
-      columns: the headings. On a terminal only the last column is wrapped.
-      rows: the cells, one text for each column.
-      colours: colour of each row's first cell, such as "red"; none by default.
+    On a terminal only the last column is wrapped, and `colours`, such as "red", are
+    those of each row's first cell.
 
     Example:
       >>> print_table(["robot", "joints"], [["nao", "22"]])

@@ -73,8 +73,7 @@ def check_python(version: tuple[int, int]) -> Finding:
 def import_problem(module: str) -> str:
     """Import a module, and return the last line of the error; "" if it works.
 
-    The import runs in another process, because a physics engine may print from C, or
-    crash.
+    Another process does it, because a physics engine may print from C, or crash.
     """
     done = subprocess.run(
         [sys.executable, "-c", f"import {module}"],

@@ -10,11 +10,8 @@ def extra(name: str) -> Iterator[None]:
     """Make a picture, an overlay or a page; if that fails, print one line and go on.
 
     A run already has its result, perhaps of hours, when it draws. An exception within
-    the block is therefore printed as one line on standard error, and the program
-    continues after the block. Ctrl-C is not caught.
-
-    Args:
-      name: name of the file or files that are made, for the printed line.
+    the block is therefore printed as one line on standard error, with the name of the
+    file; the program continues after the block. Ctrl-C is not caught.
 
     Example:
       >>> with extra("walk.png"):

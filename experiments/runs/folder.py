@@ -60,10 +60,8 @@ class RunFolder:
     def create(cls, verb: str, config: Any) -> Self:
         """Make a new folder; write the configuration and the code's version into it.
 
-        Args:
-          verb: the verb that runs, as on the command line.
-          config: the verb's options, a dataclass with `out` and `seed`; if `out` is
-            None, the folder is `runs/<verb>/<date>_<time>_s<seed>`.
+        `config` is a dataclass of options with `out` and `seed`; if `out` is None, the
+        folder is `runs/<verb>/<date>_<time>_s<seed>`.
 
         Raises:
           RunFolderError: the folder exists already.
@@ -83,11 +81,7 @@ class RunFolder:
 
     @classmethod
     def at(cls, path: Path, verb: str | None = None) -> Self:
-        """Open the folder of an earlier run.
-
-        Args:
-          path: the folder.
-          verb: the verb that must have made the folder; any by default.
+        """Open the folder of an earlier run, made by the verb if one is given.
 
         Raises:
           RunFolderError: it is no run folder, or another verb has made it.
@@ -142,14 +136,9 @@ class RunFolder:
 
 
 def check_free(path: Path | None, resumable: bool = False) -> None:
-    """Refuse a folder that exists already: no run is overwritten.
+    """Refuse a folder (None: a new one) that exists already: no run is overwritten.
 
-    Args:
-      path: the folder of a new run; None for the default, which is always new.
-      resumable: whether the error message may advise the option --resume.
-
-    Raises:
-      RunFolderError: the folder exists.
+    The message of the RunFolderError advises the option --resume if `resumable`.
     """
     if path is not None and path.exists():
         resume = f", or continue it with --resume {path}" if resumable else ""
@@ -157,15 +146,7 @@ def check_free(path: Path | None, resumable: bool = False) -> None:
 
 
 def check_new(path: Path, suffix: str = "") -> None:
-    """Refuse the path of an output file that exists or has the wrong ending.
-
-    Args:
-      path: the file to write, as given with --out.
-      suffix: required ending of its name, such as ".rrd"; "" for any.
-
-    Raises:
-      BadValueError: the path exists, or the name ends otherwise.
-    """
+    """Refuse the path of an output file that exists or does not end with `suffix`."""
     if path.exists():
         raise BadValueError(f"{path} exists already: choose another --out")
     if not path.name.endswith(suffix):

@@ -9,11 +9,7 @@ from walk_engine import Gait, gaits
 
 
 def load_gait(name: str) -> Gait:
-    """Load a gait.
-
-    Args:
-      name: name of a gait (`groundwalk list gaits`), a JSON file with one, or the run
-        folder of a search.
+    """Load a gait by its name, from a JSON file, or from the run folder of a search.
 
     Raises:
       GroundwalkError: there is no such gait, file or folder, or it holds no gait.
@@ -25,10 +21,7 @@ def load_gait(name: str) -> Gait:
 
 
 def load_gaits(names: Sequence[str]) -> dict[str, Gait]:
-    """Load gaits; the result's keys are their short names (see `short_name`).
-
-    Args:
-      names: for each gait its name, its JSON file, or the run folder of a search.
+    """Load gaits like `load_gait`, by their short names (see `short_name`).
 
     Raises:
       BadValueError: two gaits have the same short name.

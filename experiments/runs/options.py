@@ -43,11 +43,7 @@ class RunOptions:
 
 
 def check_at_least(options: Any, **least: float) -> None:
-    """Refuse options that are too small or NaN.
-
-    Args:
-      options: the options, a dataclass; an option that is None is not checked.
-      **least: the smallest allowed value, by the option's name.
+    """Refuse options that are smaller than a bound or NaN; those that are None pass.
 
     Raises:
       BadValueError: an option is smaller, or NaN.

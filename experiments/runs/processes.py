@@ -14,16 +14,13 @@ Result = TypeVar("Result")
 
 @contextlib.contextmanager
 def process_pool(processes: int, calls: int | None = None) -> Iterator[Executor]:
-    """An executor of worker processes, closed at the end of the `with` block.
+    """An executor of worker processes (0: one per core), closed after the `with` block.
 
     The processes are spawned, not forked, because PyBullet and MuJoCo keep state that
     no other process may inherit. Functions must therefore be defined at the top of a
     module; arguments and results are pickled. If the block ends by an error or Ctrl-C,
-    calls that have not begun are cancelled.
-
-    Args:
-      processes: number of processes; 0 for one per core.
-      calls: number of calls, if known; no more processes than this are started.
+    calls that have not begun are cancelled. At most as many processes as `calls` are
+    started.
 
     Example:
       >>> with process_pool(2) as pool:

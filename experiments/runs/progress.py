@@ -20,22 +20,14 @@ class Task(Protocol):
     """A task whose progress is shown."""
 
     def advance(self, note: str = "", steps: int = 1) -> None:
-        """Report that steps are done.
-
-        Args:
-          note: short text about the last step, such as its result.
-          steps: number of steps done since the last report.
-        """
+        """Report that steps are done; the note says something about the last one."""
 
 
 @contextmanager
 def progress(title: str, steps: int, done: int = 0) -> Iterator[Task]:
     """Show the progress of a task on standard error, with the time left.
 
-    Args:
-      title: name of the task.
-      steps: number of its steps.
-      done: number of steps that an interrupted run has done before.
+    `done` is the number of steps that an interrupted run has done before.
 
     Example:
       >>> with progress("trials", steps=10) as task:
@@ -127,12 +119,10 @@ class Stages:
             print(line, file=sys.stderr, flush=True)
 
     def stage(self, name: str, steps: int) -> None:
-        """Finish the present stage and begin the next one.
+        """Finish the present stage and begin the next one, of about so many steps.
 
-        Args:
-          name: name of the next stage.
-          steps: its approximate number of steps. With fewer steps the display ends
-            early; with more it stays at 100 % until the next stage begins.
+        With fewer steps the display ends early; with more it stays at 100 % until the
+        next stage begins.
         """
         self._finish()
         self._left = max(steps, 1)

@@ -14,14 +14,10 @@ NOT_REPEATED = frozenset({"out", "resume", "json"})
 
 
 def repeat_command(verb: str, config: Any) -> str:
-    """The command line that repeats a run.
+    """The command line that repeats a verb's run.
 
     That is the command line of this process. If the run was started from Python, as in
     a notebook, it is made from the options that differ from their defaults.
-
-    Args:
-      verb: the verb that runs, such as "evaluate".
-      config: the verb's options, a dataclass.
     """
     program = _program(Path(sys.argv[0]))
     if program:

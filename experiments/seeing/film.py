@@ -84,12 +84,7 @@ class Film:
 
 
 def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
-    """Choose first and last moment to show [s]: around the first fall, or the middle.
-
-    Args:
-      scenes: scenes that are shown together.
-      duration_s: length of the part [s]; shorter walks give a shorter part.
-    """
+    """First and last moment to show [s]: at the first fall, or in the middle."""
     first_s = min(float(scene.recording.time_s[0]) for scene in scenes)
     lasts_s = [float(scene.recording.time_s[-1]) for scene in scenes]
     falls_s = [
@@ -106,12 +101,10 @@ def window_s(scenes: Sequence[Scene], duration_s: float) -> tuple[float, float]:
 
 
 def strip_bytes(film: Film, frames: int) -> bytes:
-    """Draw a PNG with a row of pictures, at equal distances in time, for each walk.
+    """Draw a PNG with a row of pictures, equally spaced in time, for each walk.
 
-    Args:
-      film: the walks. If its `start_s` is None, each row has its own start, chosen so
-        that the last picture shows the fall.
-      frames: number of pictures in a row.
+    If the film's `start_s` is None, each row has its own start, chosen so that the last
+    picture shows the fall.
     """
     rows = []
     with progress("pictures", len(film.scenes) * frames) as bar:
@@ -131,12 +124,7 @@ def _strip_times_s(film: Film, scene: Scene, frames: int) -> FloatArray:
 
 
 def film_bytes(film: Film, rate_hz: float, suffix: str) -> bytes:
-    """Make a film of all walks side by side, all at the same time.
-
-    Args:
-      film: the walks.
-      rate_hz: pictures per second.
-      suffix: ".gif" or ".mp4".
+    """Make a film (".gif" or ".mp4") of all walks side by side, all at the same time.
 
     Raises:
       GroundwalkError: an .mp4 needs the program ffmpeg, which is not installed.

@@ -25,8 +25,7 @@ def picture_run(folder: RunFolder) -> None:
 def picture_search(folder: RunFolder) -> Path | None:
     """Draw a run's search, unless the picture is newer than the last generation.
 
-    Returns:
-      The picture's path; None if the run has no finished generation.
+    The result is the picture's path; None if the run has no finished generation.
 
     Raises:
       RunFolderError: the file with the search's history is damaged.

@@ -26,14 +26,10 @@ if TYPE_CHECKING:
 
 
 def read_recordings(folder: Path) -> dict[str, Recording]:
-    """Read every Parquet recording of a folder.
+    """Read every Parquet recording of a folder, which need not exist, by scene name.
 
-    Args:
-      folder: folder with files such as `sim_tuned.parquet`; it need not exist.
-
-    Returns:
-      Recordings by scene name, such as "sim/tuned" for the file `sim_tuned.parquet`;
-      those of the sim come first.
+    The name is "sim/tuned" for the file `sim_tuned.parquet`; those of the sim come
+    first.
     """
     paths = sorted(folder.glob("*.parquet"), key=_order)
     names = scene_names(path.stem.replace("_", "/", 1) for path in paths)
@@ -41,13 +37,10 @@ def read_recordings(folder: Path) -> dict[str, Recording]:
 
 
 def read_run(folder: Path) -> dict[str, Recording]:
-    """Read every recording of a run, and of the runs in its subfolders.
+    """Read every recording of a run, and of the runs in its subfolders, by scene name.
 
-    Args:
-      folder: a run folder; that of `groundwalk humanoids` has a run for each robot.
-
-    Returns:
-      Recordings by scene name, such as "sim/tuned"; in a subfolder "nao/sim/tuned".
+    A name is "sim/tuned", or in a subfolder "nao/sim/tuned": the folder of `groundwalk
+    humanoids` has a run for each robot.
     """
     recordings = read_recordings(folder / RECORDINGS)
     inside = sorted(path.parent for path in folder.glob(f"*/{RECORDINGS}"))
@@ -83,10 +76,7 @@ def scene_names(texts: Iterable[str]) -> list[str]:
 
 
 def make_scenes(recordings: Mapping[str, Recording]) -> list[Scene]:
-    """Make scenes of recordings, with the robot and the ground of their metadata.
-
-    Args:
-      recordings: recordings by the scene's name.
+    """Make scenes of recordings by name, with the robot and ground of their metadata.
 
     Raises:
       BadRecordingError: a recording's robot or ground is unknown.

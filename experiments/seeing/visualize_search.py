@@ -41,10 +41,6 @@ def walk_again(plan: SearchPlan, best: Sequence[Gait]) -> list[SearchWalk]:
     """Repeat the walk with which the best gait of each generation was rated.
 
     The robots walk side by side in one sim, each on its generation's ground.
-
-    Args:
-      plan: options of the search.
-      best: the best gait of each generation, from the first one on.
     """
     description = robots.get(plan.robot)
     specs = plan.grounds(len(best))
@@ -92,13 +88,10 @@ Entries = Sequence[Mapping[str, Any]]
 
 
 def visualize_search(folder: RunFolder) -> Path | None:
-    """Write a Rerun file of a run's search; its best gaits walk again for this.
+    """Write a Rerun file of a run's search, if it has one; its best gaits walk again.
 
     Runs of earlier versions of groundwalk did not store the best gaits. If these cannot
     walk again, the file's text on each generation says why.
-
-    Returns:
-      The path of the file; None if the run has no finished generation.
 
     Raises:
       RunFolderError: the file with the search's history is damaged.

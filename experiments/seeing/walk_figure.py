@@ -28,11 +28,7 @@ BELOW_M, ABOVE_M = 0.03, 0.09
 
 
 def draw_walk(recordings: Mapping[str, Recording], path: Path) -> None:
-    """Draw walks into a PNG file; see `walk_figure`.
-
-    Args:
-      recordings: recordings by name, with base pose and all joints at every tick.
-      path: the file.
+    """Draw walks by name, with base pose and all joints at every tick, into a PNG file.
 
     Raises:
       GroundwalkError: there is no recording, or one lacks the base's position or names
@@ -47,12 +43,9 @@ def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "F
 
     A faint stick figure is drawn every 0.12 s; those that do not overlap are drawn bold
     with the time above. Thin lines are the paths of the ankles. The ground is drawn
-    under each foot's path, in the colour of that leg.
-
-    Args:
-      strips: walks by name. The text before the last "/" is the column, the text after
-        it the row: "sim/tuned" and "real/tuned" are side by side.
-      dots_per_inch: resolution; a panel is 5 inches wide.
+    under each foot's path, in the colour of that leg. The text before the last "/" of a
+    walk's name is the column, the text after it the row: "sim/tuned" and "real/tuned"
+    are side by side.
 
     Raises:
       BadValueError: there is no walk.

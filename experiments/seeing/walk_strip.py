@@ -64,9 +64,6 @@ class WalkStrip:
 def walk_strip(scene: Scene) -> WalkStrip:
     """Choose the part of a walk to show, and prepare it for drawing.
 
-    Args:
-      scene: a walk; its recording must have base pose and all joints at every tick.
-
     Raises:
       UnknownNameError: the recording lacks the base's position.
     """
@@ -93,13 +90,7 @@ def walk_strip(scene: Scene) -> WalkStrip:
 
 
 def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
-    """The ticks of the part to show: at the walk's end if `ended`, else in its middle.
-
-    Args:
-      time_s: (ticks,) times [s].
-      x_m: (ticks,) x of the base [m].
-      ended: whether the walk ended early, such as by a fall.
-    """
+    """The ticks to show: at the walk's end if `ended`, else in its middle."""
     stop = len(x_m)
     if not ended:
         middle = stop // 2
@@ -126,13 +117,7 @@ def _stills(time_s: FloatArray) -> IntArray:
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
-    """Those of the given stills, from the last one back, that do not overlap.
-
-    Args:
-      x_m: (ticks,) position of the robot's head [m].
-      stills: numbers of the ticks to choose from.
-      room_m: least distance between the heads of two stills [m].
-    """
+    """Those of the stills, from the last one back, whose heads are `room_m` apart."""
     chosen: list[int] = []
     for still in stills[::-1].tolist():
         if (np.abs(x_m[chosen] - x_m[still]) >= room_m).all():

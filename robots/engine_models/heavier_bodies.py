@@ -7,17 +7,11 @@ from groundwalk.errors import BadValueError, UnknownNameError
 
 
 def scale_mass(model: Any, data: Any, factor: float, bodies: Sequence[str]) -> None:
-    """Multiply the masses and rotational inertias of bodies.
+    """Multiply masses and inertias of an `MjModel`'s bodies; () means all.
 
     Changing masses alone would leave the inertias and MuJoCo's derived constants
     unchanged (MuJoCo issue 609); `mj_setConst` computes the constants again, and also
     puts `data` into the model's reference pose.
-
-    Args:
-      model: an `MjModel`, which is changed.
-      data: its `MjData`, which is changed.
-      factor: factor above 0.
-      bodies: names of the bodies; an empty sequence means all.
 
     Raises:
       BadValueError: the factor is not positive.

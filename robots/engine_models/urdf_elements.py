@@ -55,9 +55,9 @@ def add_hinge(
     Args:
       robot: the root element of the URDF.
       names: names of the joint, of the link that carries it and of the link it moves.
-      place_m: (3,) position of the joint in the carrying link's frame [m].
-      rpy: roll, pitch and yaw [rad] of the moved link's frame in that frame.
-      axis: (3,) axis of the joint in the moved link's frame.
+      place_m: (3,) position in the carrying link's frame [m].
+      rpy: roll, pitch and yaw [rad] of the moved link in that frame.
+      axis: (3,) axis in the moved link's frame.
       limit: lower and upper end [rad], largest torque [N m] and speed [rad/s].
     """
     name, parent, child = names

@@ -109,11 +109,7 @@ def read_adaptation(path: Path) -> Adaptation:
 
 
 def urdf_path(name: str, folder: Path) -> Path:
-    """Find the URDF that an adaptation names.
-
-    Args:
-      name: a path, or the name of a URDF in the Python package example-robot-data.
-      folder: the folder to which a relative path refers.
+    """Find the URDF that an adaptation names: a path in `folder`, or an example's name.
 
     Raises:
       UnknownNameError: there is neither such a file nor such an example.

@@ -37,7 +37,7 @@ from robots.scale import Scale
 
 
 def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
-    """Describe the robot of a URDF.
+    """Describe the robot of a URDF, under a name.
 
     Args:
       name: name of the robot in the description.
@@ -103,10 +103,7 @@ class _Adapter:
 
     @cached_property
     def _columns(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Columns of the left and the right leg's joints in joint arrays.
-
-        Both are in the order yaw, roll, pitch, knee, ankle pitch, ankle roll.
-        """
+        """Columns of the joints of both legs, from yaw to ankle roll."""
         given = self.adaptation.left_leg, self.adaptation.right_leg
         left, right = (
             tuple(self._index[joint] for joint in named or self._by_role(leg))

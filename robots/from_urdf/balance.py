@@ -17,12 +17,9 @@ a share of that with straight legs; distance of the hips ahead of the ankles [m]
 
 
 def crouch_rad(thigh_m: float, tibia_m: float, hip_m: float) -> tuple[float, float]:
-    """Hip pitch and knee angle [rad] of a crouched leg with its ankle below its hip.
+    """Hip pitch and knee [rad] of a crouched leg, its ankle `hip_m` below the hip.
 
-    Args:
-      thigh_m: length from hip to knee [m].
-      tibia_m: length from knee to ankle [m].
-      hip_m: height of the hip above the ankle [m].
+    `thigh_m` is the length from hip to knee, `tibia_m` that from knee to ankle [m].
     """
     bend = (hip_m**2 - thigh_m**2 - tibia_m**2) / (2 * thigh_m * tibia_m)
     knee = math.acos(min(max(bend, -1.0), 1.0))
@@ -37,13 +34,8 @@ def ankles_ahead_m(
 
     The distance is chosen so that with the `com_offset` of 10 mm of the gait Walk2014
     (rUNSWift), scaled to the robot, the weight is over the same part of the sole as on
-    the NAO.
-
-    Args:
-      posed: the robot.
-      crouch: angles [rad] of the legs' joints that put the ankles below the hips.
-      foot: the left foot.
-      scale: ratio of the robot's leg length to the NAO's.
+    the NAO. `crouch` has angles [rad] that put the ankles below the hips, `scale` is
+    the ratio of the leg length to the NAO's.
     """
     crouched = posed.in_pose(crouch)
     ankle_m = crouched.origin_m(posed.moving[foot.joint])
@@ -66,13 +58,8 @@ def find_shoulders(
 
     A shoulder is the first moving joint on a path from the root that lies to the left
     or right of the middle; of several on one side (such as ears), the one that moves
-    the most mass. Its axis must be within 45 degrees of the lateral axis.
-
-    Args:
-      tree: the robot's URDF.
-      placed: placement of each link in the root link's frame.
-      legs: names of the legs' joints, and the turn to x forward, y left, z up.
-      held: names of joints that are held still.
+    the most mass. Its axis must be within 45 degrees of the lateral axis. `placed`
+    holds each link's placement in the root link's frame; `held` joints do not move.
     """
     feet = [placed[tree.joints[leg[-1]].child].position_m for leg in legs[:2]]
     aside_m = _ASIDE * float(np.linalg.norm(feet[0] - feet[1]))

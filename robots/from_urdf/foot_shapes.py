@@ -77,10 +77,7 @@ def shape_points(posed: PosedTree, shape: UrdfShape) -> FloatArray:
 
 
 def _points(posed: PosedTree, joint: str) -> FloatArray:
-    """(points, 3) points [m] of a foot's shapes in the root's frame.
-
-    The visual shapes are used if there are no collision shapes.
-    """
+    """(points, 3) of a foot's collision (or visual) shapes in the root frame [m]."""
     for kind in ("collision", "visual"):
         parts = list(_of_kind(posed, joint, kind))
         if parts:

@@ -39,10 +39,7 @@ def find_legs(
 ) -> Legs:
     """Find the legs from the kinematics, unless the adaptation names them.
 
-    Args:
-      tree: the robot's URDF, z up.
-      placed: placement of each link in the root link's frame.
-      adaptation: the user's facts about the robot.
+    `placed` holds each link's placement in the root link's frame, in which z is up.
 
     Raises:
       BadModelError: there are no two legs of six joints, or the knees' ranges do not
@@ -117,8 +114,6 @@ def _facing(
 
     A knee with the range [a, b] about an axis can bend by a + b more one way than the
     other. A positive turn about an axis that points left swings the shin backward.
-
-    `across` (2,) is a horizontal unit vector between the feet.
     """
     bend = np.zeros(3)
     for leg in legs:

@@ -27,15 +27,11 @@ _Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 
 
 def read_mesh(path: Path) -> "Trimesh":
-    """Read all surfaces of a mesh file as one mesh of triangles.
+    """Read all surfaces of a .stl, .obj or .dae (COLLADA) file as one mesh.
 
-    Args:
-      path: a .stl, .obj or .dae (COLLADA) file.
-
-    Returns:
-      A mesh with `vertices` (points, 3) [m] and `faces` (triangles, 3), whose corners
-      run counterclockwise seen from outside. Points that the file has twice are kept
-      twice. COLLADA meshes are turned so that z is up.
+    It has `vertices` (points, 3) [m] and `faces` (triangles, 3), whose corners run
+    counterclockwise seen from outside. Points that the file has twice are kept twice.
+    COLLADA meshes are turned so that z is up.
 
     Raises:
       BadModelError: the file cannot be read, or has another format.
@@ -179,12 +175,7 @@ def _polygons(group: Element) -> list[IntArray]:
 def _instances(
     node: Element, placement: FloatArray
 ) -> Iterator[tuple[str, FloatArray]]:
-    """Name and (4, 4) placement of each geometry below a node of a COLLADA scene.
-
-    Args:
-      node: the node.
-      placement: (4, 4) transform from the node's frame to the scene's.
-    """
+    """Name and (4, 4) placement of each geometry below a node of a COLLADA scene."""
     for element in node:
         if element.tag == "instance_geometry":
             yield element.get("url", "")[1:], placement

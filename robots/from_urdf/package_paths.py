@@ -34,16 +34,12 @@ def example_robots() -> dict[str, Path]:
 
 
 def mesh_path(urdf: Path, name: str) -> Path:
-    """Find a file that a URDF names.
+    """Find a file that a URDF names by a path, or file:// or package:// address.
 
     An address `package://NAME/...` is searched in the folders of the environment
     variable ROS_PACKAGE_PATH, as in ROS; then in the folders above the URDF, one of
     which is usually the package or contains it; last where example-robot-data is
     installed, so that a copy of one of its URDFs works anywhere.
-
-    Args:
-      urdf: the URDF file.
-      name: a path relative to the URDF's folder, or a file:// or package:// address.
 
     Raises:
       BadModelError: there is no such file.

@@ -23,16 +23,12 @@ _END = 0.005
 
 
 def round_shapes(posed: PosedTree, joint: str, height_m: float) -> tuple[Capsule, ...]:
-    """Capsules of all links that move with a joint, in the joint's frame.
+    """Capsules of all links that move with a joint ("": the root), in its frame.
 
     A capsule runs from each link's joint to every joint that the link carries; the
     capsules of a link share its volume. A link with mass that carries no joint becomes
     a ball around its centre of mass, connected to the link above by a thin neck.
-
-    Args:
-      posed: the robot.
-      joint: the joint's name, "" for the root.
-      height_m: height of the root above the soles [m]; it bounds the radii.
+    `height_m`, the root's height above the soles, bounds the radii.
     """
     origin_m = posed.origin_m(joint)
     least_m, most_m = _THINNEST * height_m, _THICKEST * height_m

@@ -142,11 +142,7 @@ class UrdfTree:
         return names
 
     def placements(self, angles_rad: Mapping[str, float]) -> dict[str, Placement]:
-        """Placement of every link in the root link's frame.
-
-        Args:
-          angles_rad: joint angles [rad] by name; other joints are at zero.
-        """
+        """Placement of every link in the root link's frame; angles [rad] by name."""
         placed = {self.root: Placement.none()}
         for joint in self.joints.values():
             turn = angles_rad.get(joint.name, 0.0) * joint.axis
@@ -207,10 +203,7 @@ def _link(element: Element) -> UrdfLink:
 
 
 def _inertial(element: Element | None) -> Inertial | None:
-    """Read mass and inertia; an impossible inertia is replaced by a close possible one.
-
-    The result is None without an element or with a mass of zero.
-    """
+    """Mass and inertia, the latter a possible one; None without a mass."""
     mass = 0.0 if element is None else _number(element.find("mass"), "value") or 0.0
     if element is None or mass <= 0:
         return None
@@ -223,12 +216,11 @@ def _inertial(element: Element | None) -> Inertial | None:
 
 
 def _possible(inertia: FloatArray, mass_kg: float) -> FloatArray:
-    """Return an inertia matrix (3, 3) if a body can have it, else a close possible one.
+    """An inertia matrix (3, 3) if a body can have it, else a close possible one.
 
     If all moments are below a thousandth of those of a ball of water of that mass, as
-    in iCub's right leg, the ball's are used. Principal moments that are not positive
-    become a thousandth of the largest; if two do not add up to the third, all become
-    their mean, as with MuJoCo's `balanceinertia`.
+    in iCub's right leg, the ball's are used. Other wrong ones are corrected as by
+    MuJoCo's `balanceinertia`.
     """
     moments, axes = np.linalg.eigh(inertia)
     radius_m = (3 * mass_kg / (4 * np.pi * _WATER_KG_M3)) ** (1 / 3)
