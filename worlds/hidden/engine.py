@@ -1,8 +1,7 @@
 """The interface of the physics engines that simulate robots with hidden physics."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -18,8 +17,7 @@ WATCH_STEPS = 8
 4 ms, shorter than any tick and long enough for the noise of contacts to cancel."""
 
 
-@dataclass(frozen=True, eq=False)
-class BodySense:
+class BodySense(NamedTuple):
     """Readings of a robot's noiseless sensors, and the pose and velocity of its base.
 
     The ground's frame is that of the ground or of a fixed base's mount, even if tilted.

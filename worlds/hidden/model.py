@@ -43,12 +43,17 @@ def hidden_model(
     for effect in effects:
         if effect.kind.place in ("joint", "body"):
             effect.kind.change_part(_part(spec, plant, effect), effect.values)
-    spec.option.gravity = surroundings(effects).gravity_m_s2()
+    around = surroundings(effects)
+    spec.option.gravity = around.gravity_m_s2()
     if ground is not None:
         add_ground(spec, ground)
     model = spec.compile()
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
-    _set_friction(model, effects)
+    soles = model.geom_contype == 1
+    # Without a priority MuJoCo takes the larger coefficient of sole and ground.
+    model.geom_priority[soles] = 1
+    if around.friction is not None:
+        model.geom_friction[soles, 0] = around.friction
     return model
 
 
@@ -62,16 +67,3 @@ def _part(spec: Any, plant: HiddenPlant, effect: Hidden) -> Any:
         known = [other.name for other in spec.bodies if other.name != "world"]
         raise UnknownNameError("body", effect.place, known)
     return body
-
-
-def _set_friction(model: "mujoco.MjModel", effects: Sequence[Hidden]) -> None:
-    """Set the soles' friction, and let it alone count instead of the larger of two.
-
-    Without a priority MuJoCo takes the larger coefficient of sole and ground.
-    """
-    soles = model.geom_contype == 1
-    model.geom_priority[soles] = 1
-    for effect in effects:
-        friction = effect.kind.sole_friction(effect.values)
-        if friction is not None:
-            model.geom_friction[soles, 0] = friction

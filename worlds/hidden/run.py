@@ -1,7 +1,7 @@
 """Simulates one robot with hidden physics that follows commands."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -73,9 +73,8 @@ def run_hidden(
     world = hidden_engine(engine, plant, effects, clock.step_s, ground)
     height_m = 0.0
     if plant.description is not None and ground is not None:
-        height_m = float(
-            StartHeight(plant.description).heights_m(start_rad[None], [ground])[0]
-        )
+        start_height = StartHeight(plant.description)
+        height_m = float(start_height.heights_m(start_rad[None], [ground])[0])
     world.reset(start_rad, height_m)
     try:
         drive = HiddenDrive(plant, effects, world, clock.step_s, start_rad)
@@ -107,17 +106,10 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
         if ok and steps:
             drive.send(commands[-1])
             drive.advance(int(steps), zero)
-    felt = {
-        field.name: np.stack([getattr(sense, field.name) for sense in senses])
-        for field in fields(BodySense)
-    }
+    columns = zip(BodySense._fields, zip(*senses, strict=True), strict=True)
+    felt = {name: np.stack(column) for name, column in columns}
     return Run(
-        clock=clock,
-        command_rad=np.stack(commands),
-        encoder_rad=np.stack(encoders),
-        position_rad=np.stack(positions),
-        sense=felt,
-        ok=ok,
+        clock, np.stack(commands), np.stack(encoders), np.stack(positions), felt, ok
     )
 
 

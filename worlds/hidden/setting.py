@@ -8,51 +8,27 @@ import numpy as np
 from groundwalk.arrays import BoolArray, FloatArray
 from worlds.hidden.plant import HiddenPlant
 
-LEAST_MOTION_RAD = 0.08
+_LEAST_MOTION_RAD = 0.08
 """Range of a joint's commands [rad] above which the joint counts as moving. Excited
 joints have ten times as much, held ones none: insensitive within a factor of two."""
-LEAST_MOVED_M = 0.03
-"""A body counts as still if a box of this diagonal [m] holds its centre of mass at all
-times."""
+_LEAST_MOVED_M = 0.03
+"""A body whose centre of mass stays in a box of this diagonal [m] counts as still."""
 LEAST_LEVER_M = 0.02
 """Lever arm [m] of gravity about a joint that a body must reach at some time, so that
 its weight counts as noticeable at that joint."""
 _LEAST_TORQUE = 0.02
-"""Floor of a joint's usual torque, as a share of its servo's limit: effects at idle
-joints need a size above 0, too."""
+"""Floor of a joint's usual torque, as a share of its servo's limit, so that effects at
+idle joints have a size above 0, too."""
 _LEAST_SPEED_RAD_S = 0.5
-"""Floor of the top speed of a joint's command: effects at held joints need a size above
-0, too."""
-
-
-@dataclass(frozen=True, eq=False)
-class Bodies:
-    """How the nominal robot's b bodies move, and how their weight loads its j joints.
-
-    Attributes:
-      names: each joint's link in the order of the joints, then the trunk if it is free.
-      moved_m: (b,) diagonal of the smallest box that holds the centre of mass.
-      carried_by: (b, j) whether a joint moves the body relative to the base.
-      lever_m: (b, j) largest lever arm of the body's weight about a joint's axis in the
-        motion; 0 where the axis is vertical.
-      branch_lever_m: (j,) the same for the weight of all bodies beyond a joint.
-      arm_m: (j, 3) shortest vector from a joint's axis to its link's centre of mass,
-        link frame.
-    """
-
-    names: tuple[str, ...]
-    moved_m: FloatArray
-    carried_by: BoolArray
-    lever_m: FloatArray
-    branch_lever_m: FloatArray
-    arm_m: FloatArray
+"""Floor of a command's top speed, so that effects at held joints have a size, too."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scales:
-    """Torques, speeds, ranges and masses of the nominal robot in a motion.
+    """Torques, ranges and masses of the nominal robot's j joints and b bodies.
 
-    Sizes of hidden effects are drawn as shares of these.
+    `worlds.hidden.scales.scales` measures them in a motion. Sizes of hidden effects are
+    drawn as shares of them.
 
     Attributes:
       torque_nm: (j,) usual torque of each servo: 95th percentile of its absolute value.
@@ -64,10 +40,14 @@ class Scales:
       carried_kg: (j,) mass of all bodies beyond a joint.
       axis: (j, 3) each joint's axis in the frame of its link.
       moving_kg: mass of all bodies that can move.
-      bodies: motion of the bodies, and lever arms of their weights.
-
-    Example:
-      `worlds.hidden.scales.scales(plant, runs)` measures them.
+      bodies: link of each joint in their order, then the trunk if it is free.
+      moved_m: (b,) diagonal of the smallest box that holds the centre of mass.
+      carried_by: (b, j) whether a joint moves the body relative to the base.
+      lever_m: (b, j) largest lever arm of the body's weight about a joint's axis in the
+        motion; 0 where the axis is vertical.
+      branch_lever_m: (j,) the same for the weight of all bodies beyond a joint.
+      arm_m: (j, 3) shortest vector from a joint's axis to its link's centre of mass,
+        link frame.
     """
 
     torque_nm: FloatArray
@@ -79,37 +59,39 @@ class Scales:
     carried_kg: FloatArray
     axis: FloatArray
     moving_kg: float
-    bodies: Bodies
+    bodies: tuple[str, ...]
+    moved_m: FloatArray
+    carried_by: BoolArray
+    lever_m: FloatArray
+    branch_lever_m: FloatArray
+    arm_m: FloatArray
 
     @property
     def moving(self) -> BoolArray:
         """(j,) flags of the joints that are commanded to move."""
-        return np.asarray(self.asked_rad > LEAST_MOTION_RAD)
+        return np.asarray(self.asked_rad > _LEAST_MOTION_RAD)
 
     def moves(self, body: str) -> bool:
         """Whether a body's centre of mass moves noticeably, by at least 3 cm."""
-        return bool(self.bodies.moved_m[self._row(body)] >= LEAST_MOVED_M)
+        return bool(self.moved_m[self._row(body)] >= _LEAST_MOVED_M)
 
     def feels_weight(self, body: str) -> bool:
         """Whether the body's weight noticeably loads a joint that moves."""
-        levers_m = self.bodies.lever_m[self._row(body), self.moving]
+        levers_m = self.lever_m[self._row(body), self.moving]
         return bool(levers_m.max(initial=0.0) >= LEAST_LEVER_M)
 
     def carriers(self, body: str) -> int:
         """Number of joints that are commanded to move and move this body."""
-        return int(self.bodies.carried_by[self._row(body), self.moving].sum())
+        return int(self.carried_by[self._row(body), self.moving].sum())
 
     def _row(self, body: str) -> int:
-        return self.bodies.names.index(body)
+        return self.bodies.index(body)
 
 
 class Spot(NamedTuple):
     """Where an effect may be: index of a joint, and the name of its link or the trunk.
 
     An effect on a joint uses the first, an effect on a body the second.
-
-    Example:
-      `KINDS["backlash"].spots(plant, scales, joints)` lists possible spots of backlash.
     """
 
     joint: int
@@ -124,13 +106,9 @@ class Setting:
       plant: the nominal robot.
       scales: torques, speeds and masses of its motion without effects.
       spot: joint and body where the effect is.
-      ease: how easy the effect is to detect, from 0 (hard) to 1 (easy); negative values
-        make it harder still.
+      ease: how easy the effect is to detect, from 0 (hard) to 1 (easy), or below 0.
       duration_s: length of each recording.
       rng: draws signs, directions and times.
-
-    Example:
-      `Hidden.sized("backlash", setting)` is an effect at the setting's spot.
     """
 
     plant: HiddenPlant
@@ -171,11 +149,6 @@ class Setting:
         return float(hard * (easy / hard) ** self.ease)
 
     @property
-    def one_joint(self) -> bool:
-        """Whether the robot has a single joint."""
-        return len(self.plant.joints) == 1
-
-    @property
     def many_joints(self) -> bool:
         """Whether several moving joints, or a free base, move the spot's body."""
         return self.plant.floating or self.scales.carriers(self.spot.body) > 1
@@ -183,7 +156,7 @@ class Setting:
     @property
     def at_end(self) -> bool:
         """Whether the spot's body is its joint's link and the last one of a chain."""
-        carried = self.scales.bodies.carried_by[:, self.joint]
+        carried = self.scales.carried_by[:, self.joint]
         own = self.spot.body == self.plant.links[self.joint]
         return own and int(carried.sum()) == 1
 

@@ -27,6 +27,7 @@ class Surroundings:
       pitch_rad: dip of the ground, or of a fixed base's mount, towards the front (x).
       roll_rad: rise of the ground or mount towards the left (y).
       bumps_m: height of the bumps under a floating robot.
+      friction: coefficient between soles and ground; None for the nominal one.
     """
 
     command_delay_s: float = 0.0
@@ -35,27 +36,14 @@ class Surroundings:
     pitch_rad: float = 0.0
     roll_rad: float = 0.0
     bumps_m: float = 0.0
+    friction: float | None = None
 
     def tilt(self) -> FloatArray:
-        """(3, 3) rotation R_y(pitch) R_x(roll) from the ground's to the upright frame.
-
-        For a fixed base, the ground stands for the base's mount.
-        """
-        pitch, roll = self.pitch_rad, self.roll_rad
-        about_y = np.array(
-            [
-                [math.cos(pitch), 0, math.sin(pitch)],
-                [0, 1, 0],
-                [-math.sin(pitch), 0, math.cos(pitch)],
-            ]
-        )
-        about_x = np.array(
-            [
-                [1, 0, 0],
-                [0, math.cos(roll), -math.sin(roll)],
-                [0, math.sin(roll), math.cos(roll)],
-            ]
-        )
+        """(3, 3) rotation R_y(pitch) R_x(roll) from the ground's frame to upright."""
+        cos, sin = math.cos(self.pitch_rad), math.sin(self.pitch_rad)
+        about_y = np.array([[cos, 0, sin], [0, 1, 0], [-sin, 0, cos]])
+        cos, sin = math.cos(self.roll_rad), math.sin(self.roll_rad)
+        about_x = np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
         return np.asarray(about_y @ about_x)
 
     def gravity_m_s2(self) -> FloatArray:

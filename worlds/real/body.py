@@ -39,10 +39,11 @@ def _silent() -> Iterator[None]:
 
 def bullet_client() -> Any:
     """A new PyBullet client, without graphics, with PyBullet's functions as methods."""
-    with _silent():  # PyBullet prints a banner when it is imported
+    with _silent():  # PyBullet prints as it is imported, and as it connects
         import pybullet
         from pybullet_utils.bullet_client import BulletClient
-    return BulletClient(pybullet.DIRECT)
+
+        return BulletClient(pybullet.DIRECT)
 
 
 class BulletBody:

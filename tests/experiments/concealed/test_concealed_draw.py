@@ -199,11 +199,11 @@ def test_an_effect_is_only_on_robots_that_tell(drawn, plant, effect, possible):
 
 def test_a_pendulum_s_body_is_measured_as_geometry_says(drawn):
     motion, runs, nominal = drawn[0]["pendulum"]
-    assert motion.plant.links == nominal.bodies.names
+    assert motion.plant.links == nominal.bodies
     angle = np.concatenate([run.position_rad[run.clock.first :, 0] for run in runs])
     lever_m = 0.3 * np.abs(np.sin(angle)).max()
-    assert nominal.bodies.lever_m == pytest.approx(lever_m, rel=0.01)
-    assert nominal.bodies.branch_lever_m == pytest.approx(lever_m, rel=0.01)
+    assert nominal.lever_m == pytest.approx(lever_m, rel=0.01)
+    assert nominal.branch_lever_m == pytest.approx(lever_m, rel=0.01)
     box_m = 0.3 * np.hypot(np.ptp(np.sin(angle)), np.ptp(np.cos(angle)))
-    assert nominal.bodies.moved_m == pytest.approx(box_m, rel=0.01)
-    assert nominal.bodies.arm_m == pytest.approx(np.array([[0, 0, -0.3]]))
+    assert nominal.moved_m == pytest.approx(box_m, rel=0.01)
+    assert nominal.arm_m == pytest.approx(np.array([[0, 0, -0.3]]))

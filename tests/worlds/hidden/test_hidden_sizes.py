@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from worlds.hidden import KINDS, Hidden, Setting, Spot, hidden_plant
-from worlds.hidden.setting import Bodies, Scales
+from worlds.hidden.setting import Scales
 
 EASES = (-2.0, 0.0, 0.5, 1.0)  # as far as the sizing by information goes
 
@@ -13,14 +13,6 @@ def setting(ease, seed=0):
     """At the left knee of a NAO that swings by half a radian."""
     plant = hidden_plant("nao", floating=True)
     j, names = len(plant.joints), (*plant.links, "torso")
-    bodies = Bodies(
-        names=names,
-        moved_m=np.full(len(names), 0.1),
-        carried_by=np.ones((len(names), j), bool),
-        lever_m=np.full((len(names), j), 0.1),
-        branch_lever_m=np.full(j, 0.1),
-        arm_m=np.tile([0.0, 0.0, -0.1], (j, 1)),
-    )
     scales = Scales(
         torque_nm=np.full(j, 1.0),
         peak_nm=np.full(j, 2.0),
@@ -31,7 +23,12 @@ def setting(ease, seed=0):
         carried_kg=np.full(j, 1.0),
         axis=np.tile([0.0, 1.0, 0.0], (j, 1)),
         moving_kg=5.0,
-        bodies=bodies,
+        bodies=names,
+        moved_m=np.full(len(names), 0.1),
+        carried_by=np.ones((len(names), j), bool),
+        lever_m=np.full((len(names), j), 0.1),
+        branch_lever_m=np.full(j, 0.1),
+        arm_m=np.tile([0.0, 0.0, -0.1], (j, 1)),
     )
     joint = plant.joints.index("LKneePitch")
     spot = Spot(joint, plant.links[joint])

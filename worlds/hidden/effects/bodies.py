@@ -89,7 +89,7 @@ class ComOffset(_Weight):
         shift is away from or towards the axis: one to the side would act as a rotation
         of the whole link, and thus as an encoder offset.
         """
-        size_m, arm_m = s.part(0.05, 0.003), s.scales.bodies.arm_m[s.joint]
+        size_m, arm_m = s.part(0.05, 0.003), s.scales.arm_m[s.joint]
         length_m = float(np.linalg.norm(arm_m))
         if s.at_end and length_m >= LEAST_LEVER_M:
             shift = s.sign * size_m * arm_m / length_m

@@ -1,10 +1,7 @@
 """Hidden physics that is a force on one body: pushes and drag."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from worlds.hidden.effects.kind import HiddenKind, Push, Quantity, Values
 from worlds.hidden.plant import HiddenPlant
@@ -31,13 +28,9 @@ class ExternalForce(HiddenKind):
         """Law of the force: constant in the world frame from start for its duration."""
         force_n = np.array([values[axis] for axis in "xyz"])
         start_s, duration_s = values["start"], values["duration"]
-
-        def force(
-            time_s: float, velocity: Callable[[], FloatArray]
-        ) -> FloatArray | None:
-            return force_n if 0 <= time_s - start_s < duration_s else None
-
-        return force
+        return lambda time_s, velocity: (
+            force_n if 0 <= time_s - start_s < duration_s else None
+        )
 
     def size(self, s: Setting) -> dict[str, float]:
         """Force of 0.5 % (hard to detect) to 10 % (easy) of the moving parts' weight.
@@ -46,7 +39,7 @@ class ExternalForce(HiddenKind):
         joints move the body: elsewhere it could not be distinguished from a payload.
         """
         weight_n = s.scales.moving_kg * GRAVITY_M_S2
-        way = s.across if s.one_joint else s.direction
+        way = s.across if len(s.plant.joints) == 1 else s.direction
         force = s.part(0.1, 0.005) * weight_n * way
         if s.many_joints and s.rng.uniform() < _LASTING_SHARE:
             span = {"start": 0.0, "duration": 1.5 * s.duration_s}

@@ -29,9 +29,9 @@ class ContactFriction(_UnderFeet):
     quantities = (Quantity("coefficient", "1", 0.0, 10.0),)
     sizes = (0.2, 0.6)
 
-    def sole_friction(self, values: Values) -> float:
-        """The friction coefficient of the soles."""
-        return values["coefficient"]
+    def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
+        """Set the friction coefficient between soles and ground."""
+        surroundings.friction = values["coefficient"]
 
 
 class ContactCompliance(_UnderFeet):

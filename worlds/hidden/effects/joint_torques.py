@@ -150,12 +150,9 @@ class PeriodicTorque(HiddenKind):
         """Law of the torque: `torque` sin(2 pi frequency t + phase) at time t."""
         amplitude, frequency = values["torque"], values["frequency"]
         phase = values["phase"]
-
-        def wave(time_s: float, angle: float, speed: float, servo: float) -> float:
-            turns = 2 * math.pi * frequency * time_s
-            return amplitude * math.sin(turns + phase)
-
-        return wave
+        return lambda time_s, angle, speed, servo: (
+            amplitude * math.sin(2 * math.pi * frequency * time_s + phase)
+        )
 
     def size(self, s: Setting) -> dict[str, float]:
         """Torque of 2 % (hard to detect) to 20 % (easy) of the servo's usual torque."""

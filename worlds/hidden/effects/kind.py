@@ -28,25 +28,17 @@ velocity (3,) [m/s] to the force (3,) [N] in the next step, or None for no force
 _MOST = 0.15
 """Largest stiffness of a contact in units of inertia / step^2. Semi-implicit Euler is
 stable up to 4; this is far below, so that the contact's motion is resolved, too."""
-_DAMPING_RATIO = 1.0
-"""Damping of contacts as a share of critical damping, so that they do not ring."""
-_LAST = 1000
-"""Position in the list of kinds for one that states none: after all others."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """One parameter of a kind of hidden physics: its name, unit and sensible range.
+    """One parameter of a kind of hidden physics.
 
     Attributes:
       name: the `parameter` in an effect's text `name@place:parameter=value`.
       unit: such as "N m"; "1" for a plain number.
       low, high: sensible range; values outside of it are refused.
       default: value where none is given; None if one must be given.
-
-    Example:
-      >>> KINDS["backlash"].parameters["gap"].unit
-      'rad'
     """
 
     name: str
@@ -83,7 +75,7 @@ class StiffContact:
 
     def damping_nm_s_rad(self, stiffness_nm_rad: float) -> float:
         """Critical damping of a contact at the joint with this stiffness."""
-        return 2 * _DAMPING_RATIO * math.sqrt(stiffness_nm_rad * self.inertia_kg_m2)
+        return 2 * math.sqrt(stiffness_nm_rad * self.inertia_kg_m2)
 
 
 class HiddenKind:
@@ -94,9 +86,8 @@ class HiddenKind:
 
     Attributes:
       name: the `name` in an effect's text `name@place:parameter=value`.
-      rank: position in the list from which cases are drawn. Ranks of existing kinds are
-        fixed: a change would draw other cases from the same seed. A new kind does so,
-        too: sets that were sealed before are made with the commit that they state.
+      rank: position in the list from which cases are drawn; last by default. It is
+        fixed: a change, and a new kind, would draw other cases from the same seed.
       place: "joint", "body", or the one word that is this kind's only place.
       quantities: its parameters.
       outside: whether the diagnosis has no effect of this name.
@@ -105,15 +96,10 @@ class HiddenKind:
       apart: kinds that are never drawn into the same case, if `cancels` says so.
       sizes: value of the only parameter for an effect that is easy to detect, and for
         one that is hard; kinds with more parameters override `size`.
-
-    Example:
-      >>> from worlds.hidden import KINDS
-      >>> KINDS["backlash"].sizes
-      (0.06, 0.003)
     """
 
     name: ClassVar[str]
-    rank: ClassVar[int] = _LAST
+    rank: ClassVar[int] = 1000
     place: ClassVar[str] = "joint"
     quantities: ClassVar[tuple[Quantity, ...]]
     outside: ClassVar[bool] = False
@@ -145,16 +131,12 @@ class HiddenKind:
     def change_part(self, part: Any, values: Values) -> None:
         """Change the `mujoco.MjsJoint` or `MjsBody` at the effect's place."""
 
-    def sole_friction(self, values: Values) -> float | None:
-        """Friction coefficient between soles and ground; None leaves it unchanged."""
-        return None
-
     def foot_spring(self, values: Values, robot: Description) -> FootSpring | None:
         """Soft ground under each foot of a robot; None for hard ground."""
         return None
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Change signal delays, the gyroscope's bias, or the ground."""
+        """Change signal delays, the gyroscope's bias, the ground or its friction."""
 
     def push(self, values: Values) -> Push | None:
         """Law of a force at a body's centre of mass; None if this kind adds none."""
@@ -181,13 +163,7 @@ class HiddenKind:
     def spots(
         self, plant: HiddenPlant, scales: Scales, joints: Sequence[int]
     ) -> list[Spot]:
-        """Joints and bodies where a test case may have this effect; may be empty.
-
-        Args:
-          plant: the nominal robot.
-          scales: torques, speeds and masses of the robot's motion without effects.
-          joints: indices of the joints that may be chosen.
-        """
+        """Spots at any of these joints where a test case may have this effect."""
         if not self.possible(plant):
             return []
         found = [Spot(joint, plant.links[joint]) for joint in joints]

@@ -28,7 +28,7 @@ class EncoderOffset(HiddenKind):
 
     def shows(self, plant: HiddenPlant, scales: Scales, spot: Spot) -> bool:
         """Whether gravity shows it: on a fixed base the joint has to carry weight."""
-        lever_m = scales.bodies.branch_lever_m[spot.joint]
+        lever_m = scales.branch_lever_m[spot.joint]
         return plant.floating or bool(lever_m >= LEAST_LEVER_M)
 
 
