@@ -19,7 +19,7 @@ from experiments.runs.options import RunOptions, check_at_least
 from experiments.runs.progress import progress
 from experiments.stress.curves import curves_of
 from experiments.stress.families import FAMILIES, FLAT, Place, leg_length_m
-from experiments.stress.figure import draw_comparison, draw_heat_maps
+from experiments.stress.figure import draw_stress
 from experiments.stress.page import HALF_HEADINGS, half_rows, write_stress_page
 from experiments.stress.walks import walk_at
 from experiments.stress.worst_rollouts import write_worst
@@ -101,8 +101,7 @@ def main(config: TerrainStress) -> None:
     result = {"curves": curves, "worst": worst}
     folder.write_json(RESULT, result)
     with extra("the pictures"):
-        draw_comparison(curves, folder.path)
-        draw_heat_maps(curves, folder.path)
+        draw_stress(curves, folder.path)
     write_stress_page(folder, curves)
     if config.json:
         print_json(result)

@@ -43,7 +43,8 @@ def _curve(
     ]
     half = None
     if family != FLAT:
-        columns = ([rung[name] for rung in rungs] for name in _COUNTS)
+        keys = ("severity", "falls", "trials")
+        columns = ([rung[key] for rung in rungs] for key in keys)
         half = dataclasses.asdict(half_fall(*columns))
     known = FAMILIES.get(family)
     return {
@@ -56,11 +57,6 @@ def _curve(
         "half": half,
         "rungs": rungs,
     }
-
-
-_COUNTS = ("severity", "falls", "trials")
-"""Keys of a rung, a curve's entry for one severity, in the order of the arguments of
-`half_fall`."""
 
 
 def trials_of(cell: Cell, gait: str) -> list[Trial]:

@@ -5,7 +5,7 @@ softness here.
 """
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -34,16 +34,13 @@ class Family(Ladder):
     options: Callable[[float], dict[str, float]] = lambda severity: {}
 
 
-def _shapes() -> Iterator[tuple[str, Family]]:
-    """Yield name and family of each severity ladder of each terrain."""
-    for terrain, ground in GROUNDS.items():
-        for name, ladder in ground.ladders.items():
-            yield name, Family(**vars(ladder), terrain=terrain)
-
-
 FAMILIES: Mapping[str, Family] = MappingProxyType(
     {
-        **dict(_shapes()),
+        name: Family(**vars(ladder), terrain=terrain)
+        for terrain, ground in GROUNDS.items()
+        for name, ladder in ground.ladders.items()
+    }
+    | {
         "friction": Family(
             "coefficient", "1", 0.6, 0.02, options=lambda mu: {"friction": mu}
         ),
@@ -86,15 +83,11 @@ class Place:
         return f"{self.family}-{self.severity:.3g}" if self.severity else self.family
 
     def ground(self, leg_m: float, begin: float, seed: int) -> TerrainSpec:
-        """The ground of one trial at this place.
+        """The ground of one trial, for a leg of this length [m].
 
-        Args:
-          leg_m: length of the robot's leg [m].
-          begin: radius of the flat area around the start, in leg lengths.
-          seed: seed of the ground.
+        It is flat around the start, with the radius `begin` in leg lengths.
         """
-        name: str = FLAT
-        parameters: dict[str, float] = {}
+        name, parameters = FLAT, {}
         if self.family != FLAT:
             family = FAMILIES[self.family]
             name = family.terrain

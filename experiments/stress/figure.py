@@ -29,13 +29,9 @@ def heat_map_name(gait: str) -> str:
     return f"terrain_stress_{gait}.png"
 
 
-def draw_comparison(curves: Sequence[Curve], folder: Path) -> None:
-    """Write the comparison of all gaits as a PNG file; see `comparison_figure`."""
+def draw_stress(curves: Sequence[Curve], folder: Path) -> None:
+    """Write PNG files: the comparison of all gaits, and the falls of each."""
     write_figure(comparison_figure(curves), folder / COMPARISON)
-
-
-def draw_heat_maps(curves: Sequence[Curve], folder: Path) -> None:
-    """Write a PNG file with the falls of each gait; see `heat_map_figure`."""
     for gait in _each(curves, "gait"):
         own = [curve for curve in curves if curve["gait"] == gait]
         write_figure(heat_map_figure(own), folder / heat_map_name(gait))
@@ -102,16 +98,10 @@ def comparison_figure(curves: Sequence[Curve]) -> "Figure":
     figure = Figure(figsize=size, dpi=200, layout="constrained")
     panels = figure.subplots(1, len(settings), sharey=True, squeeze=False)[0]
     for panel, setting in zip(panels, settings, strict=True):
-        for k, gait in enumerate(gaits):
-            for row, family in enumerate(families):
-                key = (*setting, family, gait)
-                own = [
-                    c for c in ladders if (*_setting(c), c["family"], c["gait"]) == key
-                ]
-                y = row + 0.6 * ((k + 0.5) / len(gaits) - 0.5)
-                colour = COLOURS[k % len(COLOURS)]
-                for curve in own:
-                    _half(panel, curve, y, colour, gait if row == 0 else None)
+        for curve in ladders:
+            if _setting(curve) == setting:
+                row = families.index(curve["family"])
+                _half(panel, curve, row, gaits)
         _frame(panel, ladders, families)
         panel.set_title(_name(curves, setting))
     panels[0].invert_yaxis()
@@ -124,11 +114,11 @@ def comparison_figure(curves: Sequence[Curve]) -> "Figure":
     return figure
 
 
-def _half(
-    panel: "Axes", curve: Curve, y: float, colour: str, label: str | None
-) -> None:
+def _half(panel: "Axes", curve: Curve, row: int, gaits: Sequence[str]) -> None:
     """Draw where half of a curve's trials fall: severity and its 95 % interval."""
-    half = curve["half"]
+    half, k = curve["half"], gaits.index(curve["gait"])
+    y = row + 0.6 * ((k + 0.5) / len(gaits) - 0.5)
+    colour, label = COLOURS[k % len(COLOURS)], None if row else curve["gait"]
     ends = [_at(curve, half[name]) for name in ("low", "high")]
     low = -_EDGE if ends[0] is None else ends[0]
     high = 1 + _EDGE if ends[1] is None else ends[1]

@@ -14,26 +14,12 @@ from experiments.stress.figure import COMPARISON, heat_map_name
 from experiments.stress.severity_text import family_text, half_text, severity_text
 
 QUESTION = "How rough may the ground be before these gaits fall?"
-HALF_HEADINGS = (
-    "robot",
-    "world",
-    "gait",
-    "family",
-    "severity",
-    "half of the trials fall",
-)
+SETTING = ("robot", "world", "gait", "family")
+HALF_HEADINGS = (*SETTING, "severity", "half of the trials fall")
 CELL_HEADINGS = (
-    "robot",
-    "world",
-    "gait",
-    "family",
-    "severity",
-    "speed [cm/s] ± s.d.",
-    "falls",
-    "95 % interval",
-    "distance to fall [m]",
-    "what came before",
-)
+    *SETTING, "severity", "speed [cm/s] ± s.d.", "falls", "95 % interval",
+    "distance to fall [m]", "what came before",
+)  # fmt: skip
 NOTES = (
     "Every gait walked on the same grounds from the same start poses. Speed is the",
     "mean forward speed; in a trial with a fall, until the fall; s.d. is the standard",
@@ -92,7 +78,7 @@ def cause_rows(curves: Sequence[Curve]) -> list[list[str]]:
 
 def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
     """Write a run's report page, `result.md` and `report.html`, beside its pictures."""
-    causes = ("robot", "world", "gait", "family", "falls", *Cause)
+    causes = (*SETTING, "falls", *Cause)
     body = [
         *markdown_table(HALF_HEADINGS, half_rows(curves)),
         "",
@@ -106,12 +92,8 @@ def write_stress_page(folder: RunFolder, curves: Sequence[Curve]) -> None:
     ]
     for gait in dict.fromkeys(curve["gait"] for curve in curves):
         body += ["", f"![Falls of {gait}]({heat_map_name(gait)})"]
-    body += [
-        "",
-        "## Every severity",
-        "",
-        *markdown_table(CELL_HEADINGS, cell_rows(curves)),
-    ]
+    body += ["", "## Every severity", ""]
+    body += markdown_table(CELL_HEADINGS, cell_rows(curves))
     answer = list(stress_answer(curves))
     Report(QUESTION, answer, body, Origin.of_run(folder)).write(folder.path)
 
@@ -125,19 +107,16 @@ def stress_answer(curves: Sequence[Curve]) -> Iterator[str]:
         rungs = [rung for curve in own for rung in curve["rungs"]]
         falls, trials = (sum(rung[k] for rung in rungs) for k in ("falls", "trials"))
         flat = next(c["rungs"][0] for c in own if c["family"] == FLAT)
+        halves = ", ".join(
+            f"{family_text(curve['family'])} {half_text(curve, interval=False)}"
+            for curve in own
+            if curve["half"] is not None
+        )
         yield (
             f"In the {where}, {gait} ({robot}) falls in {falls} of {trials} trials, "
             f"{flat['falls']} of {flat['trials']} on flat ground. Half of the trials "
-            f"fall at: {_halves(own)}."
+            f"fall at: {halves}."
         )
-
-
-def _halves(curves: Sequence[Curve]) -> str:
-    known = [curve for curve in curves if curve["half"] is not None]
-    return ", ".join(
-        f"{family_text(curve['family'])} {half_text(curve, interval=False)}"
-        for curve in known
-    )
 
 
 def _setting(curve: Curve) -> list[str]:

@@ -36,14 +36,9 @@ memory in the real world (PyBullet)."""
 
 @dataclass(frozen=True)
 class Score:
-    """Summary of the trials of one gait in one world.
+    """Trials of one gait in one world: mean speed and its standard deviation, falls.
 
-    Attributes:
-      speed_cm_s: forward speed [cm/s], the mean over the trials; the speed of a trial
-        with a fall is that until the fall.
-      speed_std: standard deviation of the speed over the trials [cm/s].
-      falls: number of trials that ended with a fall.
-      trials: number of trials.
+    The forward speed of a trial with a fall is that until the fall.
     """
 
     speed_cm_s: float

@@ -46,20 +46,10 @@ standard deviation of 0.01 rad, so that no gait wins that needs one exact pose."
 
 @dataclass(frozen=True)
 class SearchPlan:
-    """Options of a search: robot, ground, first gait, and size of the search.
+    """Options of a search, as of `groundwalk optimize-gait`.
 
-    Attributes:
-      robot: name or file of the robot.
-      start: name or file of the gait that the search starts from.
-      terrain: the ground in the sim, as text such as "lumps:amplitude_m=0.005".
-      sim: run folder of a diagnosis whose effects are added to the sim; None for the
-        plain sim.
-      population: gaits tried in each generation.
-      generations: number of generations.
-      sigma: standard deviation of the first generation, as a share of each
-        parameter's range.
-      seed: every random number follows from it.
-      threads: processor threads; 0 for all.
+    `start` is the name or file of a gait; `sim` is the run folder of a diagnosis, whose
+    effects are added to the sim.
     """
 
     robot: str = "nao"
@@ -90,7 +80,7 @@ class SearchPlan:
     def seeds(self) -> tuple[np.random.SeedSequence, ...]:
         """Seeds of CMA-ES, of the grounds, of the final ratings, of the later trials.
 
-        None of the four depends on the number of generations.
+        They do not depend on the number of generations.
         """
         of_search, of_trials = np.random.SeedSequence(self.seed).spawn(2)
         return (*of_search.spawn(3), of_trials)
@@ -103,27 +93,15 @@ class SearchPlan:
 
 
 def search_gait(plan: SearchPlan, folder: RunFolder) -> Gait:
-    """Search for the best gait, with a checkpoint after each generation.
+    """The best of all generations' mean gaits, by a rating after the search.
 
-    Args:
-      plan: options of the search.
-      folder: run folder for checkpoint and history; generations that it already holds
-        are not repeated.
-
-    Returns:
-      The best of all generations' mean gaits, by a rating after the search.
+    Generations that the run folder already holds are not repeated.
     """
     of_samples, *_ = plan.seeds()
-    grounds = plan.grounds(plan.generations)
-
-    def begin() -> GaitSearch:
-        return GaitSearch(
-            load_gait(plan.start), plan.population, plan.sigma, of_samples
-        )
-
+    start, grounds = load_gait(plan.start), plan.grounds(plan.generations)
     means = run_search(
         folder.path / CHECKPOINT,
-        begin,
+        lambda: GaitSearch(start, plan.population, plan.sigma, of_samples),
         lambda number, strategy: _generation(plan, strategy, grounds[number].make()),
         plan.generations,
         lambda entries: folder.write_json(HISTORY, {"generations": entries}),
@@ -140,22 +118,11 @@ def rate(
     recorder: Recorder | None = None,
     on_end: Callable[[], object] = lambda: None,
 ) -> tuple[Trials, FloatArray]:
-    """Let n gaits walk in one sim, and compute the rewards that the search uses.
+    """Let n gaits walk in one sim, and compute the rewards (n,) [cm/s] of the search.
 
     Only the ground and (if the rules spread them) the start poses are random: the same
-    gait on the same ground with the same pose gives the same bits again.
-
-    Args:
-      plan: gives robot, sim and threads.
-      tried: n gaits, or their vectors (n, 16).
-      grounds: n grounds; give one object n times to share its memory.
-      poses: n seeds of the start poses; needed only if the rules spread the poses.
-      rules: time limit of a walk, and spread of the start poses.
-      recorder: records every tick; None for no recording.
-      on_end: called once at the end of each walk.
-
-    Returns:
-      Distance, duration and end of each walk, and the rewards (n,) [cm/s].
+    gait on the same ground with the same pose gives the same bits again. The other
+    arguments are those of `experiments.walking.trials.walk_trials`.
     """
     description = robots.get(plan.robot)
     noiseless = [np.random.SeedSequence(0)] * len(tried)

@@ -35,14 +35,10 @@ class Recorder:
         support: npt.ArrayLike,
         active: BoolArray,
     ) -> None:
-        """Add one tick of the robots that are still active.
+        """Add one tick of those of the n robots that are still active (n,).
 
-        Args:
-          observation: measurements of the n robots before the command took effect.
-          truth: poses and velocities of the robots' bases at that time.
-          command_rad: (n, joints) position targets [rad] of this tick; NaN for none.
-          support: (n,) the supporting leg: 1 left, -1 right, 0 both.
-          active: (n,) whether a robot's trial still runs; others are not recorded.
+        Observation and truth are from before the command (n, joints) [rad] took effect;
+        a target is NaN for none. Support (n,) is 1 for left, -1 for right, 0 for both.
         """
         for robot in self._robots:
             if active[robot]:

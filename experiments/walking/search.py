@@ -26,16 +26,7 @@ takes from the better half."""
 
 
 def check_search(population: int, sigma: float) -> None:
-    """Refuse a population or a spread that CMA-ES cannot use.
-
-    Args:
-      population: number of gaits in a generation.
-      sigma: standard deviation of the first generation, as a share of each parameter's
-        range.
-
-    Raises:
-      BadValueError: the population is smaller than 4, or sigma is not in (0, 1].
-    """
+    """Refuse (BadValueError) what CMA-ES cannot use; the arguments are a `Budget`'s."""
     if population < SMALLEST_POPULATION:
         raise BadValueError(
             f"population is {population}; it must be at least {SMALLEST_POPULATION}"
@@ -57,7 +48,7 @@ class _NormalSource:
 class GaitSearch:
     """CMA-ES over gaits: `ask` draws samples, `tell` takes their rewards.
 
-    A search can be saved as bytes; after reading it continues with the same bits.
+    A search can be saved as bytes, and then goes on with the same bits.
     """
 
     def __init__(
@@ -67,15 +58,7 @@ class GaitSearch:
         sigma: float,
         seed: np.random.SeedSequence,
     ) -> None:
-        """Begin a search at a gait.
-
-        Args:
-          start: the mean of the first generation.
-          population: number of gaits in a generation.
-          sigma: standard deviation of the first generation, as a share of each
-            parameter's range.
-          seed: seed of the samples.
-        """
+        """Begin at a gait; `population` and `sigma` are those of a `Budget`."""
         import cma
 
         check_search(population, sigma)
@@ -151,11 +134,8 @@ gaits, so that rewards differ only because of the gaits."""
 class Budget:
     """The size of a search.
 
-    Attributes:
-      population: number of gaits tried in each generation.
-      generations: number of generations.
-      sigma: standard deviation of the first generation, as a share of each parameter's
-        range.
+    `sigma` is the standard deviation of the first generation, as a share of each
+    parameter's range.
     """
 
     population: int
@@ -184,8 +164,8 @@ def run_search(
       generation: function of the generation's number (from 0) and the search, which
         asks the search for gaits, rates them, tells the rewards and returns a record.
       generations: total number of generations.
-      note: called after each generation with the records of all generations so far;
-        each record contains the `mean_gait` that its generation began with.
+      note: called after each generation with all records so far, each with the
+        `mean_gait` that its generation began with.
 
     Returns:
       (generations + 1, 16) vectors of the mean gaits, from the first to the last.
@@ -219,14 +199,10 @@ def tune(
     rater: Rater,
     seed: np.random.SeedSequence,
 ) -> Gait:
-    """Search for the best gait, and choose it among the means of all generations.
+    """Search from a gait on, and choose the best of the means of all generations.
 
-    Args:
-      checkpoint: a file that is written after every generation.
-      start: the mean of the first generation.
-      budget: size of the search.
-      rater: rates gaits in the search, and `RATINGS` times after it.
-      seed: seed of the search and of all ratings.
+    The means are rated `RATINGS` times after the search. The checkpoint is a file that
+    is written after every generation; all randomness follows from the seed.
     """
     of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
 

@@ -21,15 +21,10 @@ def make_sim(
     options: WorldOptions,
     correction: Path | None = None,
 ) -> World:
-    """Make a sim with one robot on each ground.
+    """Make a sim with one robot on each ground, and a seed of sensor noise for each.
 
-    Args:
-      description: the robot model.
-      grounds: one per robot; give one object n times to share its memory.
-      seeds: one per robot, for its sensor noise.
-      options: options of the sim.
-      correction: run folder or `corrected.json` of a diagnosis, whose effects are added
-        to the sim; None for the plain sim.
+    The effects of the correction, run folder or `corrected.json` of a diagnosis, are
+    added to it.
 
     Raises:
       BadModelError: the correction is no diagnosis of this robot, or the sim cannot
@@ -47,7 +42,7 @@ def check_correction(
 ) -> Model:
     """Check that the sim can simulate the effects of a diagnosis, and return them.
 
-    Arguments and errors are those of `make_sim`.
+    Raises the errors of `make_sim`.
     """
     plant = sim_plant(description, options)
     model = load_correction(correction, plant)

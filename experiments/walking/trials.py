@@ -35,11 +35,11 @@ class TrialRules:
 
     def __post_init__(self) -> None:
         """Refuse limits that are not positive, and a negative spread."""
+        allowed = {"course_m": None, "start_spread_rad": 0}
         for name, value in vars(self).items():
-            if value is None and name == "course_m":
+            if name in allowed and value == allowed[name]:
                 continue
-            positive = value > 0 or (value == 0 and name == "start_spread_rad")
-            if not (math.isfinite(value) and positive):
+            if not (math.isfinite(value) and value > 0):
                 raise BadValueError(f"{name} is {value}; it must be positive")
 
 
@@ -112,18 +112,10 @@ FALL_PENALTY_CM_S = 15.0
 def reward_cm_s(
     trials: Trials, limit_s: float, fall_penalty_cm_s: float = FALL_PENALTY_CM_S
 ) -> FloatArray:
-    """Reward of each trial for a search: forward speed minus a penalty for a fall.
+    """(n,) rewards of trials for a search: forward speed minus a penalty for a fall.
 
     The speed is the distance over the whole time limit, even after a fall. If it were
     the speed until the fall, the search would prefer a sprint that ends in a fall.
-
-    Args:
-      trials: distance and end of each trial.
-      limit_s: duration of a trial without a fall [s].
-      fall_penalty_cm_s: penalty of a fall [cm/s].
-
-    Returns:
-      (n,) rewards [cm/s].
 
     Example:
       >>> trials = Trials(np.array([0.5]), np.array([2.0]), (End.FALL,))
@@ -137,15 +129,9 @@ def reward_cm_s(
 def start_pose(
     engine: WalkEngine, rules: TrialRules, seeds: Sequence[np.random.SeedSequence]
 ) -> FloatArray:
-    """The joint angles at the start of n trials.
+    """(n, joints) angles [rad] at the start of trials of the engine's n gaits.
 
-    Args:
-      engine: the walk engine of the n gaits.
-      rules: give the standard deviation of the poses.
-      seeds: n seeds; not used if that standard deviation is 0.
-
-    Returns:
-      (n, joints) joint angles [rad].
+    The n seeds are not used if the rules do not spread the poses.
     """
     pose_rad = engine.start_pose()
     if rules.start_spread_rad == 0:

@@ -8,7 +8,7 @@ import pytest
 from built_falls import edge, flat, pushed, slope, strider, walk, weak
 
 import robots
-from experiments.stress import fall_cause_events as events
+from experiments.stress import fall_cause as events
 from experiments.stress.fall_cause import Cause, fall_cause
 from experiments.stress.fall_cause_signals import Signals
 from experiments.stress.families import leg_length_m
