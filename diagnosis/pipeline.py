@@ -16,7 +16,7 @@ from diagnosis.conclude.answer import believed_effects, verdict_kind, without_un
 from diagnosis.conclude.confidence import alternatives
 from diagnosis.conclude.detectable import smallest_detectable
 from diagnosis.conclude.held_out_errors import (
-    HeldOutErrors,
+    held_out_errors,
     larger_than_learned,
     model_refuted,
 )
@@ -244,8 +244,8 @@ def _tested(
     both, test = data.calibrated(winner.model if winner else ())
     refitted = fit_all(both, [winner.model])[0] if winner else None
     model = refitted.model if refitted else ()
-    errors = HeldOutErrors((data.learned, data.test), both, test, result, model, seed)
-    return _Tested(result, kind, refitted, both, test, errors.fit())
+    fit = held_out_errors((data.learned, data.test), both, test, result, model, seed)
+    return _Tested(result, kind, refitted, both, test, fit)
 
 
 def _verdict(

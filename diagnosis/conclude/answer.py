@@ -1,18 +1,16 @@
 """Decides the kind of verdict that follows from a search, and its effects."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from diagnosis.audit.result import Audit
-from diagnosis.conclude.confidence import confusable, gap, probability, twins
+from diagnosis.conclude.confidence import alike, gap, probability
 from diagnosis.conclude.estimates import estimates
 from diagnosis.effects.library import effect
-from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict import Found, VerdictKind, When
+from diagnosis.verdict import Found, VerdictKind
 
 LEAST_CLOSED = 0.95
 """Share of the nominal sim's energy (half the sum of squared residuals) above the noise
@@ -34,11 +32,8 @@ def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
     """Remove the effect that was added last if it is neither certain nor a large gain.
 
     Two simulators of the same physics always differ a little, and some effect always
-    explains a part of the difference. The only effect of a model stays.
-
-    Args:
-      searched: a search result.
-      least_gain: gain [nats] that the search required of each effect.
+    explains a part of the difference. The only effect of a model stays. `least_gain`
+    [nats] is the gain that the search required of each effect.
     """
     winner = searched.winner
     if winner is None or searched.chosen == 1:
@@ -53,17 +48,18 @@ def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
 
 def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
     """The kind of verdict: "effects", "none", "unknown" or "not_identifiable"."""
-    selected, fitted = searched.nothing, searched.nothing_fit
-    if searched.winner:
-        selected, fitted = searched.winner.selected, searched.winner.fit.energy
+    selected, fitted, closed = searched.nothing, searched.nothing_fit, 0.0
+    winner = searched.winner
+    if winner:
+        selected, fitted = winner.selected, winner.fit.energy
+        closed = searched.closed(winner)
     much = selected > (1 + MOST_LEFT) * searched.floor
     much |= fitted > (1 + MOST_LEFT) * searched.floor_fit
-    closed = searched.closed(searched.winner) if searched.winner else 0.0
     if much and closed < LEAST_CLOSED:
         return "unknown"
     still = set(plant.joints) - audited.moving
     at_rest = still | plant.at_rest(still)
-    if searched.winner and not {one.place for one in searched.winner.model} <= at_rest:
+    if winner and not {one.place for one in winner.model} <= at_rest:
         return "effects"
     return "not_identifiable" if still else "none"
 
@@ -81,30 +77,18 @@ def believed_effects(
     if refitted is None or searched.winner is None:
         return ()
     values = estimates(both, refitted)
+    first_s = min(float(trace.time_s[0]) for trace in both.traces)
+    last_s = max(float(trace.time_s[-1]) for trace in both.traces)
     found = [
         Found(
             name=placed.name,
             place=placed.place,
             parameters=own,
             probability=probability(searched, placed),
-            confusable_with=_distinct(
-                confusable(searched, placed) + twins(both.plant, placed)
-            ),
-            when=_when(both, placed),
+            confusable_with=alike(searched, both.plant, placed),
+            when=effect(placed.name).acted(placed, first_s, last_s),
             native=effect(placed.name).native,
         )
         for placed, own in zip(refitted.model, values, strict=True)
     ]
     return tuple(sorted(found, key=lambda one: -one.probability))
-
-
-def _distinct(effects: Sequence[PlacedEffect]) -> tuple[PlacedEffect, ...]:
-    """Effects without repetitions, in their order."""
-    return tuple(dict.fromkeys(effects))
-
-
-def _when(both: Predictor, placed: PlacedEffect) -> When:
-    """When an effect acted: always, or from when to when in the recordings' time."""
-    first_s = min(float(trace.time_s[0]) for trace in both.traces)
-    last_s = max(float(trace.time_s[-1]) for trace in both.traces)
-    return effect(placed.name).acted(placed, first_s, last_s)

@@ -37,9 +37,12 @@ def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect,
     return tuple(others.values())
 
 
-def twins(plant: Plant, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects that no recording of this robot can distinguish from `placed`."""
-    return effect(placed.name).twins(plant, placed.place)
+def alike(
+    found: SearchResult, plant: Plant, placed: PlacedEffect
+) -> tuple[PlacedEffect, ...]:
+    """Effects that may be true instead of `placed`, in these or in any recordings."""
+    twins = effect(placed.name).twins(plant, placed.place)
+    return tuple(dict.fromkeys((*confusable(found, placed), *twins)))
 
 
 def alternatives(
@@ -47,9 +50,7 @@ def alternatives(
 ) -> tuple[tuple[PlacedEffect, ...], ...]:
     """Other models with as many effects as the winner that explain the data as well.
 
-    Args:
-      found: the result of a search.
-      kind: kind of the verdict; for "not_identifiable" the winner is included.
+    For the verdict "not_identifiable" the winner is included.
     """
     winner = found.winner
     if winner is None:
@@ -64,10 +65,9 @@ def alternatives(
 
 
 def gap(found: SearchResult, placed: PlacedEffect) -> float:
-    """How much less plausible the best model without an effect is than the winner.
+    """How much less plausible [nats] the best model without an effect is.
 
-    Returns:
-      A difference [nats] of at least 0; infinite if no model without it was tried.
+    At least 0, compared with the winner; infinite if no model without it was tried.
     """
     same = {placed.key, *(grown.key for grown in grown_from(placed))}
     without = [
@@ -80,9 +80,6 @@ def gap(found: SearchResult, placed: PlacedEffect) -> float:
 
 
 def probability(found: SearchResult, placed: PlacedEffect) -> float:
-    """Probability, 0.49 to 0.98, that an effect of the winning model is right.
-
-    It follows from how much less plausible [nats] the best model without it is.
-    """
+    """Probability, 0.49 to 0.98, that an effect of the winning model is right."""
     odds = SLOPE * np.log1p(gap(found, placed) / EVEN_NATS)
     return float(MOST / (1 + np.exp(-odds)))

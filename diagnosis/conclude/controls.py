@@ -1,7 +1,10 @@
-"""Controls of a diagnosis: wrong models that must predict worse than the one found."""
+"""Controls of a diagnosis: wrong models that must predict worse than the one found.
+
+A diagnosis is convincing if they all predict held-out recordings worse.
+"""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,6 +12,7 @@ from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.search.result import without_each
 
 MOST = 4
 """Number of wrong models that are fitted to find the best one: those with the smallest
@@ -18,66 +22,46 @@ STEPS = 4
 """Most steps of the fit of a wrong model, enough for a comparison."""
 
 
-@dataclass(frozen=True, eq=False)
-class Controls:
-    """Models that differ from the one found in its main effect.
+def controls_of(
+    predictor: Predictor,
+    model: Model,
+    alike: Collection[str],
+    rng: np.random.Generator,
+) -> dict[str, Model | None]:
+    """Fit models that differ from the one found in its main effect.
 
-    A diagnosis is convincing if they all predict held-out recordings worse. The main
-    effect is the one whose removal increases the error most.
+    The main effect is the one whose removal increases the error most.
 
-    Attributes:
-      without: the other effects alone, fitted again.
-      wrong_place: the main effect moved to the best other place; None if there is none.
-      wrong_effect: the main effect replaced by another one at the same place, chosen at
-        random; None if no other can be there.
+    Args:
+      predictor: predictor of the data to fit.
+      model: the model found, with at least one effect.
+      alike: keys "effect@place" of effects that may be the truth as well and therefore
+        are no controls.
+      rng: chooses the wrong effect.
+
+    Returns:
+      "without": the other effects alone; "wrong_place": the main effect moved to the
+      best other place; "wrong_effect": it is replaced by another one at the same place,
+      chosen at random. None if there is no such model.
     """
-
-    without: Model
-    wrong_place: Model | None
-    wrong_effect: Model | None
-
-    @classmethod
-    def of(
-        cls,
-        predictor: Predictor,
-        model: Model,
-        alike: Collection[str],
-        rng: np.random.Generator,
-    ) -> "Controls":
-        """Fit the controls of a model.
-
-        Args:
-          predictor: predictor of the data to fit.
-          model: the model found, with at least one effect.
-          alike: keys "effect@place" of effects that may be the truth as well and
-            therefore are no controls.
-          rng: chooses the wrong effect.
-        """
-        main, rest = _main(predictor, model)
-        return cls(
-            rest,
-            _best(predictor, rest, _elsewhere(predictor, main)),
-            _best(predictor, rest, _by_lot(predictor, main, rest, alike, rng)),
-        )
+    main, rest = _main(predictor, model)
+    places = effect(main.name).places(predictor.plant, predictor.traces)
+    moved = [replace(main, place=place) for place in places if place != main.place]
+    other = _by_lot(predictor, main, rest, alike, rng)
+    return {
+        "without": rest,
+        "wrong_place": _best(predictor, rest, moved),
+        "wrong_effect": _best(predictor, rest, other),
+    }
 
 
 def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
     """The effect whose removal increases the error most, and the others refitted."""
     if len(model) == 1:
         return model[0], ()
-    rests = [tuple(one for one in model if one is not main) for main in model]
-    fits = _fitted(predictor, rests)
+    fits = _fitted(predictor, without_each(model))
     worst = max(range(len(model)), key=lambda i: fits[i].energy)
     return model[worst], fits[worst].model
-
-
-def _elsewhere(predictor: Predictor, main: PlacedEffect) -> list[PlacedEffect]:
-    """The main effect at all its other places."""
-    return [
-        PlacedEffect(main.name, place, main.values)
-        for place in effect(main.name).places(predictor.plant, predictor.traces)
-        if place != main.place
-    ]
 
 
 def _by_lot(
@@ -92,21 +76,14 @@ def _by_lot(
     Effects with as many values as the main one are preferred.
     """
     plant, traces = predictor.plant, predictor.traces
-    others = [
-        PlacedEffect(
-            name,
-            main.place,
-            tuple(p.typical for p in kind.parameters(plant, main.place)),
-        )
-        for name, kind in all_effects().items()
-        if main.place in kind.places(plant, traces)
-    ]
     barred = {main.key, *alike, *(one.key for one in rest)}
-    others = [
-        one
-        for one in others
-        if not (one.key in barred or _contains(one, main) or _contains(main, one))
-    ]
+    others = []
+    for name, kind in all_effects().items():
+        if main.place in kind.places(plant, traces):
+            typical = tuple(p.typical for p in kind.parameters(plant, main.place))
+            one = PlacedEffect(name, main.place, typical)
+            if not (one.key in barred or _contains(one, main) or _contains(main, one)):
+                others.append(one)
     equal = [one for one in others if len(one.values) == len(main.values)]
     choice = equal or others
     return [choice[int(rng.integers(len(choice)))]] if choice else []

@@ -14,7 +14,7 @@ from diagnosis.verdict import Amount
 def smallest_detectable(
     predictor: Predictor, found: Sequence[Signature], gain: float
 ) -> Mapping[str, Amount]:
-    """The size of each effect whose gain would just be enough to be reported.
+    """The size of each effect, by "effect@place", that would just be reported.
 
     The change of the residual by an effect (its signature) is taken as proportional to
     the effect's size, hence the gain grows with the square of the size. Effects that
@@ -24,9 +24,6 @@ def smallest_detectable(
       predictor: predictor of the data.
       found: signatures of the effects.
       gain: gain [nats] that an effect needs to be reported.
-
-    Returns:
-      Sizes with units by key "effect@place".
     """
     sizes: dict[str, Amount] = {}
     for signature in found:
@@ -41,7 +38,6 @@ def smallest_detectable(
         size = abs(tried - first.neutral) or max(map(abs, placed.values))
         least = size * float(np.sqrt(gain / power))
         if placed.key not in sizes or least < sizes[placed.key].value:
-            sizes[placed.key] = Amount(
-                least, predictor.plant.unit(first.unit, placed.place)
-            )
+            unit = predictor.plant.unit(first.unit, placed.place)
+            sizes[placed.key] = Amount(least, unit)
     return sizes

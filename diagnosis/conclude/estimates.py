@@ -1,7 +1,7 @@
 """Computes intervals for the values (parameters of effects) of a fitted model."""
 
-import itertools
 from collections.abc import Mapping
+from itertools import islice
 
 import numpy as np
 
@@ -31,35 +31,26 @@ multiple of the standard deviation that chance gives it."""
 
 
 def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estimate]]:
-    """The values of each effect of a model with 80 % intervals and units.
+    """For each effect its values with 80 % intervals and units, by parameter name.
 
     Args:
       predictor: predictor of the data to which the model was fitted.
       fit: the model with a Jacobian by finite differences at its values.
-
-    Returns:
-      One mapping from parameter name to estimate for each effect, in the model's order.
     """
     deviation = standard_errors(predictor, fit)
     x = fit.coordinates.of(fit.model)
     ends = np.array([_values(fit, x + side * Z_80 * deviation) for side in (-1, 1)])
-    values = [value for placed in fit.model for value in placed.values]
-    parameters = fit.coordinates.parameters
-    places = [placed.place for placed in fit.model for _ in placed.values]
-    units = [
-        predictor.plant.unit(parameter.unit, place)
-        for parameter, place in zip(parameters, places, strict=True)
-    ]
-    every = [
-        Estimate(value, min(*pair, value), max(*pair, value), unit)
-        for value, pair, unit in zip(values, ends.T.tolist(), units, strict=True)
-    ]
-    names = [parameter.name for parameter in parameters]
-    counts = np.cumsum([0, *(len(placed.values) for placed in fit.model)])
-    return [
-        dict(zip(names[first:last], every[first:last], strict=True))
-        for first, last in itertools.pairwise(counts.tolist())
-    ]
+    each = zip(fit.coordinates.parameters, ends.T.tolist(), strict=True)
+    every: list[Mapping[str, Estimate]] = []
+    for placed in fit.model:
+        own = {}
+        of_effect = islice(each, len(placed.values))
+        for value, (parameter, pair) in zip(placed.values, of_effect, strict=True):
+            unit = predictor.plant.unit(parameter.unit, placed.place)
+            low, high = min(*pair, value), max(*pair, value)
+            own[parameter.name] = Estimate(value, low, high, unit)
+        every.append(own)
+    return every
 
 
 def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
@@ -107,12 +98,7 @@ def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
 
 
 def _variance(sums: FloatArray) -> float:
-    """Variance of one estimated value.
-
-    Args:
-      sums: (blocks,) how far the residuals of each block of consecutive rows shift the
-        estimate, in its unit; blocks count as independent of each other.
-    """
+    """Variance of an estimated value from (blocks,) shifts of it by each time block."""
     variance = float(sums @ sums)
     if len(sums) < FEWEST or variance <= 0:
         return variance

@@ -85,14 +85,12 @@ def _ridge(features: FloatArray, wanted: FloatArray) -> FloatArray:
     if len(wanted) < FEWEST:
         return np.zeros(features.shape[1])
     held = np.arange(len(wanted)) // 50 % 4 == 3
-    best: tuple[float, float] | None = None
-    for penalty in PENALTIES:
+
+    def error(penalty: float) -> float:
         model = _solved(features[~held], wanted[~held], penalty)
-        error = float(np.mean((wanted[held] - features[held] @ model) ** 2))
-        if best is None or error < best[0]:
-            best = error, penalty
-    assert best is not None
-    return _solved(features, wanted, best[1])
+        return float(np.mean((wanted[held] - features[held] @ model) ** 2))
+
+    return _solved(features, wanted, min(PENALTIES, key=error))
 
 
 def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatArray:
@@ -102,11 +100,10 @@ def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatAr
 
 
 def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArray]:
-    """The data of a regression.
+    """For each recording its (T, c + j + 1) simulated channels, commands and time.
 
-    Returns:
-      For each recording its (T, c + j + 1) simulated channels, commands and time;
-      (rows, c) errors of the nominal sim, in units of noise; whether each counts.
+    Also (rows, c) errors of the nominal sim, in units of noise, and whether each
+    counts.
     """
     c = len(predictor.channels.names)
     nominal = predictor.predict([()])[0]
@@ -127,8 +124,8 @@ def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArra
 def _inputs(blocks: list[FloatArray], column: int, c: int) -> FloatArray:
     """(rows, inputs) inputs of the regression for one joint.
 
-    They are its simulated and commanded positions now and some rows before, its speed
-    and the speed's sign, and the time.
+    They are simulated and commanded positions now and some rows before, speed and its
+    sign, and time.
     """
     parts = []
     for block in blocks:

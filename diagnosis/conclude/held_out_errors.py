@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from diagnosis.conclude.confidence import confusable, twins
-from diagnosis.conclude.controls import Controls
+from diagnosis.conclude.confidence import alike
+from diagnosis.conclude.controls import controls_of
 from diagnosis.conclude.flexible_regression import flexible_regression_errors
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
@@ -16,69 +16,45 @@ SURPRISE = 2.0
 multiple of that on the data of the fit."""
 
 
-class HeldOutErrors:
+def held_out_errors(
+    nominal: tuple[Predictor, Predictor],
+    both: Predictor,
+    test: Predictor,
+    searched: SearchResult,
+    model: Model,
+    seed: np.random.SeedSequence,
+) -> Fit:
     """Errors on held-out data: of the nominal sim, a model and wrong models (controls).
 
     The held-out data are used only here, after effects are chosen and fitted.
+
+    Args:
+      nominal: predictors of the data used so far (fitting and selection) and of the
+        held-out data, both calibrated at the nominal robot model.
+      both: predictor of the data used so far, calibrated at `model`.
+      test: predictor of the held-out data, calibrated at `model`.
+      searched: the result of the search.
+      model: the effects that are reported, fitted to `both`.
+      seed: seed of the flexible regression and of the random choice of a control.
     """
-
-    def __init__(
-        self,
-        nominal: tuple[Predictor, Predictor],
-        both: Predictor,
-        test: Predictor,
-        searched: SearchResult,
-        model: Model,
-        seed: np.random.SeedSequence,
-    ) -> None:
-        """Compute all errors.
-
-        Args:
-          nominal: predictors of the data used so far (fitting and selection) and of the
-            held-out data, both calibrated at the nominal robot model.
-          both: predictor of the data used so far, calibrated at `model`.
-          test: predictor of the held-out data, calibrated at `model`.
-          searched: the result of the search.
-          model: the effects that are reported, fitted to `both`.
-          seed: seed of the flexible regression and of the random choice of a control.
-        """
-        self._test = test
-        self._errors = {"nominal": _error(nominal[1], ())}
-        self._errors["corrected"] = _error(test, model)
-        regression, lot = seed.spawn(2)
-        if model:
-            alike = _alike(both, searched, model)
-            controls = Controls.of(both, model, alike, np.random.default_rng(lot))
-            for name, control in vars(controls).items():
-                if control is not None:
-                    self._errors[name] = _error(test, control)
-        self._errors["ceiling"] = flexible_regression_errors(*nominal, regression)
-
-    def fit(self) -> Fit:
-        """The errors of each channel, and of all channels together, for the verdict."""
-        channels = {
-            name: ChannelFit(
-                unit=channel_unit(self._test.plant, name),
-                floor=float(noise),
-                **{key: float(rms[i] * noise) for key, rms in self._errors.items()},
-            )
-            for i, (name, noise) in enumerate(
-                zip(self._test.channels.names, self._test.channels.noise, strict=True)
-            )
-        }
-        every = {
-            key: float(np.sqrt(np.mean(rms**2))) for key, rms in self._errors.items()
-        }
-        return Fit(floor=1.0, channels=channels, **every)
-
-
-def _alike(both: Predictor, searched: SearchResult, model: Model) -> set[str]:
-    """Keys "effect@place" of effects that may be true instead of one in `model`."""
-    return {
-        f"{at.name}@{at.place}"
-        for placed in model
-        for at in (*confusable(searched, placed), *twins(both.plant, placed))
-    }
+    errors = {"nominal": _error(nominal[1], ()), "corrected": _error(test, model)}
+    regression, lot = seed.spawn(2)
+    if model:
+        others = [alike(searched, both.plant, placed) for placed in model]
+        keys = {f"{one.name}@{one.place}" for own in others for one in own}
+        controls = controls_of(both, model, keys, np.random.default_rng(lot))
+        for key, control in controls.items():
+            if control is not None:
+                errors[key] = _error(test, control)
+    errors["ceiling"] = flexible_regression_errors(*nominal, regression)
+    channels = {}
+    names_noise = zip(test.channels.names, test.channels.noise, strict=True)
+    for i, (name, noise) in enumerate(names_noise):
+        own = {key: float(rms[i] * noise) for key, rms in errors.items()}
+        unit = channel_unit(test.plant, name)
+        channels[name] = ChannelFit(unit=unit, floor=float(noise), **own)
+    every = {key: float(np.sqrt(np.mean(rms**2))) for key, rms in errors.items()}
+    return Fit(floor=1.0, channels=channels, **every)
 
 
 def _error(test: Predictor, model: Model) -> FloatArray:
@@ -96,15 +72,11 @@ def channel_rms(predictor: Predictor, residual: FloatArray) -> FloatArray:
 def model_refuted(
     nominal: FloatArray, corrected: FloatArray, least_gain: float
 ) -> tuple[str, ...]:
-    """A sentence if the model predicts held-out motions worse than the nominal sim.
+    """A sentence for the limits if a model predicts held-out motions worse.
 
-    Args:
-      nominal: (N,) residual of the nominal sim on the held-out data, in units of noise.
-      corrected: (N,) residual of the sim with the effects found, on the same data.
-      least_gain: log-likelihood [nats] that an effect must gain to be reported.
-
-    Returns:
-      One sentence for the verdict's limits, or nothing.
+    `nominal` and `corrected` (N,) are residuals, in units of noise, of the nominal sim
+    and of the sim with the effects found on the held-out data. `least_gain` [nats] is
+    what an effect must gain to be reported.
     """
     if 0.5 * float(corrected @ corrected - nominal @ nominal) < least_gain:
         return ()
@@ -117,15 +89,12 @@ def model_refuted(
 def larger_than_learned(
     learned: Predictor, left: FloatArray, fit: Fit
 ) -> tuple[str, ...]:
-    """A sentence if the held-out error is much larger than that on the fitted data.
+    """A sentence for the limits if held-out errors are much larger than fitted ones.
 
     Args:
       learned: predictor of the data to which the model was fitted.
       left: (N,) residual of the model on these data, in units of noise.
       fit: errors on the held-out data.
-
-    Returns:
-      One sentence for the verdict's limits, or nothing.
     """
     before = max(float(np.sqrt(np.mean(channel_rms(learned, left) ** 2))), 1.0)
     if fit.corrected < SURPRISE * before:

@@ -46,8 +46,8 @@ class HeldOutSeries:
         """Refuse arrays that do not fit together.
 
         Raises:
-          BadValueError: there are fewer than two ticks, no channels, or a channel
-            whose length is not that of `time_s`.
+          BadValueError: fewer than two ticks, no channels, or a channel of another
+            length.
         """
         if self.time_s.ndim != 1 or self.time_s.size < 2 or not self.channels:
             raise BadValueError(
@@ -73,13 +73,12 @@ def held_out_series(
       model: the effects that the corrected sim has.
     """
     sim, after = _by_trace(nominal, ()), _by_trace(corrected, model)
-    names = corrected.channels.names
     series = []
     for k, trace in enumerate(corrected.traces):
         real = measured_of(trace, corrected.channels)
         channels = {
             name: ChannelSeries(real[:, i], sim[k][:, i], after[k][:, i])
-            for i, name in enumerate(names)
+            for i, name in enumerate(corrected.channels.names)
         }
         series.append(HeldOutSeries(trace.name, trace.time_s, channels))
     return series
@@ -101,13 +100,9 @@ def rms(values: FloatArray) -> float:
 def by_error(series: HeldOutSeries, fit: Fit | None) -> list[str]:
     """Names of channels in order of the nominal sim's rms error, the largest first.
 
-    Errors are compared as multiples of each channel's noise floor. Channels without a
-    floor, such as the pose of a base that nothing measured, are left out; if no channel
-    has one, all are kept and compared in their own units.
-
-    Args:
-      series: the recording.
-      fit: the verdict's held-out errors, which hold the floors; None without any.
+    Errors are compared as multiples of each channel's noise floor, which `fit` holds.
+    Channels without a floor, such as the pose of a base that nothing measured, are left
+    out; if no channel has one, all are kept and compared in their own units.
     """
     floors = {name: one.floor for name, one in fit.channels.items()} if fit else {}
     scored = [name for name in series.channels if floors.get(name)]

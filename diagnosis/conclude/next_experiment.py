@@ -49,15 +49,9 @@ def next_experiment(
 ) -> NextExperiment | None:
     """The motion to record next: the two best models predict it most differently.
 
-    This is the criterion of Hunter and Reiner 1965 (T-optimality).
-
-    Args:
-      plant: nominal robot model.
-      found: the result of a search.
-      traces: the recordings so far; the motion stays within their range.
-
-    Returns:
-      None if no other model is plausible, or if a recording has no position commands.
+    This is the criterion of Hunter and Reiner 1965 (T-optimality). The motion stays
+    within the range of the recordings `traces`. None if no other model is plausible, or
+    if a recording has no position commands.
     """
     rivals = _rivals(found)
     if rivals is None or any(trace.command_rad is None for trace in traces):
@@ -69,11 +63,13 @@ def next_experiment(
         for name, motion in MOTIONS.items()
     }
     best = max(difference, key=lambda name: difference[name])
-    other = _changed_servo(_trace(plant, usage, MOTIONS[best], traces[0]))
-    motion, apart = best, difference[best]
-    apart_stiffer = _difference(plant, rivals, other)
-    if apart_stiffer > 2 * apart:
-        motion, apart = f"{best}; {STIFFER}", apart_stiffer
+    trace, motion, apart = traces[0], best, difference[best]
+    gains = {"kp_nm_rad": 2 * trace.servo.kp_nm_rad}
+    gains["kd_nm_s_rad"] = 0.5 * trace.servo.kd_nm_s_rad
+    trace = replace(trace, servo=replace(trace.servo, **gains))
+    stiffer = _difference(plant, rivals, _trace(plant, usage, MOTIONS[best], trace))
+    if stiffer > 2 * apart:
+        motion, apart = f"{best}; {STIFFER}", stiffer
     names = [" and ".join(placed.key for placed in model) for model in rivals]
     why = f"there {names[0]} and {names[1]} differ by {1e3 * apart:.2g} mrad rms"
     return NextExperiment(motion, place, why)
@@ -99,16 +95,6 @@ def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:
     half = REACH * (usage.high_rad - usage.low_rad) / 2
     command = middle + half * motion(time_s, DURATION_S)[:, None]
     return Trace("next", time_s, command, like.servo, command_rad=command)
-
-
-def _changed_servo(trace: Trace) -> Trace:
-    """The same trace with servos of twice the stiffness and half the damping."""
-    servo = replace(
-        trace.servo,
-        kp_nm_rad=2 * trace.servo.kp_nm_rad,
-        kd_nm_s_rad=0.5 * trace.servo.kd_nm_s_rad,
-    )
-    return replace(trace, servo=servo)
 
 
 def _difference(plant: Plant, models: Sequence[Model], trace: Trace) -> float:

@@ -73,13 +73,9 @@ def fit_structure(
     residuals = every.residuals([(), model, *others])
     held_out = every.trace >= len(parts.fit) + len(parts.select)
     error = np.sqrt(np.mean(residuals[:, held_out & every.scored] ** 2, axis=1))
+    gain = log_score_gain(residuals[0], residuals[1], every.channel) / len(traces)
     nominal, fitted, *rest = map(float, error)
-    return StructureFit(
-        gain=log_score_gain(residuals[0], residuals[1], every.channel) / len(traces),
-        nominal=nominal,
-        fitted=fitted,
-        others=tuple(rest),
-    )
+    return StructureFit(gain, nominal, fitted, tuple(rest))
 
 
 def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -> float:
@@ -96,11 +92,9 @@ def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -
     """
     gain = 0.0
     for number in np.unique(channel):
-        mine = channel == number
-        seen = mine & ((nominal != 0) | (fitted != 0))
+        seen = (channel == number) & ((nominal != 0) | (fitted != 0))
         if seen.any():
             variance = max(1.0, float(np.mean(fitted[seen] ** 2)))
-            gain += (
-                0.5 * float(np.sum(nominal[seen] ** 2 - fitted[seen] ** 2)) / variance
-            )
+            less = float(np.sum(nominal[seen] ** 2 - fitted[seen] ** 2))
+            gain += 0.5 * less / variance
     return gain

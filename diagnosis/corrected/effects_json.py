@@ -49,33 +49,19 @@ class Correction:
     @classmethod
     def of(cls, plant: Plant, model: Model) -> "Correction":
         """The correction with the effects and values of a fitted model of a robot."""
-        parts = [
-            Entry(
-                placed.name,
-                placed.place,
-                dict(zip(_parameters(plant, placed), placed.values, strict=True)),
-            )
-            for placed in model
-        ]
+        parts = []
+        for one in model:
+            values = dict(zip(_parameters(plant, one), one.values, strict=True))
+            parts.append(Entry(one.name, one.place, values))
         return cls(plant.name, plant.base, *_sorted(parts))
 
     @classmethod
     def of_verdict(cls, verdict: Verdict, robot: str, base: Base) -> "Correction":
-        """The correction with a verdict's best estimates.
-
-        Args:
-          verdict: the answer of a diagnosis.
-          robot: name of the robot model, which a verdict does not hold.
-          base: "fixed" or "floating", which a verdict does not hold either.
-        """
-        parts = [
-            Entry(
-                found.name,
-                found.place,
-                {name: one.value for name, one in found.parameters.items()},
-            )
-            for found in verdict.effects
-        ]
+        """The correction with a verdict's best estimates for a robot with a base."""
+        parts = []
+        for found in verdict.effects:
+            values = {name: one.value for name, one in found.parameters.items()}
+            parts.append(Entry(found.name, found.place, values))
         return cls(robot, base, *_sorted(parts))
 
     def to_json(self) -> str:
@@ -159,15 +145,10 @@ def _correction(text: str, plant: Plant) -> Correction:
     return from_plain(Correction, plain, "correction")
 
 
-def _sorted(
-    parts: Sequence[Entry],
-) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+def _sorted(parts: Sequence[Entry]) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
     """Divide effects into those that MuJoCo can simulate and the others."""
-    native = [effect(part.name).native for part in parts]
-    pairs = list(zip(parts, native, strict=True))
-    return tuple(part for part, own in pairs if own), tuple(
-        part for part, own in pairs if not own
-    )
+    native = tuple(part for part in parts if effect(part.name).native)
+    return native, tuple(part for part in parts if not effect(part.name).native)
 
 
 def _parameters(plant: Plant, placed: PlacedEffect) -> list[str]:

@@ -31,10 +31,7 @@ _DIGITS = 17
 
 
 def corrected_mjcf(
-    plant: Plant,
-    model: Model,
-    servo: Servo | None = None,
-    step_s: float | None = None,
+    plant: Plant, model: Model, servo: Servo | None = None, step_s: float | None = None
 ) -> str:
     """MJCF of a robot model with those effects in it that MuJoCo can simulate.
 
@@ -59,11 +56,11 @@ def corrected_mjcf(
     spec = plant.spec.copy()
     options = plant.options
     if options is not None:
-        spec.option.timestep = options.timestep_s
         spec.option.integrator = options.integrator
         spec.option.disableflags = options.disableflags
-    step_s = step_s or (options.timestep_s if options else STEP_S)
-    spec.option.timestep = step_s
+    spec.option.timestep = step_s = step_s or (
+        options.timestep_s if options else STEP_S
+    )
     compiled = spec.compile()
     _write_fields(compiled, variants, servo or plant.servo, step_s)
     spec.copy_back(compiled)

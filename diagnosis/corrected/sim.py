@@ -26,9 +26,7 @@ if TYPE_CHECKING:
 
 
 def sim_plant(
-    description: Description,
-    options: WorldOptions,
-    grounds: Sequence[Heightfield] = (),
+    description: Description, options: WorldOptions, grounds: Sequence[Heightfield] = ()
 ) -> Plant:
     """Make the robot model that the sim world simulates, for use by a diagnosis.
 

@@ -167,7 +167,7 @@ class BatchLaws:
         return self._qpos[:, self._columns], self._qvel[:, self._dofs]
 
     def encoder_rad(self) -> FloatArray:
-        """(n R, j) angles [rad] of joints, or of motors of elastic joints; no offset."""
+        """(n R, j) angles [rad] of joints or, if elastic, of motors; without offset."""
         position = self._qpos[:, self._columns]
         return position if self._elastic is None else self._elastic.seen(position)
 

@@ -196,6 +196,6 @@ def _shrunk(smooth: FloatArray, shrinkage: float) -> tuple[FloatArray, FloatArra
 
 
 def _surprise(smooth: FloatArray, power: FloatArray, axes: FloatArray) -> float:
-    """Minus the log-likelihood [nats] of (blocks, k) Gaussian values, up to a constant."""
+    """Minus the log-likelihood [nats] of (blocks, k) values, up to a constant."""
     seen = smooth @ axes
     return float(0.5 * np.sum(seen**2 / power) + 0.5 * len(seen) * np.log(power).sum())

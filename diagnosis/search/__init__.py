@@ -3,6 +3,5 @@
 `signatures` and `screening` estimate what effects would explain, `candidates` proposes
 models, `fitting` fits them, `judging` decides which to believe, `search` adds effects,
 `accept` tests the result, and `all_joints` adds an effect at all joints at once.
-`reference` learns from recordings of the healthy robot; `hooks` report progress and
-store results.
+`reference` learns from recordings of the healthy robot.
 """

@@ -8,15 +8,15 @@ the fit there as much are removed, too: they are not new.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
-from diagnosis.search.result import Judged, SearchResult, keys_of
+from diagnosis.search.result import Judged, SearchResult, keys_of, without_each
 from groundwalk.arrays import FloatArray
 
 CLOSE_NATS = 100.0
@@ -43,24 +43,20 @@ def accepted(judge: Judge, result: SearchResult) -> SearchResult:
 def compared_exactly(judge: Judge, result: SearchResult) -> SearchResult:
     """Rank the best models again, each with its own integration error.
 
-    During the search all models share the integration error of the model that was best
-    at that time, which distorts the values of the others. Models that come close may
-    each contain a part of the answer. Therefore their effects are also tried in place
-    of those of the best model.
+    During the search all models share that of the model that was best at that time,
+    which distorts the values of the others. Models that come close may each contain a
+    part of the answer, so their effects are also tried in place of those of the best
+    model.
     """
     if result.winner is None:
         return result
-    close = result.best[result.chosen][: judge.rules.compared]
-    others = result.best[result.chosen][len(close) :]
-    again = fitted_exactly(
-        judge, [one.model for one in close], [one.fit.jacobian for one in close]
-    )
-    best = replace(
-        result, best={**result.best, result.chosen: judge.ranked([*again, *others])}
-    )
-    more = fitted_exactly(judge, recombined(best)[: judge.rules.compared])
-    every = judge.ranked([*best.best[result.chosen], *more])
-    return replace(result, best={**result.best, result.chosen: every})
+    size, count = result.chosen, judge.rules.compared
+    close, others = result.best[size][:count], result.best[size][count:]
+    jacobians = [one.fit.jacobian for one in close]
+    again = fitted_exactly(judge, [one.model for one in close], jacobians)
+    result = result.with_models(size, judge.ranked([*again, *others]))
+    more = fitted_exactly(judge, recombined(result)[:count])
+    return result.with_models(size, judge.ranked([*result.best[size], *more]))
 
 
 def fitted_exactly(
@@ -77,32 +73,18 @@ def fitted_exactly(
     """
     if not models:
         return []
-
-    def work() -> list[Judged]:
-        fits = fit_all(
-            judge.fit,
-            models,
-            judge.rules.first_steps,
-            followed=True,
-            jacobians=jacobians,
-            exactly=True,
-        )
-        return judge.judge(fits, exactly=True)
-
-    return judge.saved(work)
+    steps = judge.rules.first_steps
+    fit = partial(fit_all, judge.fit, models, steps, followed=True, jacobians=jacobians)
+    return judge.saved(lambda: judge.judge(fit(exactly=True), exactly=True))
 
 
 def recombined(result: SearchResult) -> list[Model]:
     """Variants of the best model: one effect replaced by one of another good model."""
     winner, every = result.winner, result.best[result.chosen]
     assert winner is not None
-    others: dict[str, PlacedEffect] = {
-        placed.key: placed
-        for one in reversed(every)
-        if result.worse(one) <= CLOSE_NATS
-        for placed in one.model
-    }
-    known = {one.keys for one in every if result.worse(one) <= CLOSE_NATS}
+    close = [one for one in every if result.worse(one) <= CLOSE_NATS]
+    others = {placed.key: placed for one in reversed(close) for placed in one.model}
+    known = {one.keys for one in close}
     models: dict[frozenset[str], Model] = {}
     for old in winner.model:
         for other in others.values():
@@ -130,8 +112,7 @@ def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
     if judge.worth(judged.selected, winner.selected, result.nothing):
         return result
     others = [one for one in result.best[result.chosen] if one.keys != judged.keys]
-    best = {**result.best, result.chosen: [judged, *others]}
-    return replace(result, best=best)
+    return result.with_models(result.chosen, [judged, *others])
 
 
 def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
@@ -142,29 +123,24 @@ def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
     """
     while result.winner is not None and result.chosen > 1:
         winner = result.winner
-        smaller = [
-            tuple(one for one in winner.model if one is not placed)
-            for placed in winner.model
-        ]
-        kept = [judged.model for judged in judge.judged(smaller)]
+        smaller = judge.judged(without_each(winner.model))
+        kept = [judged.model for judged in smaller]
         best = min(fitted_exactly(judge, kept), key=lambda judged: judged.evidence)
         if judge.worth(best.selected, winner.selected, result.nothing):
             break
         size = result.chosen - 1
         others = [one for one in result.best.get(size, []) if one.keys != best.keys]
-        sizes = {**result.best, size: [best, *others]}
-        result = replace(result, chosen=size, best=sizes)
+        result = replace(result.with_models(size, [best, *others]), chosen=size)
     return result
 
 
 def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
-    """Remove effects that recordings of the healthy robot may already show.
+    """Remove effects that recordings of the healthy robot, if there are any, may show.
 
     The model of a walking robot is wrong in a different way at each step. An effect
     that fits some of these errors by chance gains much at some moments, loses at
     others, and gains on recordings of the healthy robot, too. A true change gains at
-    most moments, and much more than it gains there. Without recordings of the healthy
-    robot nothing is removed.
+    most moments, and much more than it gains there.
     """
     chosen = result.chosen
     while judge.healthy and chosen:
@@ -178,10 +154,10 @@ def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
 def _is_new(judge: Judge, less: Model, more: Model) -> bool:
     """Whether `more` gains more over `less` than it does on the healthy robot."""
     # fitting and selection data together, since each has too few time blocks
-    now = np.concatenate(
-        [_gains(part, less, more) for part in (judge.fit, judge.select)]
+    now, before = (
+        np.concatenate([_gains(part, less, more) for part in parts])
+        for parts in ((judge.fit, judge.select), judge.healthy)
     )
-    before = np.concatenate([_gains(one, less, more) for one in judge.healthy])
     usual = max(float(before.mean()), 0.0)
     variance = now.var() / len(now) + before.var() / len(before)
     return bool(now.mean() - usual > SURE * np.sqrt(variance))

@@ -12,11 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.effects.library import all_effects
-from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import Nudges, fit_all
 from diagnosis.search.judging import Judge
-from diagnosis.search.result import Judged, SearchResult
+from diagnosis.search.result import Judged, SearchResult, without_each
 from diagnosis.search.screening import Guess, Screen
 from diagnosis.search.signatures import signatures
 from diagnosis.traces.usage import Usage
@@ -59,7 +58,7 @@ def all_joints(judge: Judge, result: SearchResult) -> SearchResult:
     needed = max(MUCH_BETTER * (left - result.floor), judge.least_gain)
     if best is None or left - best.selected < needed:
         return result
-    smaller = _each_left_out(best.model)
+    smaller = without_each(best.model)
     residuals = judge.fit.residuals(smaller)
     fits = [
         replace(best.fit, model=model, residual=residual)
@@ -75,10 +74,8 @@ def _grown(judge: Judge, result: SearchResult) -> Judged | None:
     best: Judged | None = None
     model: Model = ()
     residual, energy = judge.fit.residuals([()])[0], result.nothing_fit + result.nothing
-    floor = result.floor_fit + result.floor
-    kinds = servo_effects()
-    waited = 0
-    usage = Usage.of(judge.fit.plant, judge.fit.traces)
+    floor, waited = result.floor_fit + result.floor, 0
+    kinds, usage = servo_effects(), Usage.of(judge.fit.plant, judge.fit.traces)
     for number in range(MOST_KINDS):
         judge.hooks.stage(f"all joints, round {number + 1}", REPLAYS)
         signs = signatures(judge.fit, model, usage, (), kinds)
@@ -109,12 +106,10 @@ def servo_effects() -> tuple[str, ...]:
 def _best(judge: Judge, starts: Sequence[Model]) -> Judged | None:
     """The best of some models; only that one is fitted to the end.
 
-    Fitting and selection data are judged together. Chance hardly improves the fit of
+    Fitting and selection data are judged together: chance hardly improves the fit of
     these models, which have few values for much data, and some physics of a joint may
     show in one motion only.
     """
-    if not starts:
-        return None
 
     def work() -> list[Judged]:
         steps = judge.rules.first_steps
@@ -122,13 +117,12 @@ def _best(judge: Judge, starts: Sequence[Model]) -> Judged | None:
         start = min(judge.judge(rough), key=lambda one: one.energy).model
         return judge.judge(fit_all(judge.fit, [start], nudges_of=joint_wise))
 
-    (judged,) = judge.saved(work)
-    return judged
+    return judge.saved(work)[0] if starts else None
 
 
 def _without_idle(judge: Judge, best: Judged) -> Judged:
     """Remove effects from the joints where they do not improve the fit."""
-    energies = judge.energies(_each_left_out(best.model))
+    energies = judge.energies(without_each(best.model))
     needed = tuple(
         placed
         for placed, energy in zip(best.model, energies, strict=True)
@@ -139,11 +133,6 @@ def _without_idle(judge: Judge, best: Judged) -> Judged:
     lean = _best(judge, [needed])
     most = best.selected + LEAST_SHARE * (best.selected - judge.floor)
     return lean if lean is not None and lean.selected <= most else best
-
-
-def _each_left_out(model: Model) -> list[Model]:
-    """The models that arise when each effect of a model is removed in turn."""
-    return [tuple(other for other in model if other is not one) for one in model]
 
 
 def kinds_to_add(guesses: Sequence[Guess], least: float, model: Model) -> list[Model]:
@@ -159,23 +148,20 @@ def kinds_to_add(guesses: Sequence[Guess], least: float, model: Model) -> list[M
       model: effects that are present already and not added again.
     """
     known = {placed.key for placed in model}
-    together: dict[str, tuple[float, list[PlacedEffect]]] = {}
+    together: dict[str, tuple[float, Model]] = {}
     for guess in guesses:
         (placed,) = guess.model
-        if guess.gain < least or placed.key in known:
-            continue
-        gain, every = together.get(placed.name, (0.0, []))
-        together[placed.name] = gain + guess.gain, [*every, placed]
-    kinds = [(gain, tuple(placed)) for gain, placed in together.values()]
-    most = sorted(kinds, key=lambda kind: -kind[0])[:TRIED]
-    others = [kind for kind in kinds if kind not in most]
-    lean = sorted(others, key=lambda kind: -kind[0] / _values(kind[1]))[:LEAN]
+        if guess.gain >= least and placed.key not in known:
+            gain, every = together.get(placed.name, (0.0, ()))
+            together[placed.name] = gain + guess.gain, (*every, placed)
+
+    def for_each_value(kind: tuple[float, Model]) -> float:
+        return kind[0] / sum(len(placed.values) for placed in kind[1])
+
+    most = sorted(together.values(), key=lambda kind: -kind[0])[:TRIED]
+    others = [kind for kind in together.values() if kind not in most]
+    lean = sorted(others, key=lambda kind: -for_each_value(kind))[:LEAN]
     return [model for _, model in (*most, *lean)]
-
-
-def _values(model: Model) -> int:
-    """Number of values of all effects of a model."""
-    return sum(len(placed.values) for placed in model)
 
 
 def joint_wise(predictor: Predictor, model: Model) -> Nudges:
@@ -186,26 +172,12 @@ def joint_wise(predictor: Predictor, model: Model) -> Nudges:
     common row need one difference only: Curtis, Powell and Reid 1974). The ignored
     coupling between joints only slows convergence; the result is unaffected.
     """
-    return Nudges(_groups(model), _rows(predictor, model))
-
-
-def _groups(model: Model) -> list[list[int]]:
-    """Indices of values, grouped by effect and parameter, whatever their joint is."""
     groups: dict[tuple[str, int], list[int]] = {}
-    number = 0
-    for placed in model:
-        for k in range(len(placed.values)):
-            groups.setdefault((placed.name, k), []).append(number)
-            number += 1
-    return list(groups.values())
-
-
-def _rows(predictor: Predictor, model: Model) -> list[BoolArray]:
-    """For each value (N,) flags of the entries of the residual that it changes."""
-    rows = []
+    rows: list[BoolArray] = []
     for placed in model:
         own = predictor.channels.of_joint(placed.place)
         is_joint = placed.place in predictor.plant.joints
-        flags = np.isin(predictor.channel, own) | (not is_joint)
-        rows += [flags] * len(placed.values)
-    return rows
+        for k in range(len(placed.values)):
+            groups.setdefault((placed.name, k), []).append(len(rows))
+            rows.append(np.isin(predictor.channel, own) | (not is_joint))
+    return Nudges(list(groups.values()), rows)

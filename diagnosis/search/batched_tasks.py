@@ -7,54 +7,12 @@ for its answer, so that the residuals of all of them can be computed in one batc
 import threading
 from collections.abc import Callable, Sequence
 from contextvars import copy_context
-from typing import Generic, TypeVar
+from queue import SimpleQueue
+from typing import Any, TypeVar
 
 Question = TypeVar("Question")
 Answer = TypeVar("Answer")
 Result = TypeVar("Result")
-
-
-class _Desk(Generic[Question, Answer]):
-    """Passes questions from tasks in threads to the caller, and answers back."""
-
-    def __init__(self, tasks: int) -> None:
-        self._condition = threading.Condition()
-        self._busy = tasks
-        self._asked: dict[int, Question] = {}
-        self._answers: dict[int, Answer | BaseException] = {}
-
-    def ask(self, task: int, question: Question) -> Answer:
-        """Leave a task's question and wait for its answer."""
-        with self._condition:
-            self._asked[task] = question
-            self._busy -= 1
-            self._condition.notify_all()
-            self._condition.wait_for(lambda: task in self._answers)
-            answer = self._answers.pop(task)
-        if isinstance(answer, BaseException):
-            raise answer
-        return answer
-
-    def done(self) -> None:
-        """Note that a task has ended."""
-        with self._condition:
-            self._busy -= 1
-            self._condition.notify_all()
-
-    def questions(self) -> dict[int, Question]:
-        """Questions by task number, once each task waits for an answer or has ended."""
-        with self._condition:
-            self._condition.wait_for(lambda: self._busy == 0)
-            asked, self._asked = self._asked, {}
-            self._busy = len(asked)
-        # in the order of the tasks, since that of their threads differs between runs
-        return dict(sorted(asked.items()))
-
-    def reply(self, answers: dict[int, Answer | BaseException]) -> None:
-        """Wake the waiting tasks with their answers."""
-        with self._condition:
-            self._answers.update(answers)
-            self._condition.notify_all()
 
 
 def lockstep(
@@ -76,34 +34,45 @@ def lockstep(
     Raises:
       Exception: the exception of the first failing task, or that of `answer`.
     """
-    desk: _Desk[Question, Answer] = _Desk(len(tasks))
+    asked: SimpleQueue[tuple[int, list[Question]]] = SimpleQueue()
+    replies: list[SimpleQueue[Any]] = [SimpleQueue() for _ in tasks]
     results: dict[int, Result] = {}
     failures: list[BaseException] = []
 
+    def ask(number: int, question: Question) -> Answer:
+        asked.put((number, [question]))
+        reply = replies[number].get()
+        if isinstance(reply, BaseException):
+            raise reply
+        answered: Answer = reply
+        return answered
+
     def run(number: int) -> None:
         try:
-            results[number] = tasks[number](lambda asked: desk.ask(number, asked))
+            results[number] = tasks[number](lambda question: ask(number, question))
         except BaseException as failure:
             failures.append(failure)
         finally:
-            desk.done()
+            asked.put((number, []))  # has ended
 
-    threads = [
+    for i in range(len(tasks)):
         # each thread in a copy of this context, in which a user's effects are known
-        threading.Thread(target=copy_context().run, args=(run, i), daemon=True)
-        for i in range(len(tasks))
-    ]
-    for thread in threads:
-        thread.start()
-    while asked := desk.questions():
-        answers: dict[int, Answer | BaseException] = {}
+        context = copy_context()
+        threading.Thread(target=context.run, args=(run, i), daemon=True).start()
+    busy = len(tasks)
+    while busy:
+        # in the order of the tasks, since that of their threads differs between runs
+        messages = sorted((asked.get() for _ in range(busy)), key=lambda one: one[0])
+        waiting = [number for number, question in messages if question]
+        questions = [one for _, question in messages for one in question]
+        busy = len(waiting)
         try:
-            answers.update(zip(asked, answer(list(asked.values())), strict=True))
+            given: list[Any] = answer(questions) if busy else []
+            answers = dict(zip(waiting, given, strict=True))
         except BaseException as failure:
-            answers.update(dict.fromkeys(asked, failure))
-        desk.reply(answers)
-    for thread in threads:
-        thread.join()
+            answers = dict.fromkeys(waiting, failure)
+        for number in waiting:
+            replies[number].put(answers[number])
     if failures:
         raise failures[0]
     return [results[i] for i in range(len(tasks))]

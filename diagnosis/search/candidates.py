@@ -1,15 +1,16 @@
 """Proposes the models (sets of effects) to fit, each with values to start from."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.result import Judged, keys_of
+from diagnosis.search.result import Judged, keys_of, without_each
 from diagnosis.search.rules import Rules
-from diagnosis.search.screening import Guess, Screen
+from diagnosis.search.screening import Screen
 from diagnosis.search.signatures import Signature
 from groundwalk.arrays import FloatArray
 
@@ -39,12 +40,22 @@ class Candidates:
         self._screen = Screen(fit, found)
 
     def alone(self, residual: FloatArray) -> list[Model]:
-        """Models of one effect.
+        """Models of one effect: the best guesses, and the best of some other kinds.
 
         Args:
           residual: (N,) residual of the nominal sim [noise].
         """
-        return self._scanned(self._short(self._screen.singles(residual)))
+        rules, ranked = self._rules, self._screen.singles(residual)
+        few = len(self._fit.plant.joints) <= FEW_JOINTS
+        most = len(all_effects()) if few else rules.single_effects
+        best = ranked[: rules.single_effects - rules.further_effects]
+        short = [guess.model for guess in best]
+        named = {model[0].name for model in short}
+        for guess in ranked[len(short) :]:
+            if len(short) < most and guess.model[0].name not in named:
+                short.append(guess.model)
+                named.add(guess.model[0].name)
+        return self._scanned(short)
 
     def larger(
         self, best: Sequence[Judged], near: bool, residual: FloatArray | None
@@ -61,12 +72,26 @@ class Candidates:
         if near:
             starts += self._partners(best[0])
         if residual is not None:
-            starts += self._pairs(residual, starts)
+            known = {keys_of(model) for model in starts}
+            pairs = self._screen.pairs(residual, self._rules.pairs)
+            starts += [one.model for one in pairs if keys_of(one.model) not in known]
         return self._scanned(starts)
 
     def swapped(self, judged: Judged) -> list[Model]:
-        """Variants of a model with one effect replaced by another."""
-        return self._scanned(self._swaps(judged))
+        """Variants of a model with one effect replaced by another, or moved."""
+        swaps: dict[frozenset[str], Model] = {}
+        rests = without_each(judged.model)
+        residuals = self._fit.residuals(rests)
+        for rest, residual in zip(rests, residuals, strict=True):
+            jacobian = judged.fit.jacobian_of(rest)
+            others = self._screen.singles(residual, jacobian)[: self._rules.swaps]
+            for model in ((*rest, *guess.model) for guess in others):
+                keys = keys_of(model)
+                if len(keys) == len(model) and keys != judged.keys:
+                    swaps.setdefault(keys, model)
+        for model in self._moved(judged):
+            swaps.setdefault(keys_of(model), model)
+        return self._scanned(list(swaps.values()))
 
     def promised(self, judged: Judged) -> float:
         """Linear estimate of the most [nats] that one more effect would gain."""
@@ -79,41 +104,23 @@ class Candidates:
         Linear estimates are far off for some effects, such as backlash or delays.
         """
         options = [
-            (*start[:-1], other) for start in starts for other in self._sizes(start[-1])
+            [(*start[:-1], other) for other in self._sizes(start[-1])]
+            for start in starts
         ]
         if not options:
             return []
-        ends = np.cumsum([len(self._sizes(start[-1])) for start in starts])
-        energies = (self._fit.residuals(options) ** 2).sum(axis=1)
-        firsts = [0, *ends[:-1].tolist()]
+        every = [model for some in options for model in some]
+        energies = (self._fit.residuals(every) ** 2).sum(axis=1)
+        ends = np.cumsum([len(some) for some in options])
         return [
-            options[first + int(np.argmin(some))]
-            for first, some in zip(firsts, np.split(energies, ends[:-1]), strict=True)
+            some[int(np.argmin(energy))]
+            for some, energy in zip(options, np.split(energies, ends[:-1]), strict=True)
         ]
 
     def _sizes(self, placed: PlacedEffect) -> list[PlacedEffect]:
         """An effect in several sizes around a guessed one."""
         kind = effect(placed.name)
         return kind.sizes_to_scan(self._fit.plant, placed, self._fit.traces)
-
-    def _short(self, ranked: Sequence[Guess]) -> list[Model]:
-        """The best guesses, and the best guess of some other kinds of effect."""
-        few = len(self._fit.plant.joints) <= FEW_JOINTS
-        most = len(all_effects()) if few else self._rules.single_effects
-        short = [
-            guess.model
-            for guess in ranked[
-                : self._rules.single_effects - self._rules.further_effects
-            ]
-        ]
-        named = {model[0].name for model in short}
-        for guess in ranked[len(short) :]:
-            if len(short) == most:
-                break
-            if guess.model[0].name not in named:
-                short.append(guess.model)
-                named.add(guess.model[0].name)
-        return short
 
     def _leading(self, best: Sequence[Judged]) -> list[Judged]:
         """The models to extend: the best on the selection data, and on all data.
@@ -151,16 +158,10 @@ class Candidates:
         the residual that one leaves need not point to the other.
         """
         near = self._near(judged.model[0].place)
-        first = {
-            signature.placed.key: signature.placed
-            for signature in reversed(self._found)
-            if signature.placed.place in near
-        }
-        return [
-            (*judged.model, placed)
-            for key, placed in first.items()
-            if key not in judged.keys
-        ]
+        found = [one.placed for one in reversed(self._found)]
+        first = {placed.key: placed for placed in found if placed.place in near}
+        others = [one for key, one in first.items() if key not in judged.keys]
+        return [(*judged.model, placed) for placed in others]
 
     def _near(self, place: str) -> set[str]:
         """A joint and the body that it moves, if `place` is one of the two."""
@@ -173,39 +174,12 @@ class Candidates:
             name for pair in bodies.items() if place in pair for name in pair
         }
 
-    def _pairs(self, residual: FloatArray, known: Sequence[Model]) -> list[Model]:
-        """Pairs of effects likely to explain most of the residual; no known ones."""
-        seen = {keys_of(model) for model in known}
-        pairs = self._screen.pairs(residual, self._rules.pairs)
-        return [guess.model for guess in pairs if keys_of(guess.model) not in seen]
-
-    def _swaps(self, judged: Judged) -> list[Model]:
-        """Variants of a model in which another effect takes the place of one."""
-        swaps: dict[frozenset[str], Model] = {}
-        rests = [
-            tuple(other for other in judged.model if other is not placed)
-            for placed in judged.model
-        ]
-        residuals = self._fit.residuals(rests)
-        for rest, residual in zip(rests, residuals, strict=True):
-            jacobian = judged.fit.jacobian_of(rest)
-            others = self._screen.singles(residual, jacobian)[: self._rules.swaps]
-            for model in ((*rest, *guess.model) for guess in others):
-                keys = keys_of(model)
-                if len(keys) == len(model) and keys != judged.keys:
-                    swaps.setdefault(keys, model)
-        for model in self._moved(judged):
-            swaps.setdefault(keys_of(model), model)
-        return list(swaps.values())
-
     def _moved(self, judged: Judged) -> list[Model]:
         """Variants of a model with an effect moved along the chain of bodies."""
         plant, traces = self._fit.plant, self._fit.traces
         return [
             tuple(
-                PlacedEffect(other.name, place, other.values)
-                if other is placed
-                else other
+                replace(other, place=place) if other is placed else other
                 for other in judged.model
             )
             for placed in judged.model

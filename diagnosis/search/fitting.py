@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from itertools import islice
 
 import numpy as np
 
@@ -85,31 +85,17 @@ class Coordinates:
 
     def model_at(self, x: FloatArray) -> Model:
         """The model whose values have the (p,) scaled coordinates `x`."""
-        values = [
-            self._value(parameter, coordinate)
-            for parameter, coordinate in zip(self.parameters, x, strict=True)
-        ]
-        placed, first = [], 0
-        for old in self.model:
-            last = first + len(old.values)
-            placed.append(PlacedEffect(old.name, old.place, tuple(values[first:last])))
-            first = last
-        return tuple(placed)
+        values = iter(map(_value, self.parameters, x))
+        return tuple(
+            PlacedEffect(old.name, old.place, tuple(islice(values, len(old.values))))
+            for old in self.model
+        )
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """(p,) smallest and (p,) largest allowed scaled coordinates."""
         low = [self.scaled(i, p.low) for i, p in enumerate(self.parameters)]
         high = [self.scaled(i, p.high) for i, p in enumerate(self.parameters)]
         return np.array(low), np.array(high)
-
-    @staticmethod
-    def _value(parameter: Parameter, coordinate: float) -> float:
-        """The value at a scaled coordinate, within the parameter's bounds."""
-        if parameter.logarithmic:
-            value = float(np.exp(coordinate))
-        else:
-            value = float(coordinate * _scale(parameter))
-        return min(max(value, parameter.low), parameter.high)
 
     def scaled(self, index: int, value: float) -> float:
         """The scaled coordinate of a value of the parameter with this index."""
@@ -127,6 +113,14 @@ def _scale(parameter: Parameter) -> float:
     return size
 
 
+def _value(parameter: Parameter, coordinate: float) -> float:
+    """The value at a scaled coordinate, within the parameter's bounds."""
+    size = (
+        np.exp(coordinate) if parameter.logarithmic else coordinate * _scale(parameter)
+    )
+    return min(max(float(size), parameter.low), parameter.high)
+
+
 @dataclass(frozen=True, eq=False)
 class Nudges:
     """Which values of a model are changed together in finite differences (nudged).
@@ -134,48 +128,18 @@ class Nudges:
     Attributes:
       groups: indices of the values that are changed together; each group takes one
         simulation.
-      rows: for each value (N,) flags of the entries of the residual that it changes;
-        None if each value changes all entries.
+      rows: for each value (N,) flags of the entries of the residual that it changes.
     """
 
     groups: Sequence[Sequence[int]]
-    rows: Sequence[BoolArray] | None = None
-
-    @classmethod
-    def apart(cls, predictor: Predictor, model: Model) -> "Nudges":
-        """Nudges that change each value of a model by itself."""
-        count = sum(len(placed.values) for placed in model)
-        return cls([[i] for i in range(count)])
-
-    def steps(self, x: FloatArray, high: FloatArray) -> FloatArray:
-        """(p,) steps of scaled coordinates, negative near their upper bounds `high`."""
-        return np.where(x + STEP <= high, STEP, -STEP)
-
-    def nudged(self, x: FloatArray, steps: FloatArray) -> list[FloatArray]:
-        """For each group the (p,) coordinates `x` with the group's `steps` added."""
-        return [x + steps * np.isin(np.arange(len(x)), own) for own in self.groups]
-
-    def jacobian(self, seen: FloatArray, steps: FloatArray) -> FloatArray:
-        """(N, p) Jacobian by finite differences.
-
-        Args:
-          seen: (1 + groups, N) residuals at a point, and with each group changed.
-          steps: (p,) changes of the scaled coordinates.
-        """
-        found = np.zeros((seen.shape[1], len(steps)))
-        for own, other in zip(self.groups, seen[1:], strict=True):
-            for i in own:
-                slope = (other - seen[0]) / steps[i]
-                shown = True if self.rows is None else self.rows[i]
-                found[:, i] = np.where(shown, slope, 0.0)
-        return found
+    rows: Sequence[BoolArray]
 
 
 def fit_all(
     predictor: Predictor,
     starts: Sequence[Model],
     steps: int = MOST_STEPS,
-    nudges_of: Callable[[Predictor, Model], Nudges] = Nudges.apart,
+    nudges_of: Callable[[Predictor, Model], Nudges] | None = None,
     followed: bool = False,
     jacobians: Sequence[FloatArray | None] | None = None,
     exactly: bool = False,
@@ -186,7 +150,8 @@ def fit_all(
       predictor: predictor of the data to fit.
       starts: models with values to start from.
       steps: most steps of each fit.
-      nudges_of: says which values of a model are changed together in differences.
+      nudges_of: which values of a model are changed together in differences; None to
+        change each by itself.
       followed: take differences at the start only, and update the Jacobian from the
         residuals of each step (Broyden), which needs no simulations. Good enough to
         compare models, but not for intervals.
@@ -204,30 +169,27 @@ def fit_all(
         ends = np.cumsum([len(question) for question in questions])
         return np.split(predictor.residuals(every, exactly), ends[:-1])
 
-    tasks = [
-        partial(
-            _fit,
-            Coordinates(predictor.plant, start),
-            nudges_of(predictor, start),
-            steps,
-            followed,
-            jacobian,
+    def task(start: Model, known: FloatArray | None) -> Callable[[Ask], FittedModel]:
+        nudges = nudges_of(predictor, start) if nudges_of else None
+        coordinates = Coordinates(predictor.plant, start)
+        return lambda ask: _fit(
+            _Course(coordinates, nudges, followed, ask), steps, known
         )
-        for start, jacobian in zip(
-            starts, jacobians or [None] * len(starts), strict=True
-        )
-    ]
-    return lockstep(tasks, answer) if tasks else []
+
+    every = zip(starts, jacobians or [None] * len(starts), strict=True)
+    return lockstep([task(*one) for one in every], answer)
 
 
 class _Course:
     """Residuals and Jacobians at the points that a fit visits, each computed once."""
 
     def __init__(
-        self, coordinates: Coordinates, nudges: Nudges, followed: bool, ask: Ask
+        self, coordinates: Coordinates, nudges: Nudges | None, followed: bool, ask: Ask
     ) -> None:
-        self._coordinates, self._nudges, self._ask = coordinates, nudges, ask
-        self._followed = followed
+        self.coordinates, self._ask, self._followed = coordinates, ask, followed
+        count = len(coordinates.parameters)
+        alone = Nudges([[i] for i in range(count)], [np.array(True)] * count)
+        self._nudges = nudges or alone
         self._high = coordinates.bounds()[1]
         self._residuals: dict[bytes, FloatArray] = {}
         self._jacobians: dict[bytes, FloatArray] = {}
@@ -242,7 +204,7 @@ class _Course:
         """(N,) residual at a point (p,)."""
         if x.tobytes() not in self._residuals:
             if self._followed and self._jacobians:
-                model = self._coordinates.model_at(x)
+                model = self.coordinates.model_at(x)
                 self._residuals[x.tobytes()] = self._ask([model])[0]
             else:  # the Jacobian will be asked for next
                 self._differences(x)
@@ -257,11 +219,16 @@ class _Course:
 
     def _differences(self, x: FloatArray) -> None:
         """Compute residual and Jacobian at a point (p,) by finite differences."""
-        far = self._nudges.steps(x, self._high)
-        points = (x, *self._nudges.nudged(x, far))
-        seen = self._ask([self._coordinates.model_at(point) for point in points])
+        groups, rows = self._nudges.groups, self._nudges.rows
+        far = np.where(x + STEP <= self._high, STEP, -STEP)
+        points = [x, *(x + far * np.isin(np.arange(len(x)), own) for own in groups)]
+        seen = self._ask([self.coordinates.model_at(point) for point in points])
+        found = np.zeros((seen.shape[1], len(x)))
+        for own, other in zip(groups, seen[1:], strict=True):
+            for i in own:
+                found[:, i] = np.where(rows[i], (other - seen[0]) / far[i], 0.0)
         self._residuals[x.tobytes()] = seen[0]
-        self._jacobians[x.tobytes()] = self._nudges.jacobian(seen, far)
+        self._jacobians[x.tobytes()] = found
 
     def _updated(self, x: FloatArray) -> FloatArray:
         """(N, p) Jacobian at a point, updated from the latest one without simulation.
@@ -276,19 +243,12 @@ class _Course:
         return np.asarray(before + np.outer(missed, step / (step @ step)))
 
 
-def _fit(
-    coordinates: Coordinates,
-    nudges: Nudges,
-    steps: int,
-    followed: bool,
-    jacobian: FloatArray | None,
-    ask: Ask,
-) -> FittedModel:
+def _fit(course: _Course, steps: int, jacobian: FloatArray | None) -> FittedModel:
     """Fit one model with SciPy's trust-region least squares; arguments of `fit_all`."""
     from scipy.optimize import least_squares
 
+    coordinates = course.coordinates
     low, high = coordinates.bounds()
-    course = _Course(coordinates, nudges, followed, ask)
     inside = [1e-9 * np.maximum(1.0, np.abs(bound)) for bound in (low, high)]
     x = np.clip(coordinates.of(coordinates.model), low + inside[0], high - inside[1])
     if jacobian is not None:

@@ -1,7 +1,7 @@
 """The result of a search: fitted models, and how plausible each one is."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
@@ -71,6 +71,10 @@ class SearchResult:
         """The model that is believed; None for the nominal sim."""
         return self.best[self.chosen][0] if self.chosen else None
 
+    def with_models(self, size: int, judged: list[Judged]) -> "SearchResult":
+        """The result with other models of one number of effects, the best first."""
+        return replace(self, best={**self.best, size: judged})
+
     def worse(self, judged: Judged) -> float:
         """How much less plausible than the winner an equally large model is [nats]."""
         assert self.winner is not None
@@ -81,9 +85,9 @@ class SearchResult:
     def closed(self, judged: Judged) -> float:
         """Share of the nominal sim's energy above the noise that a model removes.
 
-        The share is computed on the selection data, and on fitting and selection data;
-        the larger one is returned. An effect such as an end stop may show in the
-        fitting data only, and a robot may fall in many ways there.
+        The larger one of the shares on the selection data and on fitting and selection
+        data: an effect such as an end stop may show in the fitting data only, and a
+        robot may fall in many ways there.
         """
         excess, gained = self.nothing - self.floor, self.nothing - judged.selected
         more = self.nothing_fit - self.floor_fit, self.nothing_fit - judged.fit.energy
@@ -96,6 +100,11 @@ def keys_of(model: Model) -> frozenset[str]:
     return frozenset(placed.key for placed in model)
 
 
+def without_each(model: Model) -> list[Model]:
+    """The models that arise when each effect of a model is removed in turn."""
+    return [tuple(other for other in model if other is not one) for one in model]
+
+
 VALUE_NATS = 2.0
 """Penalty [nats] for each value (fitted number) of a model when models are compared."""
 
@@ -104,11 +113,7 @@ def plausibility(judged: Judged, scale: float) -> float:
     """The implausibility of a model [nats]: lower is more plausible.
 
     It is minus the log-likelihood, plus penalties for rare effects and for each value.
-
-    Args:
-      judged: the model.
-      scale: divisor of the log-likelihood: energy of the best model over that of the
-        noise, at least 1. If no model is exact, differences count less.
+    `scale` divides the log-likelihood: if no model is exact, differences count less.
     """
     return judged.evidence / scale + sum(
         effect(placed.name).rarity_nats + VALUE_NATS * len(placed.values)
@@ -117,22 +122,12 @@ def plausibility(judged: Judged, scale: float) -> float:
 
 
 def scale_of(judged: Sequence[Judged], floor: float) -> float:
-    """Energy of the best model divided by that of the noise, at least 1.
-
-    Args:
-      judged: the models.
-      floor: energy [nats] that noise alone leaves in the data that count.
-    """
+    """Energy of the best model divided by `floor`, that of the noise, at least 1."""
     least = min((one.evidence for one in judged), default=floor)
     return max(least / floor, 1.0) if floor > 0 else 1.0
 
 
 def ranked(judged: Sequence[Judged], floor: float) -> list[Judged]:
-    """Models in the order of their plausibility, the most plausible first.
-
-    Args:
-      judged: the models.
-      floor: energy [nats] that noise alone leaves in the data that count.
-    """
+    """Models, the most plausible first; `floor` is the noise's energy [nats]."""
     scale = scale_of(judged, floor)
     return sorted(judged, key=lambda one: plausibility(one, scale))

@@ -10,19 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from experiments.concealed.draw import (
-    CaseSort,
-    Concealed,
-    drawn_effects,
-    drawn_sensors,
-)
+from experiments.concealed.draw import CaseSort, Concealed, drawn_effects, drawn_sensors
 from experiments.concealed.motion import CaseMotion
 from experiments.concealed.reading import PLANT_FILE, RECORDINGS, REFERENCE
 from experiments.concealed.size_by_information import drawn_nats, ease_that_tells, nats
 from groundwalk.errors import GroundwalkError
 from groundwalk.files import write_text
 from worlds.hidden.effects import Hidden
-from worlds.hidden.recorded import HiddenSensors, hidden_recording
+from worlds.hidden.recorded import hidden_recording
 from worlds.hidden.run import Run, run_hidden
 from worlds.hidden.scales import scales
 from worlds.hidden.setting import Scales
@@ -95,8 +90,7 @@ class _Maker:
         self._ground = np.random.SeedSequence([seed, number, attempt, 1])
         self._drawing = partial(rng, 2)
         self._nats = drawn_nats(rng(5))
-        sensors, jitter_s = drawn_sensors(self._sort.kind, rng(3))
-        self._sensors: HiddenSensors = sensors
+        self._sensors, jitter_s = drawn_sensors(self._sort.kind, rng(3))
         self._motion = CaseMotion.drawn(
             self._sort.plant, self._sort.kind == "unexcited", jitter_s, rng(4)
         )
@@ -106,8 +100,7 @@ class _Maker:
 
     def run(self) -> bool:
         """Simulate all motions; False if the robot fell or no effect size fits."""
-        motion = self._motion
-        engine = self._sort.engine
+        motion, engine = self._motion, self._sort.engine
         if motion.plant.floating:
             self._reference = [self._move(number, (), engine) for number in REFERENCES]
             nominal = [made.run for made in self._reference]
@@ -119,9 +112,8 @@ class _Maker:
         if self._hidden is None:
             return False
         for number in range(len(motion.names)):
-            made = self._move(number, self._hidden.effects, engine)
-            self._runs.append(made)
-            if not made.run.ok:
+            self._runs.append(self._move(number, self._hidden.effects, engine))
+            if not self._runs[-1].run.ok:
                 return False
         return True
 
@@ -134,17 +126,10 @@ class _Maker:
         large ones, so that this information says little.
         """
         motion = self._motion
+        case = self._sort, motion.plant, does, motion.places, motion.duration_s
 
         def drawn(ease: float | None = None) -> Concealed:
-            return drawn_effects(
-                self._sort,
-                motion.plant,
-                does,
-                motion.places,
-                motion.duration_s,
-                self._drawing(),
-                ease,
-            )
+            return drawn_effects(*case, self._drawing(), ease)
 
         if self._sort.kind != "single" or motion.plant.floating:
             return drawn()
@@ -170,10 +155,8 @@ class _Maker:
         engine: str,
         step_s: float | None = None,
     ) -> _Made:
-        motion = self._motion
-        start_rad, feed = motion.feed(number)
-        plant = motion.plants[number]
-        clock = motion.clock(number, step_s)
+        plant, clock = self._motion.plants[number], self._motion.clock(number, step_s)
+        start_rad, feed = self._motion.feed(number)
         run = run_hidden(plant, effects, engine, clock, feed, start_rad, self._ground)
         return _Made(number, run, effects)
 
@@ -187,10 +170,9 @@ class _Maker:
         base = "floating" if plant.floating else "fixed"
         content = json.dumps({"robot": robot, "base": base}, indent=1)
         write_text(folder / PLANT_FILE, content + "\n")
-        for made in self._runs:
-            self._write(folder / RECORDINGS, made, robot, base)
-        for made in self._reference:
-            self._write(folder / REFERENCE, made, robot, base)
+        for name, every in ((RECORDINGS, self._runs), (REFERENCE, self._reference)):
+            for made in every:
+                self._write(folder / name, made, robot, base)
 
     def _write(self, folder: Path, made: _Made, robot: str, base: str) -> None:
         plant = self._motion.plants[made.motion]
@@ -203,27 +185,14 @@ class _Maker:
 
     def truth(self) -> dict[str, Any]:
         """The case's entry in the sealed file, such as its kind and hidden effects."""
-        hidden = self._hidden
+        hidden, motion = self._hidden, self._motion
         if hidden is None:
             raise GroundwalkError("the case has not been run")
         return {
             "plant": self._sort.plant,
             "engine": self._sort.engine,
             "kind": self._sort.kind,
-            "effects": [
-                {
-                    "name": effect.name,
-                    "place": effect.place,
-                    "parameters": dict(effect.parameters),
-                }
-                for effect in hidden.effects
-            ],
+            "effects": [vars(effect) for effect in hidden.effects],
             "size": hidden.ease if hidden.effects else None,
-            "held": [
-                joint
-                for joint, moves in zip(
-                    self._motion.plant.joints, self._motion.moves, strict=True
-                )
-                if not moves
-            ],
+            "held": [motion.plant.joints[i] for i in np.flatnonzero(~motion.moves)],
         }

@@ -11,14 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from worlds.hidden import (
-    KINDS,
-    Hidden,
-    HiddenPlant,
-    Scales,
-    Setting,
-    Spot,
-)
+from worlds.hidden import KINDS, Hidden, HiddenPlant, Scales, Setting
 from worlds.hidden.recorded import HiddenSensors
 
 PLANTS = {
@@ -144,24 +137,15 @@ def drawn_effects(
     effects: list[Hidden] = []
     used: set[int] = set()
     for name in names:
+        # a confusable pair shares a joint; other effects have joints of their own
         together = len(effects) == 1 and tuple(names[:2]) in CONFUSABLE
-        spot = _spot(there[name], used, together, rng)
+        wanted = [spot for spot in there[name] if (spot.joint in used) == together]
+        wanted = wanted or list(there[name])
+        spot = wanted[int(rng.integers(len(wanted)))]
         used.add(spot.joint)
         setting = Setting(plant, scales, spot, ease, duration_s, rng)
         effects.append(Hidden.sized(name, setting))
     return Concealed(tuple(effects), ease)
-
-
-def _spot(
-    options: Sequence[Spot], used: set[int], together: bool, rng: np.random.Generator
-) -> Spot:
-    """Draw a place at one of the joints `used` if `together`, else at another joint.
-
-    If there is no such place, any of the options is drawn.
-    """
-    wanted = [spot for spot in options if (spot.joint in used) == together]
-    wanted = wanted or list(options)
-    return wanted[int(rng.integers(len(wanted)))]
 
 
 def _names(

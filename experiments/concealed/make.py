@@ -47,12 +47,7 @@ class ConcealedMake:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse options out of range.
-
-        Raises:
-          BadValueError: no case or too many cases are asked for, or a number is
-            negative.
-        """
+        """Refuse options out of range."""
         if not 1 <= self.cases <= _MOST_CASES:
             raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
         check_at_least(self, seed=0, threads=0)

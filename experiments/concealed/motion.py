@@ -120,12 +120,7 @@ class CaseMotion:
         return self.spans_s[0][1]
 
     def clock(self, number: int, step_s: float | None = None) -> Clock:
-        """The times of a recording's ticks and physics steps.
-
-        Args:
-          number: index of the recording in the case.
-          step_s: physics step [s]; None for `STEP_S` or `FLOATING_STEP_S`.
-        """
+        """The times of a recording's ticks and physics steps (None: the usual step)."""
         own = FLOATING_STEP_S if self.plant.floating else STEP_S
         rng = np.random.default_rng([self.seeds[number], 1])
         return Clock.drawn(

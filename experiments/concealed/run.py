@@ -13,12 +13,7 @@ from diagnosis import Verdict, diagnose
 from diagnosis.baselines import BASELINES
 from diagnosis.traces.split import split
 from experiments.command_line import run_verb
-from experiments.concealed.reading import (
-    ANSWERS,
-    BASELINE_ANSWERS,
-    CASES,
-    read_case,
-)
+from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, CASES, read_case
 from experiments.runs.folder import PROVENANCE, RunFolder, provenance
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
@@ -50,12 +45,7 @@ class ConcealedRun:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse a folder without cases, and negative numbers.
-
-        Raises:
-          RunFolderError: the folder holds no cases.
-          BadValueError: seed or threads is negative.
-        """
+        """Refuse a folder without cases, and negative numbers."""
         if not (self.folder / CASES).is_dir():
             raise RunFolderError(f"{self.folder} holds no {CASES}: make them first")
         check_at_least(self, seed=0, threads=0)
@@ -63,12 +53,11 @@ class ConcealedRun:
 
 def main(config: ConcealedRun) -> None:
     """Answer the cases that have no answer yet, and store the version of the code."""
-    kind, answer = ANSWERS, diagnosed
+    kind: str = ANSWERS
+    answer: Answer = diagnosed
     if config.by != "diagnosis":
-        kind, answer = (
-            f"{BASELINE_ANSWERS}/{config.by}",
-            partial(by_baseline, config.by),
-        )
+        kind = f"{BASELINE_ANSWERS}/{config.by}"
+        answer = partial(by_baseline, config.by)
     _note_code(config, kind)
     answer_all(config.folder, kind, answer, config.seed, config.threads)
 
@@ -141,9 +130,7 @@ def answer_all(
 def diagnosed(case: Path, seed: int) -> Verdict:
     """The diagnosis' verdict on a case; "not_identifiable" if it refuses a recording.
 
-    Args:
-      case: folder of the case.
-      seed: together with the case's number the seed of the random numbers.
+    The seed and the case's number together are the seed of the random numbers.
     """
     own = np.random.SeedSequence([seed, int(case.name.split("_")[-1])])
     try:
@@ -157,10 +144,7 @@ def diagnosed(case: Path, seed: int) -> Verdict:
 def by_baseline(name: str, case: Path, seed: int) -> Verdict:
     """A baseline's verdict, from all recordings of a case but the held-out ones.
 
-    Args:
-      name: name of the baseline.
-      case: folder of the case.
-      seed: not used; baselines draw no random numbers.
+    `seed` is not used: baselines draw no random numbers.
     """
     try:
         plant, traces, _ = read_case(case)

@@ -66,10 +66,9 @@ def main(config: ConcealedScore) -> None:
     """Score the answers of the diagnosis and of every baseline that answered."""
     folder = config.folder
     truth = read_truth(folder)
-    names = [case.name for case in truth.cases]
     answers = {
-        DIAGNOSIS: read_answers(folder / ANSWERS, names),
-        **read_baselines(folder, names),
+        DIAGNOSIS: read_answers(folder / ANSWERS, list(truth.cases)),
+        **read_baselines(folder, list(truth.cases)),
     }
     oracles = consult_all(folder, truth.cases, answers, config.threads)
     score = score_of(truth, answers, oracles)
@@ -96,34 +95,22 @@ def score_of(
       oracles: fits of the true effects, by the names of the cases in which an effect
         that the diagnosis knows is hidden.
     """
-    figures = {
-        method: measures(
-            [
-                mark(case, verdicts.get(case.name), oracles.get(case.name), method)
-                for case in truth.cases
-            ],
-            truth.seed,
-        )
-        for method, verdicts in answers.items()
-    }
-    missing = {
-        method: [case.name for case in truth.cases if case.name not in verdicts]
-        for method, verdicts in answers.items()
-    }
-    levels = {name: oracle.level for name, oracle in oracles.items()}
+    figures = {}
+    for method, verdicts in answers.items():
+        marks = [
+            mark(case, verdicts.get(name), oracles.get(name), method)
+            for name, case in truth.cases.items()
+        ]
+        missing = [name for name in truth.cases if name not in verdicts]
+        figures[method] = {"missing": missing, **measures(marks, truth.seed)}
     return {
         "format": FORMAT,
         "seed": truth.seed,
         "truth_sha256": truth.sha256,
         "cases": len(truth.cases),
-        "levels": levels,
-        "missing": missing[DIAGNOSIS],
-        **figures[DIAGNOSIS],
-        "baselines": {
-            method: {"missing": missing[method], **each}
-            for method, each in figures.items()
-            if method != DIAGNOSIS
-        },
+        "levels": {name: oracle.level for name, oracle in oracles.items()},
+        **figures.pop(DIAGNOSIS),
+        "baselines": figures,
     }
 
 
@@ -136,7 +123,7 @@ def _code_that_answered(folder: Path) -> str | None:
 
 
 def consult_all(
-    folder: Path, cases: Sequence[TrueCase], answers: Answers, threads: int
+    folder: Path, cases: Mapping[str, TrueCase], answers: Answers, threads: int
 ) -> dict[str, Oracle]:
     """The oracles (fits of the true effects) of all cases with a known hidden effect.
 
@@ -148,19 +135,23 @@ def consult_all(
       answers: verdicts whose effects are replayed on the held-out recordings.
       threads: number of processes; 0 for one per core.
     """
-    asked = [case for case in cases if case.kind in NAMED_KINDS]
-    found = {case.name: _kept(folder, case.name, answers) for case in asked}
-    oracles = {name: oracle for name, oracle in found.items() if oracle}
-    missing = [case for case in asked if case.name not in oracles]
+    named = {name: case for name, case in cases.items() if case.kind in NAMED_KINDS}
+    found = {
+        name: {m: each[name].effects for m, each in answers.items() if name in each}
+        for name in named
+    }
+    kept = {name: _kept(folder, name, found[name]) for name in named}
+    oracles = {name: oracle for name, oracle in kept.items() if oracle}
+    missing = [name for name in named if name not in oracles]
     if not missing:
         return oracles
     with (
-        progress("true structures", len(asked), len(oracles)) as task,
+        progress("true structures", len(named), len(oracles)) as task,
         process_pool(threads, len(missing)) as pool,
     ):
         calls = {
-            case.name: pool.submit(_consult, folder, case, _effects(answers, case.name))
-            for case in missing
+            name: pool.submit(_consult, folder, named[name], found[name])
+            for name in missing
         }
         for name, call in as_done(calls):
             oracles[name] = call.result()
@@ -181,24 +172,17 @@ def _path(folder: Path, name: str) -> Path:
     return folder / ORACLE / f"{name}.json"
 
 
-def _kept(folder: Path, name: str, answers: Answers) -> Oracle | None:
+def _kept(
+    folder: Path, name: str, asked: Mapping[str, Sequence[Found]]
+) -> Oracle | None:
     """The stored oracle of a case; None if there is none for the same answers."""
     path = _path(folder, name)
     if not path.is_file():
         return None
     oracle = Oracle.from_json(path.read_text())
-    asked = _effects(answers, name)
     keys = {method: answer_key(found) for method, found in asked.items()}
     known = {method: key for method, (key, _) in oracle.answered.items()}
     return oracle if all(known.get(m) == key for m, key in keys.items()) else None
-
-
-def _effects(answers: Answers, name: str) -> dict[str, tuple[Found, ...]]:
-    return {
-        method: verdicts[name].effects
-        for method, verdicts in answers.items()
-        if name in verdicts
-    }
 
 
 if __name__ == "__main__":

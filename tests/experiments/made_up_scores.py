@@ -55,7 +55,7 @@ def oracle(gain=200.0, nominal=5.0, fitted=1.0, **answered):
 
 
 def case(number, kind, *effects):
-    return TrueCase(f"case_{number:03d}", "nao_air", "mujoco", kind, effects)
+    return TrueCase("nao_air", "mujoco", kind, effects, name=f"case_{number:03d}")
 
 
 def scored(*rows, method=DIAGNOSIS):
@@ -65,7 +65,8 @@ def scored(*rows, method=DIAGNOSIS):
         one.name: row[2] for one, row in zip(cases, rows, strict=True) if row[2]
     }
     oracles = {one.name: row[3] for one, row in zip(cases, rows, strict=True) if row[3]}
-    return score_of(Truth(7, "ab12", cases), {method: verdicts}, oracles)
+    truth = Truth(7, {one.name: one for one in cases}, "ab12")
+    return score_of(truth, {method: verdicts}, oracles)
 
 
 def single(verdict, its_oracle=None):

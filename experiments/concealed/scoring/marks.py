@@ -149,9 +149,9 @@ def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
     """Error of the main parameters, relative to the size of the true effect.
 
     The parameters form a vector. The error is the distance from the estimate to the
-    truth, the size is the distance from the truth to the values at which the effect
-    does nothing; an infinite one of these, as for a stiffness, counts as zero. For a
-    parameter that the answer does not state the value is used at which it does nothing.
+    truth, the size is that from the truth to the values at which the effect does
+    nothing; an infinite one of these, as for a stiffness, counts as zero. It also
+    stands for a parameter that the answer does not state.
     """
     key = f"{true.name}@{true.place}"
     neutral = oracle.neutral.get(key, {}) if oracle else {}
@@ -165,13 +165,8 @@ def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
 
 
 def _covered(found: Found, true: Hidden) -> list[bool]:
-    return [
-        name in found.parameters
-        and found.parameters[name].low
-        <= true.parameters[name]
-        <= found.parameters[name].high
-        for name in _main(found, true)
-    ]
+    stated = [(found.parameters.get(n), true.parameters[n]) for n in _main(found, true)]
+    return [one is not None and one.low <= value <= one.high for one, value in stated]
 
 
 def _closed(oracle: Oracle, method: str) -> float | None:
@@ -183,8 +178,7 @@ def _closed(oracle: Oracle, method: str) -> float | None:
     if oracle.level not in ("L1", "L2") or oracle.nominal <= oracle.fitted:
         return None
     _, error = oracle.answered.get(method, ("", oracle.nominal))
-    share = (oracle.nominal - error) / (oracle.nominal - oracle.fitted)
-    return min(max(share, -_BOUND), _BOUND)
+    return _bounded((oracle.nominal - error) / (oracle.nominal - oracle.fitted))
 
 
 def _controls(
@@ -200,16 +194,20 @@ def _controls(
     if fit is None or closed is None:
         return None, None
     without = fit.nominal if fit.without is None else fit.without
-    if fit.corrected >= without:
+    removed = without - fit.corrected
+    if removed <= 0:
         return None, None
 
-    def share(error: float | None) -> float | None:
-        if error is None:
-            return None
-        part = closed * (without - error) / (without - fit.corrected)
-        return min(max(part, -_BOUND), _BOUND)
+    place, wrong = (
+        None if error is None else _bounded(closed * (without - error) / removed)
+        for error in (fit.wrong_place, fit.wrong_effect)
+    )
+    return place, wrong
 
-    return share(fit.wrong_place), share(fit.wrong_effect)
+
+def _bounded(share: float) -> float:
+    """A share of the error, limited so that no single answer decides a mean."""
+    return min(max(share, -_BOUND), _BOUND)
 
 
 def by_kind(marks: Sequence[Mark], *kinds: str) -> list[Mark]:

@@ -17,6 +17,9 @@ from experiments.reports.statistics import wilson
 Figure = dict[str, float | int | None]
 Statistic = Callable[[Sequence[Mark]], float]
 
+NOTHING: Figure = {"value": None, "n": 0, "low": None, "high": None}
+"""A figure for which there was nothing to count."""
+
 RESAMPLES = 1000
 """Number of bootstrap samples, as usual for 95 % intervals."""
 BINS = 10
@@ -62,14 +65,10 @@ def share(right: Iterable[bool]) -> Figure:
     """Share of true values in `right`, as a figure with Wilson's 95 % interval."""
     values = list(right)
     if not values:
-        return {"value": None, "n": 0, "low": None, "high": None}
+        return NOTHING
     low, high = wilson(sum(values), len(values))
-    return {
-        "value": sum(values) / len(values),
-        "n": len(values),
-        "low": low,
-        "high": high,
-    }
+    value = sum(values) / len(values)
+    return {"value": value, "n": len(values), "low": low, "high": high}
 
 
 def f1(marks: Sequence[Mark]) -> float:
@@ -91,12 +90,9 @@ def calibration_error(marks: Sequence[Mark]) -> float:
     of equal width, weighted by their cases (Guo, Pleiss, Sun and Weinberger 2017, "On
     calibration of modern neural networks", equation 3).
     """
-    total = sum(row["n"] for row in reliability(marks))
-    gaps = (
-        row["n"] * abs(row["stated"] - row["right"]["value"])
-        for row in reliability(marks)
-    )
-    return float(sum(gaps) / max(total, 1))
+    rows = reliability(marks)
+    gaps = (row["n"] * abs(row["stated"] - row["right"]["value"]) for row in rows)
+    return float(sum(gaps) / max(sum(row["n"] for row in rows), 1))
 
 
 def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
@@ -160,14 +156,9 @@ def _bootstrap(
     """
     n = len(marks)
     if not n:
-        return {"value": None, "n": 0, "low": None, "high": None}
+        return NOTHING
     draws = [
         statistic([marks[i] for i in rng.integers(n, size=n)]) for _ in range(RESAMPLES)
     ]
     low, high = np.quantile(draws, [0.025, 0.975])
-    return {
-        "value": statistic(marks),
-        "n": n,
-        "low": float(low),
-        "high": float(high),
-    }
+    return {"value": statistic(marks), "n": n, "low": float(low), "high": float(high)}

@@ -64,12 +64,7 @@ class Oracle:
 
 def answer_key(found: Sequence[Found]) -> str:
     """Hash of a list of effects with their places and values."""
-    text = json.dumps(
-        [
-            [each.name, each.place, {k: e.value for k, e in each.parameters.items()}]
-            for each in found
-        ]
-    )
+    text = json.dumps([[each.name, each.place, _values(each)] for each in found])
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -86,7 +81,7 @@ def consult(
     """
     plant, traces, reference = read_case(folder)
     true = tuple(_placed(plant, e.name, e.place, e.parameters) for e in case.effects)
-    answered = [
+    found_effects = [
         tuple(
             _placed(plant, each.name, each.place, _values(each))
             for each in found
@@ -95,15 +90,11 @@ def consult(
         )
         for found in answers.values()
     ]
-    fit = fit_structure(plant, traces, reference, true, answered)
+    fit = fit_structure(plant, traces, reference, true, found_effects)
     keys = [answer_key(found) for found in answers.values()]
-    return Oracle(
-        gain=fit.gain,
-        nominal=fit.nominal,
-        fitted=fit.fitted,
-        neutral={one.key: _neutral(plant, one) for one in true},
-        answered=dict(zip(answers, zip(keys, fit.others, strict=True), strict=True)),
-    )
+    neutral = {one.key: _neutral(plant, one) for one in true}
+    answered = dict(zip(answers, zip(keys, fit.others, strict=True), strict=True))
+    return Oracle(fit.gain, fit.nominal, fit.fitted, neutral, answered)
 
 
 def _values(found: Found) -> dict[str, float]:

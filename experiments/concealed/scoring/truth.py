@@ -2,17 +2,11 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from diagnosis import Verdict
-from experiments.concealed.reading import (
-    BASELINE_ANSWERS,
-    FORMAT,
-    HASH,
-    SEALED,
-    TRUTH,
-)
+from experiments.concealed.reading import BASELINE_ANSWERS, FORMAT, HASH, SEALED, TRUTH
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.json_data import from_plain, parse_object
 from worlds.hidden.effects import Hidden
@@ -20,37 +14,19 @@ from worlds.hidden.effects import Hidden
 
 @dataclass(frozen=True)
 class TrueCase:
-    """The truth of one case.
+    """The truth of one case, as `make_case` writes it.
 
     Attributes:
-      name: name of the case, such as "case_000".
       plant: name of the robot model, such as "so101".
       engine: "mujoco" or "bullet", which made the recordings.
       kind: "single", "pair" or "triple" (number of hidden effects), "none", "outside"
         (an effect that the diagnosis does not know) or "unexcited" (one effect at a
         joint that never moves).
       effects: the hidden effects with their parameters.
-    """
-
-    name: str
-    plant: str
-    engine: str
-    kind: str
-    effects: tuple[Hidden, ...] = ()
-
-
-@dataclass(frozen=True)
-class _SealedCase:
-    """One case in the form of the sealed file, which `make_case` writes.
-
-    Attributes:
-      plant: name of the robot model.
-      engine: "mujoco" or "bullet".
-      kind: kind of the case, such as "single".
-      effects: the hidden effects with their parameters.
       size: how easy the effects are to see: 1 easiest, 0 hard, below 0 even harder;
         None if nothing is hidden.
       held: names of the joints that never move.
+      name: name of the case, such as "case_000"; not part of the file.
     """
 
     plant: str
@@ -59,40 +35,26 @@ class _SealedCase:
     effects: tuple[Hidden, ...]
     size: float | None = None
     held: tuple[str, ...] = ()
-
-    def named(self, name: str) -> TrueCase:
-        """Make a `TrueCase` with this name."""
-        return TrueCase(name, self.plant, self.engine, self.kind, self.effects)
-
-
-@dataclass(frozen=True)
-class _SealedSet:
-    """The contents of a sealed file: the seed of the set, and its cases by name."""
-
-    seed: int
-    cases: Mapping[str, _SealedCase]
+    name: str = ""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """The truth of a set of cases.
+    """The truth of a set of cases, the contents of its sealed file.
 
     Attributes:
       seed: seed of the random numbers with which the cases were drawn.
+      cases: all cases by name, in the order of their numbers.
       sha256: hash of the sealed file, as it was printed when the cases were made.
-      cases: all cases, in the order of their numbers.
     """
 
     seed: int
-    sha256: str
-    cases: tuple[TrueCase, ...]
+    cases: Mapping[str, TrueCase]
+    sha256: str = ""
 
 
 def read_truth(folder: Path) -> Truth:
     """Open the sealed file of a set of cases.
-
-    Args:
-      folder: folder of the set.
 
     Raises:
       RunFolderError: the file is missing, has changed since it was sealed, or cannot be
@@ -113,19 +75,15 @@ def read_truth(folder: Path) -> Truth:
         )
     try:
         plain = parse_object(content, TRUTH, FORMAT)
-        sealed_set = from_plain(_SealedSet, plain, TRUTH, complete=False)
+        truth = from_plain(Truth, plain, TRUTH, complete=False)
     except BadValueError as error:
         raise RunFolderError(f"{path}: {error}") from None
-    cases = sealed_set.cases.items()
-    return Truth(sealed_set.seed, found, tuple(one.named(name) for name, one in cases))
+    cases = {name: replace(case, name=name) for name, case in truth.cases.items()}
+    return replace(truth, cases=cases, sha256=found)
 
 
 def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
     """The verdicts in a folder, by the names of the cases that have one.
-
-    Args:
-      folder: folder of the verdicts.
-      names: names of the cases to look for.
 
     Raises:
       RunFolderError: the folder does not exist, or a verdict in it cannot be read.
@@ -145,12 +103,7 @@ def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
 
 
 def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Verdict]]:
-    """The verdicts of each baseline that answered, by baseline and case.
-
-    Args:
-      folder: folder of the set.
-      names: names of the cases to look for.
-    """
+    """The verdicts of each baseline that answered, by baseline and case."""
     parent = folder / BASELINE_ANSWERS
     found = sorted(path for path in parent.glob("*") if path.is_dir())
     return {path.name: read_answers(path, names) for path in found}

@@ -1,10 +1,12 @@
 """Controls: what must do worse than the truth."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.controls import Controls
+from diagnosis.conclude.controls import controls_of
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
@@ -14,7 +16,8 @@ PLANT = arm()
 
 
 def controls(predictor, *model, alike=(), seed=1):
-    return Controls.of(predictor, model, alike, np.random.default_rng(seed))
+    rng = np.random.default_rng(seed)
+    return SimpleNamespace(**controls_of(predictor, model, alike, rng))
 
 
 @pytest.fixture(scope="module")

@@ -76,7 +76,7 @@ def answer(name, parameter, value, place="swing"):
 
 
 def test_the_oracle_reaches_the_noise_and_answers_are_replayed_beside_it(folder):
-    case = TrueCase("case_000", "pendulum", "mujoco", "single", (VISCOUS,))
+    case = TrueCase("pendulum", "mujoco", "single", (VISCOUS,), name="case_000")
     answers = {
         "right": answer("viscous_friction", "coefficient", TRUE),
         "wrong": answer("coulomb_friction", "torque", 0.02),
