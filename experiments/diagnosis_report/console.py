@@ -33,8 +33,8 @@ def print_verdict(
     Args:
       verdict: the verdict of the diagnosis.
       files: the files that were written, the most useful first.
-      changed: whether the diagnosis was asked for changes since the reference
-        recordings (healthy robot), not for physics that the sim lacks.
+      changed: whether the question is what has changed since the reference recordings
+        (healthy robot), not what physics the sim lacks.
 
     Example:
       >>> print_verdict(Verdict("not_identifiable", limits=("Nothing moved.",)), [])
@@ -64,8 +64,8 @@ def console_lines(
     Args:
       verdict: the verdict of the diagnosis.
       files: the files that were written.
-      changed: whether the diagnosis was asked for changes since the reference
-        recordings (healthy robot), not for physics that the sim lacks.
+      changed: whether the question is what has changed since the reference recordings
+        (healthy robot), not what physics the sim lacks.
 
     Example:
       >>> console_lines(Verdict("not_identifiable", limits=("Nothing moved.",)), [])[1]
@@ -92,12 +92,12 @@ def _verdict(verdict: Verdict, changed: bool) -> str:
             f"left, most of it in {rest.channel}"
         )
     if verdict.kind == "none" and verdict.smallest_detectable:
-        smallest = [*verdict.smallest_detectable.items()][:_SHOWN_AMOUNTS]
         amounts = [
             f"{at_words(PlacedEffect.parse(key))} of {amount_text(amount)}"
-            for key, amount in smallest
+            for key, amount in verdict.smallest_detectable.items()
         ]
-        return f"{kind} that would be as large as {listing(amounts, 'or')}"
+        shown = listing(amounts[:_SHOWN_AMOUNTS], "or")
+        return f"{kind} that would be as large as {shown}"
     return kind
 
 
@@ -124,13 +124,9 @@ def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:
     fit, worst = verdict.fit, headline(verdict.fit)
     if fit is None or worst is None:
         return
-    course = worst.nominal
-    if verdict.effects:
-        course = f"{worst.nominal} -> {worst.corrected}"
-    yield (
-        "held out",
-        f"error in {worst.channel} {course} {worst.unit}, noise floor {worst.floor}",
-    )
+    after = f" -> {worst.corrected}" if verdict.effects else ""
+    course = f"{worst.nominal}{after} {worst.unit}, noise floor {worst.floor}"
+    yield "held out", f"error in {worst.channel} {course}"
     if verdict.effects:
         yield "", _all_channels(fit)
 
@@ -143,9 +139,8 @@ def _all_channels(fit: Fit) -> str:
         "a regression without physics": fit.ceiling,
     }
     known = {name: error for name, error in controls.items() if error is not None}
-    nominal, corrected, *others = errors_text(
-        (fit.nominal, fit.corrected, *known.values())
-    )
+    errors = fit.nominal, fit.corrected, *known.values()
+    nominal, corrected, *others = errors_text(errors)
     instead = [f"{name} {error}" for name, error in zip(known, others, strict=True)]
     text = f"all channels {nominal} -> {corrected} times the noise floor"
     return f"{text}; instead of it {', '.join(instead)}" if instead else text

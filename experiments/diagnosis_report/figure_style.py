@@ -3,7 +3,7 @@
 import html
 import io
 import re
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,26 +46,10 @@ def plain(axes: "Axes", grid: Literal["x", "y"] | None = "y") -> None:
         axes.grid(axis=grid, color=GRID, linewidth=0.8)
 
 
-def note(
-    axes: "Axes",
-    text: str,
-    at: tuple[float, float],
-    colour: str = FAINT,
-    offset: tuple[float, float] = (4, 0),
-) -> None:
-    """Write a small text beside the point `at` (in data coordinates of the axes).
-
-    Its left end has the distance `offset` (x, y) [1/72 inch] from the point.
-    """
-    axes.annotate(
-        text,
-        at,
-        xytext=offset,
-        textcoords="offset points",
-        va="center",
-        fontsize=8.5,
-        color=colour,
-    )
+def note(axes: "Axes", text: str, at: tuple[float, float], colour: str = FAINT) -> None:
+    """Write a small text right of the point `at` (in data coordinates of the axes)."""
+    style: dict[str, Any] = {"va": "center", "fontsize": 8.5, "color": colour}
+    axes.annotate(text, at, xytext=(4, 0), textcoords="offset points", **style)
 
 
 def inline_svg(figure: "Figure", name: str, alternative: str) -> str:
@@ -85,8 +69,8 @@ def inline_svg(figure: "Figure", name: str, alternative: str) -> str:
     svg = text.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
-    svg = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", svg, count=1)
-    svg = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1)
+    for size in ("width", "height"):
+        svg = re.sub(rf'(<svg[^>]*?) {size}="[^"]*"', r"\1", svg, count=1)
     label = html.escape(alternative)
     svg = svg.replace("<svg", f'<svg role="img" aria-label="{label}"', 1)
     return _with_ids(svg, name)

@@ -1,15 +1,11 @@
 """Figures of held-out recordings: motion and errors over time, and total errors."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnosis.conclude.held_out_series import (
-    ChannelSeries,
-    HeldOutSeries,
-    rms,
-)
-from diagnosis.verdict import Fit, Unexplained
+from diagnosis.conclude.held_out_series import HeldOutSeries, rms
+from diagnosis.verdict import ChannelFit, Fit, Unexplained
 from experiments.diagnosis_report.figure_style import (
     CONTROL,
     CORRECTED,
@@ -24,7 +20,6 @@ from experiments.diagnosis_report.numbers import error_unit, errors_text
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 CLOSE_UP_S = 1.0
@@ -41,27 +36,17 @@ UNCORRECTED = ("nominal", "ceiling")
 """The keys of `BARS` that are drawn if no effect was found, so nothing corrected."""
 
 
-class View(NamedTuple):
-    """How to show a channel, such as a joint's position.
-
-    Attributes:
-      unit: unit of the channel.
-      floor: noise floor of the channel in that unit, or None; twice of it is shaded.
-      is_corrected: whether a corrected sim is shown.
-    """
-
-    unit: str
-    floor: float | None
-    is_corrected: bool
-
-
-def overlay_figure(series: HeldOutSeries, channel: str, view: View) -> "Figure":
+def overlay_figure(
+    series: HeldOutSeries, channel: str, errors: ChannelFit | None, is_corrected: bool
+) -> "Figure":
     """Draw a close-up of a channel, and below it the errors over the whole recording.
 
     Args:
       series: a held-out recording.
       channel: name of one of its channels.
-      view: unit and noise floor of the channel.
+      errors: the channel's unit and its noise floor, twice of which is shaded; None if
+        they are unknown.
+      is_corrected: whether the corrected sim is shown, too.
     """
     real, sim, corrected = series.channels[channel]
     rows = close_up(series.time_s, real, sim)
@@ -69,15 +54,25 @@ def overlay_figure(series: HeldOutSeries, channel: str, view: View) -> "Figure":
     above, below = figure.subplots(2, 1, height_ratios=(3, 2))
     time_s = series.time_s[rows]
     above.plot(time_s, sim[rows], color=SIM, lw=1.3, label="sim")
-    if view.is_corrected:
+    wrong = {SIM: sim - real}
+    if is_corrected:
         after = corrected[rows]
         above.plot(time_s, after, color=CORRECTED, lw=1.3, label="corrected sim")
+        wrong[CORRECTED] = corrected - real
     above.plot(time_s, real[rows], color=REAL, lw=1.6, ls=(0, (4, 1.5)), label="real")
-    above.set_ylabel(f"{channel}\n[{view.unit}]")
+    unit = errors.unit if errors else "SI unit"
+    above.set_ylabel(f"{channel}\n[{unit}]")
     above.legend(
         frameon=False, ncols=3, loc="lower left", bbox_to_anchor=(0, 1), fontsize=8.5
     )
-    _draw_errors(below, series.time_s, series.channels[channel], view)
+    factor, unit = error_unit(unit, max(map(rms, wrong.values())))
+    if errors and errors.floor:
+        high = 2 * factor * errors.floor
+        below.axhspan(-high, high, color=NOISE, zorder=1)
+    for colour, error in wrong.items():
+        below.plot(series.time_s, factor * error, color=colour, lw=0.8)
+    below.set_ylabel(f"error [{unit}]")
+    below.set_xlabel("time [s]")
     below.axvspan(time_s[0], time_s[-1], color="#fff3c4", zorder=0, lw=0)
     for axes in (above, below):
         plain(axes)
@@ -86,32 +81,12 @@ def overlay_figure(series: HeldOutSeries, channel: str, view: View) -> "Figure":
     return figure
 
 
-def _draw_errors(
-    axes: "Axes", time_s: FloatArray, channel: ChannelSeries, view: View
-) -> None:
-    errors = {SIM: channel.sim - channel.real}
-    if view.is_corrected:
-        errors[CORRECTED] = channel.corrected - channel.real
-    factor, unit = error_unit(view.unit, max(map(rms, errors.values())))
-    if view.floor:
-        high = 2 * factor * view.floor
-        axes.axhspan(-high, high, color=NOISE, zorder=1)
-    for colour, error in errors.items():
-        axes.plot(time_s, factor * error, color=colour, lw=0.8)
-    axes.set_ylabel(f"error [{unit}]")
-    axes.set_xlabel("time [s]")
-
-
 def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
     """Choose the second of a recording in which the error is large and easy to see.
 
     It is the window in which the error is largest relative to the range of the motion,
-    among those with at least half the squared error of the worst window.
-
-    Args:
-      time_s: (T,) increasing times [s].
-      real: (T,) measured values, NaN where one is missing.
-      sim: (T,) predicted values, NaN where the measured one is missing.
+    among those with at least half the squared error of the worst window. Times,
+    measured and predicted values are (T,), with NaN where a measured one is missing.
     """
     rows = int(np.searchsorted(time_s, time_s[0] + CLOSE_UP_S, side="right"))
     windows = np.lib.stride_tricks.sliding_window_view
@@ -126,26 +101,23 @@ def close_up(time_s: FloatArray, real: FloatArray, sim: FloatArray) -> slice:
 def bars_figure(fit: Fit, is_corrected: bool) -> "Figure":
     """Draw bars of the errors of all channels together, in units of the noise floor.
 
-    Args:
-      fit: the held-out errors of a verdict.
-      is_corrected: whether to show the corrected sim and the controls.
+    Without a corrected sim the controls, which replace its effects, are left out, too.
     """
     bars = BARS if is_corrected else UNCORRECTED
-    errors = {name: getattr(fit, name) for name in bars}
-    known = {name: error for name, error in errors.items() if error is not None}
+    known = [name for name in bars if getattr(fit, name) is not None]
+    errors = [getattr(fit, name) for name in known]
     figure = new_figure(0.3 * len(known) + 0.75)
     axes = figure.subplots()
     rows = range(len(known))
-    colours = [BARS[name][1] for name in known]
-    axes.barh(rows, list(known.values()), height=0.62, color=colours)
-    for row, text in enumerate(errors_text(known.values())):
-        note(axes, text, (list(known.values())[row], row))
+    axes.barh(rows, errors, height=0.62, color=[BARS[name][1] for name in known])
+    for row, text in enumerate(errors_text(errors)):
+        note(axes, text, (errors[row], row))
     plain(axes, grid="x")
     axes.axvline(fit.floor, color=REAL, lw=1, ls=(0, (3, 2)))
     note(axes, "noise floor", (fit.floor, -0.75), REAL)
     axes.set_yticks(rows, [BARS[name][0] for name in known])
     axes.tick_params(axis="y", labelcolor=REAL)
-    axes.set_xlim(0, 1.12 * max(*known.values(), fit.floor))
+    axes.set_xlim(0, 1.12 * max(*errors, fit.floor))
     axes.set_ylim(len(known) - 0.5, -1.0)
     axes.set_xlabel("rms error on held-out recordings [multiples of the noise floor]")
     return figure

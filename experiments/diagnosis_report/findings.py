@@ -1,5 +1,6 @@
 """Words for the findings of a diagnosis: effects with places and values, and pulses."""
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
@@ -28,10 +29,8 @@ _WAYS = {
 def findings(effects: Sequence[Found], changed: bool = False) -> list[str]:
     """A clause for each effect; one clause for all places of an effect found at many.
 
-    Args:
-      effects: effects found, the surest first.
-      changed: whether to call them changes since the reference recordings, not physics
-        that the sim lacks.
+    With `changed` they are called changes since the reference recordings, not physics
+    that the sim lacks; the surest effect comes first.
     """
     return [
         at_many(group) if len(group) > 1 else finding(group[0], changed)
@@ -75,10 +74,8 @@ def at_many(alike: Sequence[Found]) -> str:
 def finding(effect: Found, changed: bool = False) -> str:
     """A clause: "the left knee (LKneePitch) has play of about 0.030 rad (...) ...".
 
-    Args:
-      effect: an effect found.
-      changed: whether to call it a change since the reference recordings, not physics
-        that the sim lacks.
+    With `changed` it is called a change since the reference recordings, not physics
+    that the sim lacks.
     """
     words = kind_of(effect.name).words
     numbers = {
@@ -86,30 +83,17 @@ def finding(effect: Found, changed: bool = False) -> str:
         for name, one in effect.parameters.items()
         if abs(one.value) > SHOWN * (one.high - one.low)
     }
-    clause = words.finding.format_map(
-        _Words(
-            numbers,
-            joint=place_words(effect.place),
-            body=place_words(effect.place, "body"),
-            lacking="that was not there before" if changed else "that the sim lacks",
-            usual="before" if changed else "in the sim",
-        )
-    )
+    known = defaultdict(lambda: "an unknown amount", numbers)
+    known["joint"] = place_words(effect.place)
+    known["body"] = place_words(effect.place, "body")
+    known["lacking"] = "that was not there before" if changed else "that the sim lacks"
+    known["usual"] = "before" if changed else "in the sim"
+    clause = words.finding.format_map(known)
     course, start_s, end_s = effect.when.kind, effect.when.start_s, effect.when.end_s
     if course == "always":
         return clause
     doing = "from" if course == "burst" else "growing from"
     return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s"
-
-
-class _Words(dict[str, str]):
-    """Words that fill a text template; missing ones become "an unknown amount"."""
-
-    def __init__(self, numbers: dict[str, str], **words: str) -> None:
-        super().__init__(numbers | words)
-
-    def __missing__(self, key: str) -> str:
-        return "an unknown amount"
 
 
 def parameter_rows(effect: Found) -> list[tuple[str, str]]:
@@ -121,11 +105,7 @@ def parameter_rows(effect: Found) -> list[tuple[str, str]]:
 
 
 def pulse_sentences(pulses: Sequence[Pulse]) -> Iterator[str]:
-    """Yield a sentence for the pulses of each recording, joint and source.
-
-    Args:
-      pulses: torques that no servo asked for, in any order.
-    """
+    """Yield a sentence for the pulses of each recording, joint and source."""
 
     def key(pulse: Pulse) -> tuple[str, str, str]:
         return pulse.recording, pulse.joint, pulse.source

@@ -55,9 +55,8 @@ def mismatch_figure(rows: Sequence[MismatchCell]) -> "Figure":
     """
     regimes = list(dict.fromkeys(name for cell in rows for name in cell.regimes))
     has_bursts = any(cell.bursts for cell in rows)
-    widths = [_SHARE_WIDTH]
-    widths += [_CELL_WIDTH * len(regimes)] * bool(regimes)
-    widths += [_BURST_WIDTH] * has_bursts
+    regimes_width = [_CELL_WIDTH * len(regimes)] * bool(regimes)
+    widths = [_SHARE_WIDTH, *regimes_width, *([_BURST_WIDTH] * has_bursts)]
     figure = new_figure(0.27 * len(rows) + 1.3)
     panels = figure.subplots(
         1, len(widths), squeeze=False, sharey=True, width_ratios=widths

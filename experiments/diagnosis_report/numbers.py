@@ -27,13 +27,13 @@ def estimate_text(estimate: Estimate) -> str:
     """A value with its interval, for example "0.030 rad (0.027 to 0.034)"."""
     size = max(abs(estimate.low), abs(estimate.high))
     factor, unit = _handy(_HANDY, estimate.unit, size)
-    value, low, high = (
-        factor * part for part in (estimate.value, estimate.low, estimate.high)
-    )
+    parts = estimate.value, estimate.low, estimate.high
+    value, low, high = (factor * part for part in parts)
     if low == high:
         return f"{value:.3g} {unit}".rstrip()
     places = _decimals(high - low, abs(value))
-    numbers = [f"{_no_minus_zero(part, places)}" for part in (value, low, high)]
+    # adding 0.0 turns -0.0 into 0.0
+    numbers = [f"{round(one, places) + 0.0:.{places}f}" for one in (value, low, high)]
     name = f" {unit}" if unit else ""
     return f"{numbers[0]}{name} ({numbers[1]} to {numbers[2]})"
 
@@ -86,12 +86,7 @@ def _handy(
 
 
 def _decimals(width: float, size: float) -> int:
-    """Number of decimals with which a value's interval keeps 1 or 2 digits.
-
-    Args:
-      width: width of the interval; 0 for a value without one.
-      size: absolute value.
-    """
+    """Number of decimals that keep 1 or 2 digits of an interval's width (0: none)."""
     step = width if width > 0 else size / 100
     if step <= 0:
         return 0
@@ -104,7 +99,3 @@ def _two_digits(value: float) -> str:
     if value == 0:
         return "0"
     return f"{value:.{max(0, 1 - math.floor(math.log10(abs(value))))}f}"
-
-
-def _no_minus_zero(value: float, places: int) -> str:
-    return f"{round(value, places) + 0.0:.{places}f}"

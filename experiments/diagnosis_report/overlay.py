@@ -16,11 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.conclude.held_out_series import (
-    ChannelSeries,
-    HeldOutSeries,
-    by_error,
-)
+from diagnosis.conclude.held_out_series import ChannelSeries, HeldOutSeries, by_error
 from diagnosis.verdict import Fit
 from experiments.diagnosis_report.numbers import error_unit, unit_text
 from experiments.seeing.scenes import scene_names

@@ -17,7 +17,6 @@ from diagnosis.residuals.channels import (
 from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
-    View,
     bars_figure,
     overlay_figure,
     unexplained_figure,
@@ -93,8 +92,7 @@ def write_report(
     Args:
       path: the `.html` file.
       verdict: the verdict of the diagnosis.
-      series: held-out recordings with the predictions of nominal and corrected sim, the
-        most important first; may be empty.
+      series: held-out recordings, the most important first; may be empty.
       facts: origin of the diagnosis.
 
     Raises:
@@ -104,12 +102,13 @@ def write_report(
       >>> facts = ReportFacts("nao", "fixed", command="groundwalk diagnose ...")
       >>> write_report(Path("report.html"), found.verdict, found.held_out(), facts)
     """
-    parts = _words(verdict, facts) | _shown(verdict, series) | _made(verdict, facts)
+    parts = _words(verdict, facts) | _shown(verdict, series)
     write_text(path, render(TEMPLATE, **parts))
 
 
 def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
     """Sentences and small tables of the page, by their names in the Jinja template."""
+    used = vars(verdict.recordings).items()
     return {
         "verdict": verdict,
         "title": f"Diagnosis: {facts.robot}",
@@ -126,21 +125,10 @@ def _words(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
         "fit_rows": _fit_rows(verdict.fit) if verdict.fit else [],
         "shown_rows": SHOWN_ROWS,
         "noise_floor": NOISE_FLOOR,
-    }
-
-
-def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
-    """Command, settings and other facts on the page's origin, for the template."""
-    recordings = [
-        (_USES[use], ", ".join(names))
-        for use, names in vars(verdict.recordings).items()
-        if names
-    ]
-    return {
         "command": facts.command,
         "made": [
             ("robot", f"{facts.robot}, {facts.base} base"),
-            *recordings,
+            *((_USES[use], ", ".join(names)) for use, names in used if names),
             *facts.settings.items(),
             *facts.versions.items(),
             ("took", f"{verdict.seconds:.0f} s"),
@@ -151,57 +139,42 @@ def _made(verdict: Verdict, facts: ReportFacts) -> dict[str, Any]:
 
 def _shown(verdict: Verdict, series: Sequence[HeldOutSeries]) -> dict[str, Any]:
     """Figures of the page, by their names in the Jinja template."""
-    rest, cells = verdict.unexplained, worst_cells(verdict.mismatch)
-    return {
-        "unexplained": rest
-        and {
-            "rest": rest,
-            "svg": inline_svg(
-                unexplained_figure(rest), "unexplained", "unexplained error"
-            ),
-        },
-        "map": cells
-        and {
+    shown: dict[str, Any] = {"unexplained": None, "map": [], "bars": None}
+    rest, cells, fit = verdict.unexplained, worst_cells(verdict.mismatch), verdict.fit
+    if rest:
+        svg = inline_svg(unexplained_figure(rest), "unexplained", "unexplained error")
+        shown["unexplained"] = {"rest": rest, "svg": svg}
+    if cells:
+        shown["map"] = {
             "svg": inline_svg(mismatch_figure(cells), "map", "mismatch by channel"),
             "regimes": any(cell.regimes for cell in cells),
             "bursts": any(cell.bursts for cell in cells),
             "left_out": len(verdict.mismatch) - len(cells),
-        },
-        "bars": verdict.fit
-        and inline_svg(
-            bars_figure(verdict.fit, bool(verdict.effects)), "bars", "errors"
-        ),
-        "pictures": [
-            _picture(one, verdict, f"picture{index}")
-            for index, one in enumerate(series[:MOST_PICTURES])
-        ],
-        "left_out_pictures": max(0, len(series) - MOST_PICTURES),
-    }
+        }
+    if fit:
+        figure = bars_figure(fit, bool(verdict.effects))
+        shown["bars"] = inline_svg(figure, "bars", "errors")
+    shown["pictures"] = [
+        _picture(one, verdict, f"picture{index}")
+        for index, one in enumerate(series[:MOST_PICTURES])
+    ]
+    shown["left_out_pictures"] = max(0, len(series) - MOST_PICTURES)
+    return shown
 
 
 def _picture(series: HeldOutSeries, verdict: Verdict, name: str) -> dict[str, Any]:
     """Name of a held-out recording, and a figure of its worst channel over time."""
     channel = by_error(series, verdict.fit)[0]
-    scored = verdict.fit.channels.get(channel) if verdict.fit else None
-    view = View(
-        unit=scored.unit if scored else "SI unit",
-        floor=scored.floor if scored else None,
-        is_corrected=bool(verdict.effects),
-    )
-    figure = overlay_figure(series, channel, view)
-    return {
-        "name": series.name,
-        "svg": inline_svg(figure, name, f"{channel} of {series.name}: real and sim"),
-    }
+    errors = verdict.fit.channels.get(channel) if verdict.fit else None
+    figure = overlay_figure(series, channel, errors, bool(verdict.effects))
+    alternative = f"{channel} of {series.name}: real and sim"
+    return {"name": series.name, "svg": inline_svg(figure, name, alternative)}
 
 
 def _effect_row(effect: Found) -> dict[str, Any]:
-    course = effect.when
-    times = (
-        "all the time"
-        if course.kind == "always"
-        else f"{course.kind}, {course.start_s:.3g} to {course.end_s:.3g} s"
-    )
+    course, times = effect.when, "all the time"
+    if course.kind != "always":
+        times = f"{course.kind}, {course.start_s:.3g} to {course.end_s:.3g} s"
     return {
         **_label_and_place(effect.name, effect.place),
         "parameters": parameter_rows(effect),

@@ -35,13 +35,7 @@ given, so that the question is what has changed since then."""
 
 
 def badge(verdict: Verdict, changed: bool = False) -> str:
-    """The kind of a verdict in a few words.
-
-    Args:
-      verdict: the verdict of the diagnosis.
-      changed: whether the question is what has changed since the reference recordings,
-        not what physics the sim lacks.
-    """
+    """The kind of a verdict in a few words; `changed` as in `answer`."""
     return (CHANGE_BADGES if changed else BADGES)[verdict.kind]
 
 
@@ -61,13 +55,14 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
         not what physics the sim lacks.
     """
     pulses = [*map(sentence, pulse_sentences(verdict.pulses))]
+    what = "has changed" if changed else "is missing"
     if verdict.kind == "none":
-        return [*_nothing(verdict, changed), *pulses]
+        return [*_nothing(verdict, what), *pulses]
     first, before = list[str](), ""
     if verdict.kind == "unknown":
-        first, before = _unknown(verdict, changed), "besides, "
+        first, before = _unknown(verdict, what), "besides, "
     elif verdict.kind == "not_identifiable":
-        first, before = _open(verdict, changed), "this much is sure: "
+        first, before = _open(verdict, what), "this much is sure: "
     found = [before + each for each in findings(verdict.effects, changed)]
     return [*first, *map(sentence, found), *pulses, *_gain(verdict)]
 
@@ -107,27 +102,21 @@ def _gain(verdict: Verdict) -> list[str]:
     if errors is None or fit is None or not verdict.effects:
         return []
     one = "it" if len(verdict.effects) == 1 else "these"
-    return [
+    gain = (
         f"With {one} the sim's error in {errors.channel}, on held-out recordings, "
         f"falls from {errors.nominal} to {errors.corrected} {errors.unit}; the noise "
-        f"floor is {errors.floor}.{_over_all(fit)}"
-    ]
-
-
-def _over_all(fit: Fit) -> str:
-    closed = fit.closed(fit.corrected)
-    if closed is None:
-        return ""
-    if closed >= 1:
-        return " Over all channels, no error above the noise floor is left."
-    return (
-        f" Over all channels, {percent(max(closed, 0.0))} of the error above the noise "
-        "floor is gone."
+        f"floor is {errors.floor}."
     )
+    closed = fit.closed(fit.corrected)
+    if closed is not None and closed >= 1:
+        gain += " Over all channels, no error above the noise floor is left."
+    elif closed is not None:
+        part = f"{percent(max(closed, 0.0))} of the error above the noise floor"
+        gain += f" Over all channels, {part} is gone."
+    return [gain]
 
 
-def _nothing(verdict: Verdict, changed: bool) -> list[str]:
-    what = "has changed" if changed else "is missing"
+def _nothing(verdict: Verdict, what: str) -> list[str]:
     lines = [f"Nothing {what} that these recordings could show."]
     errors = headline(verdict.fit)
     if errors:
@@ -144,8 +133,7 @@ def _nothing(verdict: Verdict, changed: bool) -> list[str]:
     return lines
 
 
-def _unknown(verdict: Verdict, changed: bool) -> list[str]:
-    what = "has changed" if changed else "is missing"
+def _unknown(verdict: Verdict, what: str) -> list[str]:
     lines = [f"Something {what} that no effect known here explains."]
     rest = verdict.unexplained
     if rest is not None:
@@ -156,13 +144,10 @@ def _unknown(verdict: Verdict, changed: bool) -> list[str]:
     return lines
 
 
-def _open(verdict: Verdict, changed: bool) -> list[str]:
+def _open(verdict: Verdict, what: str) -> list[str]:
     if not verdict.alternatives:
-        what = "has changed" if changed else "is missing"
-        return [
-            f"These recordings cannot tell whether anything {what}.",
-            verdict.limits[0],
-        ]
+        told = f"These recordings cannot tell whether anything {what}."
+        return [told, verdict.limits[0]]
     if len(verdict.alternatives) == 1:
         hint = answer_words(verdict.alternatives[0])
         return [f"These recordings hint at {hint}, but do not confirm it."]
@@ -176,13 +161,12 @@ def doubts(verdict: Verdict) -> list[str]:
     """Sentences on how sure each effect is, and on other answers that fit as well."""
     lines = []
     for effect in verdict.effects:
-        sure = f"{at_words(effect)}: {percent(effect.probability)} sure"
+        rest = "no other effect known here explains the recordings as well"
         others = [at_words(other) for other in effect.confusable_with]
         if others:
-            sure += f"; the recordings do not rule out {listing(others, 'or')} instead"
-        else:
-            sure += "; no other effect known here explains the recordings as well"
-        lines.append(sentence(sure))
+            rest = f"the recordings do not rule out {listing(others, 'or')} instead"
+        sure = percent(effect.probability)
+        lines.append(sentence(f"{at_words(effect)}: {sure} sure; {rest}"))
     answers = [answer_words(one) for one in verdict.alternatives]
     if answers and verdict.kind != "not_identifiable":
         lines.append(f"Other answers that fit about as well: {listing(answers, 'or')}.")
