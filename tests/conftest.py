@@ -1,10 +1,8 @@
 """What all tests share: patience, the NAO, and kinematics from another library."""
 
-import multiprocessing
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from copied_processes import copy_instead
 from hypothesis import settings
 from scipy.spatial.transform import Rotation
 
@@ -17,16 +15,9 @@ settings.load_profile("no_deadline")
 
 @pytest.fixture(scope="session", autouse=True)
 def quick_processes():
-    """Processes of the real world begin as copies of one that has imported everything.
-
-    To import it anew takes each of them longer than most tests; `test_real` has them
-    begin as they do elsewhere.
-    """
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["mujoco", "worlds.real.worker"])
+    """See `copied_processes`."""
     with pytest.MonkeyPatch.context() as patch:
-        copying = SimpleNamespace(get_context=lambda _: context)
-        patch.setattr("worlds.real.world.multiprocessing", copying)
+        copy_instead(patch)
         yield
 
 

@@ -6,24 +6,23 @@ import subprocess
 import sys
 from pathlib import Path
 
+from copied_processes import groundwalk
 from opened import open_all
 from steps import NotRun, Run
 
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAMS = {
-    "groundwalk": [str(Path(sys.executable).with_name("groundwalk"))],
-    "python": [sys.executable],
-    "make": ["make", "-C", str(ROOT)],
-}
+PROGRAMS = {"python": [sys.executable], "make": ["make", "-C", str(ROOT)]}
 
 
 def type_in(folder, command):
-    """What a shell would do with a command: the finished process, and its output."""
+    """What a shell would do with a command: its exit status, and what it printed."""
     program, *words = shlex.split(command)
+    if program == "groundwalk":
+        return groundwalk(folder, words)
     environment = os.environ | {
         "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     }
-    return subprocess.run(
+    done = subprocess.run(
         [*PROGRAMS[program], *words],
         cwd=folder,
         env=environment,
@@ -33,6 +32,7 @@ def type_in(folder, command):
         text=True,
         check=False,
     )
+    return done.returncode, done.stdout
 
 
 def take(folder, command, step):
@@ -43,10 +43,10 @@ def take(folder, command, step):
         step = Run(says=step.says)
     words = [word for word in command.split(" ") if word not in step.without]
     typed = " ".join([*words, step.options])
-    done = type_in(folder, typed)
-    said = f"{typed}\n{done.stdout}"
-    assert done.returncode == status, said
-    assert step.says in done.stdout, said
-    assert "Traceback" not in done.stdout, said
-    assert "is not written" not in done.stdout, said
+    done, printed = type_in(folder, typed)
+    said = f"{typed}\n{printed}"
+    assert done == status, said
+    assert step.says in printed, said
+    assert "Traceback" not in printed, said
+    assert "is not written" not in printed, said
     open_all(folder, step.writes)

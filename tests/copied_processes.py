@@ -1,0 +1,61 @@
+"""Processes of tests, which begin as copies of one that has imported everything.
+
+To import it anew takes each of them longer than most tests. `test_real` has
+processes that begin as they do elsewhere.
+"""
+
+import multiprocessing
+import os
+import sys
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from experiments.command_line import VERBS, main
+
+IMPORTED = [
+    "mujoco",
+    "worlds.real.worker",
+    "matplotlib.backends.backend_agg",
+    "matplotlib.figure",
+    "rerun",
+    "torch",
+    *(f"experiments.{verb.module}" for verb in VERBS.values()),
+]
+
+
+def copying():
+    """The context of `multiprocessing` in which processes are such copies."""
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(IMPORTED)
+    return context
+
+
+def copy_instead(patch):
+    """Let pools and the real world start copies; `patch` is a pytest.MonkeyPatch."""
+    context = copying()
+    multiprocessing_of_worlds = SimpleNamespace(get_context=lambda _: context)
+    patch.setattr("worlds.real.world.multiprocessing", multiprocessing_of_worlds)
+    patch.setattr("experiments.runs.processes.get_context", lambda _: context)
+
+
+def groundwalk(folder, words):
+    """Run `groundwalk WORDS` in a folder: the exit status, and what it printed."""
+    with tempfile.NamedTemporaryFile() as said:
+        process = copying().Process(target=_type_in, args=(folder, words, said.name))
+        process.start()
+        process.join()
+        return process.exitcode, Path(said.name).read_text()
+
+
+def _type_in(folder, words, said):
+    os.chdir(folder)
+    for source, copies in ((os.devnull, [0]), (said, [1, 2])):
+        file = os.open(source, os.O_RDWR)
+        for number in copies:
+            os.dup2(file, number)
+    sys.argv = ["groundwalk", *words]
+    copy_instead(pytest.MonkeyPatch())
+    main()
