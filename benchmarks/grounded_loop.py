@@ -23,8 +23,8 @@ from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
 from sgat.models.network_config import NetworkConfig
+from sgat.noise import BlockNoise
 from sgat.transformers.action_transformer import ActionTransformer
-from sgat.transformers.block_noise import BlockNoise
 from sgat.walks.gait_cloud import GaitCloud
 from sgat.walks.walk_senses import leg_senses
 from sgat.walks.wrapped_worlds import GroundedWorld

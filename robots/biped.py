@@ -7,8 +7,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from robots.description import Description
-from robots.leg_axes import roles
-from robots.leg_geometry import LEG_JOINTS, Biped, LegChain, LegGeometry
+from robots.leg_geometry import LEG_JOINTS, Biped, LegChain, LegGeometry, roles
 
 _SAME_M = 1e-9
 _ABOUT = [2, 0, 1, 1, 1, 0]

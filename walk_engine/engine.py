@@ -10,12 +10,11 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots.leg_geometry import FOOT_SENSORS, Biped
 from walk_engine.balance import feedback_share, low_pass, weight_of_new
-from walk_engine.batch import select
 from walk_engine.engine_config import WALK2014_CONFIG, EngineConfig
 from walk_engine.feet import resting_feet
 from walk_engine.gait import PARAMETERS, Gait, stack
 from walk_engine.posture import Limits, Posture
-from walk_engine.stepper import Progress, Stepper
+from walk_engine.stepper import Progress, Stepper, select
 from walk_engine.velocity import Velocity
 from walk_engine.walk_state import StateArray
 

@@ -1,12 +1,11 @@
 """The sequence of steps: state of each robot from tick to tick, and its feet."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from groundwalk.arrays import BoolArray, FloatArray
 from robots.leg_geometry import Biped
-from walk_engine.batch import select
 from walk_engine.engine_config import EngineConfig
 from walk_engine.feet import Feet, feet_in_step, resting_feet
 from walk_engine.step_plan import (
@@ -35,6 +34,19 @@ from walk_engine.walk_state import (
     on_request,
     when_over,
 )
+
+Record = TypeVar("Record", bound=NamedTuple)
+
+
+def select(chosen: BoolArray, new: Record, old: Record) -> Record:
+    """Merge NamedTuples of arrays (..., n): `new` for robots chosen, else `old`."""
+    fields = (
+        select(chosen, one, other)
+        if isinstance(one, tuple)
+        else np.where(chosen, one, other)
+        for one, other in zip(new, old, strict=True)
+    )
+    return new._make(fields)
 
 
 class Progress(NamedTuple):

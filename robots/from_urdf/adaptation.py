@@ -8,7 +8,7 @@ from typing import Any
 
 from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
 from robots.from_urdf.package_paths import example_robots
-from robots.leg_axes import ROLES
+from robots.leg_geometry import ROLES
 
 FORWARD = ("x", "-x", "y", "-y")
 

@@ -32,7 +32,7 @@ from robots.from_urdf.posed_tree import PosedTree
 from robots.from_urdf.round_shapes import round_shapes
 from robots.from_urdf.servo_size import servo
 from robots.from_urdf.urdf_tree import UrdfTree, read_urdf
-from robots.leg_axes import ANKLE, KNEE, ROLES, roles
+from robots.leg_geometry import ANKLE, KNEE, ROLES, roles
 from robots.scale import Scale
 
 

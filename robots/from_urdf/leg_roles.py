@@ -15,7 +15,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError, UnknownNameError
 from robots.from_urdf.adaptation import Adaptation
 from robots.from_urdf.urdf_tree import Placement, UrdfTree
-from robots.leg_axes import KNEE, ROLES
+from robots.leg_geometry import KNEE, ROLES
 
 _FACING = {"x": (1.0, 0.0), "-x": (-1.0, 0.0), "y": (0.0, 1.0), "-y": (0.0, -1.0)}
 _CLEAR = 0.9

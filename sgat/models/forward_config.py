@@ -56,6 +56,10 @@ class ForwardConfig(NetworkConfig):
                 "head but the Gaussian one"
             )
 
+    def shape(self, dimensions: int) -> tuple[int, int]:
+        """Raw outputs for targets of some dimensions, and the number of networks."""
+        return self.make_head(dimensions).width, self.members
+
     def make_head(self, dimensions: int) -> Head:
         """The family of distributions over next states with this number of columns."""
         match self.head:

@@ -1,7 +1,6 @@
 """Forward model: the distribution over the next states of a world."""
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -9,23 +8,23 @@ import torch
 from torch import Tensor
 
 from groundwalk.arrays import FloatArray, IntArray
-from groundwalk.errors import BadModelError, BadValueError
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.heads import Head
-from sgat.models.model_file import read_model, write_model
 from sgat.models.network import Float32Array, Scaling
-from sgat.models.scaled_network import ScaledNetwork
+from sgat.models.scaled_network import (
+    NetworkModel,
+    ScaledNetwork,
+)
 from sgat.models.training import Stage, raw_outputs, squared_error
 from sgat.noise import NoiseStream
 from sgat.transitions import Transitions
 
-_KIND = "forward"
 _GOLDEN = (5**0.5 - 1) / 2
 """Golden ratio minus 1: its multiples modulo 1 are evenly spread from 0 to 1, which
 replaces random numbers where a result must not be random."""
 
 
-class ForwardModel:
+class ForwardModel(NetworkModel[ForwardConfig]):
     """p(s' | s, a), the distribution of the next state, learned from transitions.
 
     Its networks predict the change of the state, scaled in each column. GAT and SGAT
@@ -36,10 +35,8 @@ class ForwardModel:
       >>> mean = model.predict(state, action)
     """
 
-    def __init__(self, config: ForwardConfig | None = None) -> None:
-        """Choose network and distribution; `fit` or `load` sets the weights."""
-        self.config = ForwardConfig() if config is None else config
-        self._fitted: ScaledNetwork | None = None
+    kind = "forward"
+    config_type = ForwardConfig
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
         """Learn from at least two episodes; the same seed gives the same bits."""
@@ -131,30 +128,6 @@ class ForwardModel:
         y = self._network.targets.to_scaled(transitions.change)
         choice = np.modf(np.arange(transitions.n) * _GOLDEN)[0]
         return self._head.residuals(parts, y, choice)
-
-    def save(self, path: Path) -> None:
-        """Write the fitted model to one file."""
-        write_model(path, _KIND, self.config, self._network)
-
-    @classmethod
-    def load(cls, path: Path) -> Self:
-        """Read a file that `save` wrote, to the last bit; else BadModelError."""
-        config, network = read_model(path, _KIND, ForwardConfig)
-        model = cls(config)
-        model._fitted = network
-        outputs = config.make_head(model.outcomes).width
-        if (network.network.outputs, network.network.members) != (
-            outputs,
-            config.members,
-        ):
-            raise BadModelError(f"{path} is no model file, or a damaged one")
-        return model
-
-    @property
-    def _network(self) -> ScaledNetwork:
-        if self._fitted is None:
-            raise BadValueError("this forward model has not been fitted")
-        return self._fitted
 
     @property
     def _head(self) -> Head:

@@ -1,23 +1,21 @@
 """Inverse model: the action of the sim that leads from one state to another."""
 
-from pathlib import Path
 from typing import Self
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadModelError, BadValueError
 from sgat.measures import r_squared
-from sgat.models.model_file import read_model, write_model
 from sgat.models.network_config import NetworkConfig
-from sgat.models.scaled_network import ScaledNetwork
+from sgat.models.scaled_network import (
+    NetworkModel,
+    ScaledNetwork,
+)
 from sgat.models.training import Stage, squared_error
 from sgat.transitions import Transitions
 
-_KIND = "inverse"
 
-
-class InverseModel:
+class InverseModel(NetworkModel[NetworkConfig]):
     """a = f(s, s'): the action of a deterministic sim, fitted by least squares.
 
     The network sees the state and its change. If several actions lead to the same next
@@ -29,10 +27,8 @@ class InverseModel:
       >>> action = inverse.predict(state, wanted_next_state)
     """
 
-    def __init__(self, config: NetworkConfig | None = None) -> None:
-        """Choose the network's shape and training; `fit` or `load` sets the weights."""
-        self.config = NetworkConfig() if config is None else config
-        self._fitted: ScaledNetwork | None = None
+    kind = "inverse"
+    config_type = NetworkConfig
 
     def fit(self, transitions: Transitions, seed: np.random.SeedSequence) -> Self:
         """Learn from at least two episodes of the sim; equal seeds give equal bits."""
@@ -58,23 +54,3 @@ class InverseModel:
         """(a,) share of the variance of the actions that is predicted, at most 1."""
         predicted = self.predict(transitions.state, transitions.next_state)
         return r_squared(predicted, transitions.action)
-
-    def save(self, path: Path) -> None:
-        """Write the fitted model to one file."""
-        write_model(path, _KIND, self.config, self._network)
-
-    @classmethod
-    def load(cls, path: Path) -> Self:
-        """Read a file that `save` wrote; BadModelError if it holds no such model."""
-        config, network = read_model(path, _KIND, NetworkConfig)
-        if network.network.outputs != len(network.targets.mean):
-            raise BadModelError(f"{path} is no model file, or a damaged one")
-        model = cls(config)
-        model._fitted = network
-        return model
-
-    @property
-    def _network(self) -> ScaledNetwork:
-        if self._fitted is None:
-            raise BadValueError("this inverse model has not been fitted")
-        return self._fitted

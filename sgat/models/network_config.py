@@ -54,3 +54,7 @@ class NetworkConfig:
                 f"validation_share is {self.validation_share}; it must be between 0 "
                 "and 1"
             )
+
+    def shape(self, dimensions: int) -> tuple[int, int]:
+        """Raw outputs for targets of some dimensions, and the number of networks."""
+        return dimensions, 1

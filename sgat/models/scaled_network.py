@@ -1,15 +1,23 @@
-"""A network together with the scalings of its inputs and outputs."""
+"""A network together with the scalings of its inputs and outputs, and its file.
 
+Files hold plain tensors and JSON, so that reading one runs no code in it.
+"""
+
+import io
+import json
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Self
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from groundwalk.arrays import FloatArray, IntArray
-from groundwalk.errors import BadValueError
+from groundwalk.errors import BadModelError, BadValueError
+from groundwalk.files import write_bytes
+from groundwalk.json_data import from_plain
 from sgat.models.network import Float32Array, Network, Scaling
 from sgat.models.network_config import NetworkConfig
 from sgat.models.training import Examples, Stage, train
@@ -131,3 +139,91 @@ def _sample_weights(
         return np.ones((1, len(episode)))
     share = np.full(len(names), 1 / len(names))
     return rng.multinomial(len(names), share, size=members)[:, index].astype(float)
+
+
+Config = TypeVar("Config", bound=NetworkConfig)
+
+_FORMAT = 1
+
+
+def write_model(
+    path: Path, kind: str, config: NetworkConfig, network: ScaledNetwork
+) -> None:
+    """Write a fitted network and its settings; the folder is made if it does not exist.
+
+    `kind` names the kind of model, which `read_model` checks.
+    """
+    header = {"format": _FORMAT, "kind": kind, "config": asdict(config)}
+    content = io.BytesIO()
+    torch.save({"header": json.dumps(header), "tensors": network.to_tensors()}, content)
+    write_bytes(path, content.getvalue())
+
+
+def read_model(
+    path: Path, kind: str, config_type: type[Config]
+) -> tuple[Config, ScaledNetwork]:
+    """Read a file that `write_model` wrote; all numbers are equal to the last bit.
+
+    Only tensors and plain values are read (torch's `weights_only`), so no code of the
+    file is run.
+
+    Raises:
+      BadModelError: the file cannot be read, is damaged, or has another kind of model.
+    """
+    try:
+        file = io.BytesIO(path.read_bytes())
+    except OSError as error:
+        raise BadModelError(f"{path} cannot be read: {error.strerror}") from error
+    try:
+        content = torch.load(file, map_location="cpu", weights_only=True)
+        header = json.loads(content["header"])
+        found = header["format"], header["kind"]
+        if found == (_FORMAT, kind):
+            network = ScaledNetwork.from_tensors(content["tensors"])
+            config = from_plain(config_type, header["config"], "config", False)
+            shape = network.network.outputs, network.network.members
+            if shape != config.shape(len(network.targets.mean)):
+                raise ValueError("the network does not fit its settings")
+            return config, network
+    except Exception as error:  # a file of another program can fail in any way
+        raise BadModelError(f"{path} is no model file, or a damaged one") from error
+    raise BadModelError(
+        f"{path} holds a model of kind {found[1]!r}, format {found[0]}; wanted is "
+        f"{kind!r}, format {_FORMAT}"
+    )
+
+
+class NetworkModel(Generic[Config]):
+    """Base of models that consist of scaled networks, from `fit` or from a file.
+
+    Attributes:
+      kind: name of the kind of model, in files and in error messages.
+      config_type: class of the settings.
+      config: shape and training of the networks.
+    """
+
+    kind: ClassVar[str]
+    config_type: type[Config]
+
+    def __init__(self, config: Config | None = None) -> None:
+        """Choose the networks' shape and training; `fit` or `load` sets the weights."""
+        self.config = self.config_type() if config is None else config
+        self._fitted: ScaledNetwork | None = None
+
+    def save(self, path: Path) -> None:
+        """Write the fitted model to one file."""
+        write_model(path, self.kind, self.config, self._network)
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """Read a file that `save` wrote, to the last bit; else BadModelError."""
+        config, network = read_model(path, cls.kind, cls.config_type)
+        model = cls(config)
+        model._fitted = network
+        return model
+
+    @property
+    def _network(self) -> ScaledNetwork:
+        if self._fitted is None:
+            raise BadValueError(f"this {self.kind} model has not been fitted")
+        return self._fitted

@@ -7,9 +7,8 @@ import numpy as np
 from groundwalk.arrays import IntArray
 from groundwalk.errors import BadValueError
 from sgat.tabular.grounding import counted_forward_model, grounded_sim
-from sgat.tabular.mdp import FiniteMdp
+from sgat.tabular.mdp import FiniteMdp, roll_out
 from sgat.tabular.planning import policy_iteration, policy_values
-from sgat.tabular.rollouts import roll_out
 
 
 @dataclass(frozen=True)

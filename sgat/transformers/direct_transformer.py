@@ -10,13 +10,16 @@ import torch
 from torch import Tensor
 
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadModelError, BadValueError
+from groundwalk.errors import BadValueError
 from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
-from sgat.models.model_file import read_model, write_model
 from sgat.models.network import Scaling
 from sgat.models.network_config import NetworkConfig
-from sgat.models.scaled_network import ScaledNetwork
+from sgat.models.scaled_network import (
+    ScaledNetwork,
+    read_model,
+    write_model,
+)
 from sgat.models.training import Examples, Loss, Stage, train
 from sgat.noise import child_of
 from sgat.transformers.catalogue import add_grounding, file_kind
@@ -128,10 +131,7 @@ class DirectTransformer:
         cls, folder: Path, header: Mapping[str, Any], low: FloatArray, high: FloatArray
     ) -> Self:
         """Read what `save` wrote; the least and largest action are (a,) each."""
-        path = folder / DIRECT
-        config, network = read_model(path, _KIND, NetworkConfig)
-        if network.network.outputs != len(network.targets.mean):
-            raise BadModelError(f"{path} is no model file, or a damaged one")
+        config, network = read_model(folder / DIRECT, _KIND, NetworkConfig)
         transformer = cls(low, high, config)
         transformer._fitted = network
         return transformer

@@ -5,9 +5,8 @@ from typing import Literal
 
 from sgat.models.forward_config import HeadName
 from sgat.models.forward_model import ForwardModel
-from sgat.noise import NoiseLaw, WhiteNoise
+from sgat.noise import BlockNoise, NoiseLaw, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
-from sgat.transformers.block_noise import BlockNoise
 from sgat.transformers.catalogue import add_grounding
 from sgat.transformers.grounding_base import Grounding, GroundingData
 

@@ -16,7 +16,7 @@ from experiments.transfer.cliff_study.study import (
     TransferCliff,
 )
 from sgat.tabular.loop import TabularLoop
-from sgat.tabular.rollouts import STEP_LIMIT
+from sgat.tabular.mdp import STEP_LIMIT
 
 ROUNDING = 1e-9
 """Largest difference of two returns that counts as rounding."""

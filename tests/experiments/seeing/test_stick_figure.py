@@ -5,7 +5,7 @@ import pytest
 from made_up_runs import NAO, STANDING_M, glide, steady
 
 from experiments.seeing.scenes import make_scenes
-from experiments.seeing.stick_figure import NAO_HEAD_M, stick_figure
+from experiments.seeing.walk_strip import NAO_HEAD_M, stick_figure
 from worlds import Recording
 from worlds.scenes.scene import Scene
 

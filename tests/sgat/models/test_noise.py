@@ -7,8 +7,7 @@ import pytest
 from known_dynamics import seeds
 
 from groundwalk.errors import BadValueError
-from sgat.noise import NoiseStream, WhiteNoise
-from sgat.transformers.block_noise import BlockNoise
+from sgat.noise import BlockNoise, NoiseStream, WhiteNoise
 
 
 def residuals_of_a_walk(seed=1):

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from sgat.tabular.mdp import FiniteMdp
-from sgat.tabular.rollouts import roll_out
+from sgat.tabular.mdp import FiniteMdp, roll_out
 
 
 def die(sides=6):

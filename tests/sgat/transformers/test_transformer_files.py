@@ -10,9 +10,8 @@ from sgat.models.forward_config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
 from sgat.models.network_config import NetworkConfig
-from sgat.noise import WhiteNoise
+from sgat.noise import BlockNoise, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
-from sgat.transformers.block_noise import BlockNoise
 from sgat.transformers.catalogue import read_transformer, write_transformer
 from sgat.transformers.direct_transformer import DirectTransformer
 from sgat.transitions import Transitions
