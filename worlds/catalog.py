@@ -26,8 +26,8 @@ class WorldKind:
       world: the class, such as `SimWorld`.
       options: the default settings.
       terrain: name of the terrain on which its robots stand by default.
-      seed_key: number combined with a seed, so that sim and real draw different random
-        numbers from the same seed. It never changes, so that results can be repeated.
+      seed_key: fixed number, combined with a seed so that sim and real draw different
+        random numbers from the same seed.
     """
 
     world: type[RolloutWorld]
@@ -46,19 +46,11 @@ WORLDS = {
     ),
 }
 """The worlds by name. "real" differs from "sim" by its physics engine and, by default,
-by its latency, its sensor noise and its ground.
-
-Example:
-  >>> sorted(WORLDS)
-  ['real', 'sim']
-"""
+by its latency, its sensor noise and its ground."""
 
 
 def kind(name: str) -> WorldKind:
-    """Look up the class and the defaults of a world.
-
-    Args:
-      name: "sim" or "real".
+    """Look up the class and the defaults of the world "sim" or "real".
 
     Raises:
       UnknownNameError: there is no world of this name.
@@ -92,7 +84,7 @@ def make(
       GroundwalkError: the world is unknown, or its options do not fit the robot.
 
     Example:
-      See the beginning of the package `worlds`, or docs/python.md.
+      See the beginning of the package `worlds`.
     """
     chosen = kind(name)
     return chosen.world(description, grounds, seeds, options or chosen.options)

@@ -1,14 +1,13 @@
 """Decides when a rollout is over: the robot fell, diverged or left its ground."""
 
 import math
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from groundwalk.arrays import BoolArray, FloatArray
 from terrain import Heightfield
-from worlds.observation import Truth
+from worlds.observation import Truth, up_z
 from worlds.world import End
 
 FALL_TILT_RAD = math.radians(60)
@@ -28,7 +27,7 @@ def fallen(
     Args:
       up_z: (n,) cosine of the angle between the torso's up axis and the vertical.
       height_m: (n,) height of the torso above the ground below it.
-      start_height_m: the same height at the start of the rollout; a number or (n,).
+      start_height_m: a number or (n,), the same height at the start of the rollout.
     """
     low = height_m < FALL_HEIGHT_RATIO * start_height_m
     return np.asarray((up_z < math.cos(FALL_TILT_RAD)) | low)
@@ -38,34 +37,22 @@ class EndRule:
     """Decides at each tick whose rollouts are over; call it with the robots' truth."""
 
     def __init__(self, grounds: Sequence[Heightfield], start: Truth) -> None:
-        """Remember how high every torso starts, to compare later heights with it.
-
-        Args:
-          grounds: one per robot; robots may share one object.
-          start: true poses of the n robots at the start.
-        """
-        robots = defaultdict(list)
-        for i, ground in enumerate(grounds):
-            robots[id(ground)].append(i)
-        self._shared_by = [
-            (grounds[rows[0]], np.array(rows)) for rows in robots.values()
-        ]
+        """Remember how high every torso starts on its ground; robots may share one."""
+        shared = np.array([id(ground) for ground in grounds])
+        rows = [np.flatnonzero(shared == one) for one in dict.fromkeys(shared.tolist())]
+        self._shared_by = [(grounds[robots[0]], robots) for robots in rows]
         self._start_height_m, _ = self._above_ground(start)
 
     def __call__(self, truth: Truth, sound: BoolArray) -> Mapping[End, BoolArray]:
-        """Tell which rollouts end now, and why.
+        """Masks (n,) of the rollouts that end now, by reason; each ends for one only.
 
         Args:
-          truth: poses and velocities of the n robots; a row where `sound` is False may
-            hold any numbers.
+          truth: true motion; any numbers where `sound` is False.
           sound: (n,) whether all states and measurements of a robot are finite.
-
-        Returns:
-          A mask (n,) for each reason; no robot is True in two of them.
         """
         with np.errstate(invalid="ignore", over="ignore"):
             height_m, on_ground = self._above_ground(truth)
-            fell = fallen(truth.up_z, height_m, self._start_height_m)
+            fell = fallen(up_z(truth.base_orientation), height_m, self._start_height_m)
             speed_m_s = np.abs(truth.base_linear_velocity_m_s).max(axis=1)
             diverged = ~sound | ~(speed_m_s < DIVERGED_SPEED_M_S)
         return {
@@ -75,10 +62,7 @@ class EndRule:
         }
 
     def _above_ground(self, truth: Truth) -> tuple[FloatArray, BoolArray]:
-        """(n,) height of each torso over its ground [m]; (n,) False beyond its edge.
-
-        Beyond the edge, the height of its nearest point counts.
-        """
+        """(n,) height of each torso over its ground [m]; (n,) False beyond its edge."""
         x, y, z = truth.base_position_m.T
         height_m, on_ground = z.copy(), np.ones(len(z), bool)
         for ground, rows in self._shared_by:

@@ -10,12 +10,7 @@ class DelayLine:
     """Delays commands by a number of physics steps, not necessarily whole ticks."""
 
     def __init__(self, latency_steps: int, steps_per_tick: int) -> None:
-        """Make an empty delay line; call `reset` before the first tick.
-
-        Args:
-          latency_steps: physics steps between giving a command and its effect.
-          steps_per_tick: physics steps in a control tick, for which a command holds.
-        """
+        """Delay by a number of physics steps; call `reset` before the first tick."""
         self._steps_per_tick = steps_per_tick
         self._ticks, self._late_steps = divmod(latency_steps, steps_per_tick)
         self._commands: deque[FloatArray] = deque(maxlen=self._ticks + 2)
@@ -27,9 +22,7 @@ class DelayLine:
     def tick(self, command: FloatArray) -> Iterator[tuple[FloatArray, int]]:
         """Take the command of one tick, and give the delayed ones that act in it.
 
-        Yields:
-          One or two commands in the order in which they act, each with the number of
-          physics steps for which it acts.
+        Each of the one or two comes with the number of physics steps for which it acts.
         """
         self._commands.append(command)
         older, newer = self._commands[0], self._commands[1]

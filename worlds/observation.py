@@ -41,9 +41,6 @@ class Observation(_PerRobot):
       accelerometer_m_s2: (n, 3) torso frame; +9.81 upward when at rest.
       foot_force_n: (n, 8) force on the front left, front right, rear left and rear
         right sensor of the left foot, then the same of the right foot.
-
-    Example:
-      See the beginning of the package `worlds`.
     """
 
     time_s: FloatArray
@@ -56,9 +53,7 @@ class Observation(_PerRobot):
 
 @dataclass(frozen=True, eq=False)
 class Truth(_PerRobot):
-    """True motion of n robots; `World.truth` returns it.
-
-    A gait never sees it: a real robot could not measure it.
+    """True motion of n robots, which `World.truth` returns and no gait sees.
 
     Attributes:
       base_position_m: (n, 3) position of the torso frame in the world frame.
@@ -75,17 +70,11 @@ class Truth(_PerRobot):
     base_linear_velocity_m_s: FloatArray
     base_angular_velocity_rad_s: FloatArray
 
-    @property
-    def up_z(self) -> FloatArray:
-        """(n,) cosine of the angle between the torso's up axis and the vertical."""
-        return up_z(self.base_orientation)
-
 
 def up_z(orientation: FloatArray) -> FloatArray:
     """(n,) cosine of the angle between a body's up axis and the vertical.
 
-    Args:
-      orientation: (n, 4) unit quaternions w, x, y, z from body to world.
+    `orientation` holds (n, 4) unit quaternions w, x, y, z from body to world.
     """
     _, x, y, _ = orientation.T
     return np.asarray(1.0 - 2.0 * (x * x + y * y))

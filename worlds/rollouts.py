@@ -30,10 +30,7 @@ class RolloutWorld(ABC):
     and adds the sensors' noise.
 
     Attributes:
-      description: the robot.
-      options: the world's settings.
-      active: (n,) True for robots whose rollout goes on.
-      ended: why each robot's rollout ended; `End.NONE` while it goes on.
+      description, options, active, ended: see `World`.
     """
 
     def __init__(
@@ -43,13 +40,7 @@ class RolloutWorld(ABC):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Remember the robots' grounds and seeds; nothing is computed yet.
-
-        Args:
-          description: the robot.
-          grounds: one per robot; give one object n times to share it.
-          seeds: one per robot, for its sensor noise.
-          options: the world's settings.
+        """Remember the robot, and grounds and seeds, one for each of n robots.
 
         Raises:
           BadValueError: the numbers of grounds and seeds differ or are 0.
@@ -75,7 +66,7 @@ class RolloutWorld(ABC):
     def reset(self, pose_rad: FloatArray) -> Observation:
         """Start n rollouts: put every robot on its ground; see `World.reset`."""
         targets = self._targets(pose_rad)
-        if not _are_positions(targets).all():
+        if not (np.abs(targets) < MOST_RAD).all():
             raise BadValueError(
                 "a start pose holds a number that is no joint position; it must be "
                 f"finite and within {MOST_RAD:g} rad"
@@ -94,8 +85,9 @@ class RolloutWorld(ABC):
     def step(self, command_rad: FloatArray) -> Observation:
         """Advance the active robots by one tick of 10 ms; see `World.step`."""
         targets = self._targets(command_rad)
-        # MuJoCo would treat a NaN command as zero.
-        self._end(End.DIVERGED, ~_are_positions(targets))
+        # A NaN, which is not below the limit, would be zero to MuJoCo.
+        in_range = np.all(np.abs(targets) < MOST_RAD, axis=1)
+        self._end(End.DIVERGED, np.asarray(~in_range))
         schedule = list(self._delay.tick(targets))
         if self.active.any():
             self._advance(schedule)
@@ -158,8 +150,3 @@ class RolloutWorld(ABC):
         if self._noise is None:
             return self._clean
         return self._noise(self._clean, TICK_S)
-
-
-def _are_positions(joints_rad: FloatArray) -> BoolArray:
-    """(n,) whether all joints of a robot are within +-`MOST_RAD`; NaN is not."""
-    return np.asarray(np.all(np.abs(joints_rad) < MOST_RAD, axis=1))

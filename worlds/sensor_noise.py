@@ -44,10 +44,7 @@ class SensorNoise:
 
 
 class NoisySensors:
-    """Adds sensor noise to the observations of n robots.
-
-    Each robot's noise depends on its own seed only, not on the other robots.
-    """
+    """Adds noise to observations of n robots; each one's depends on its seed only."""
 
     def __init__(self, noise: SensorNoise, seeds: list[np.random.SeedSequence]) -> None:
         """Draw each robot's gyroscope bias, constant in a rollout, from its seed."""
@@ -65,23 +62,21 @@ class NoisySensors:
         Joint velocities are differences of quantised positions over one tick, as a
         robot's electronics compute them.
         """
-        noise = self._noise
-        draws = self._draw(14)
+        noise, position = self._noise, clean.position_rad
+        draws = np.split(self._draw(14), [3, 6], axis=1)
         quantum = noise.joint_quantum_rad
-        position = clean.position_rad
         if quantum > 0:
             position = np.round(position / quantum) * quantum
         last = position if self._last_position is None else self._last_position
         self._last_position = position
-        force = clean.foot_force_n + draws[:, 6:] * noise.foot_force_n
+        spin = draws[0] * np.array(noise.gyroscope_rad_s)
+        shake = draws[1] * np.array(noise.accelerometer_m_s2)
+        force = clean.foot_force_n + draws[2] * noise.foot_force_n
         return replace(
             clean,
             position_rad=position,
             velocity_rad_s=(position - last) / tick_s,
-            gyroscope_rad_s=clean.gyroscope_rad_s
-            + self._bias
-            + draws[:, :3] * np.array(noise.gyroscope_rad_s),
-            accelerometer_m_s2=clean.accelerometer_m_s2
-            + draws[:, 3:6] * np.array(noise.accelerometer_m_s2),
+            gyroscope_rad_s=clean.gyroscope_rad_s + self._bias + spin,
+            accelerometer_m_s2=clean.accelerometer_m_s2 + shake,
             foot_force_n=np.maximum(force, 0.0),
         )

@@ -23,12 +23,7 @@ Example:
 
 
 class End(enum.StrEnum):
-    """Why one robot's rollout ended; NONE while it goes on.
-
-    Example:
-      >>> End.FALL in FALLS
-      True
-    """
+    """Why one robot's rollout ended; NONE while it goes on."""
 
     NONE = ""
     FALL = "fall"
@@ -110,11 +105,7 @@ class WorldOptions:
 
 
 class World(Protocol):
-    """n robots, each on its own ground, stepped together by joint commands.
-
-    Example:
-      See the beginning of the package `worlds`, or docs/python.md.
-    """
+    """n robots, each on its own ground, stepped together by joint commands."""
 
     @property
     def description(self) -> Description:
@@ -139,18 +130,15 @@ class World(Protocol):
     def reset(self, pose_rad: FloatArray) -> Observation:
         """Put every robot upright and at rest at the origin of its ground.
 
-        The torso is so high that the lower sole just touches the ground.
-
-        Args:
-          pose_rad: (n, joints) joint positions, held until the first command.
+        Its lower sole just touches the ground. The joint positions (n, joints) are held
+        until the first command.
         """
 
     def step(self, command_rad: FloatArray) -> Observation:
         """Advance the active robots by one tick (10 ms); the others keep their state.
 
-        Args:
-          command_rad: (n, joints) joint position targets for this tick. Two joints
-            that share a motor get the mean of their commands.
+        The commands are joint position targets (n, joints) for this tick. Two joints
+        that share a motor get the mean of their commands.
         """
 
     def stop(self, robots: BoolArray) -> None:

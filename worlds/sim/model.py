@@ -27,12 +27,9 @@ through it in one physics step."""
 def mujoco_model(
     description: Description, options: WorldOptions, ground: Heightfield | None
 ) -> "mujoco.MjModel":
-    """Compile a MuJoCo model of a robot, with or without ground.
+    """Compile a MuJoCo model of a robot, on ground or, for None, without.
 
-    Args:
-      description: the robot.
-      options: their time step, friction, sinkage and fixed base are used.
-      ground: the ground under the robot; None for no ground.
+    Of the options, time step, friction, sinkage and fixed base are used.
     """
     grounds = [] if ground is None else [ground]
     model = world_spec(description, options, grounds).compile()
@@ -45,12 +42,10 @@ def mujoco_model(
 def world_spec(
     description: Description, options: WorldOptions, grounds: Sequence[Heightfield]
 ) -> "mujoco.MjSpec":
-    """Make a MuJoCo specification, not yet compiled, of a robot and any grounds.
+    """A MuJoCo specification, not yet compiled, of a robot and any grounds.
 
-    Args:
-      description: the robot.
-      options: their time step, friction and fixed base are used.
-      grounds: all become geoms in the one world, named by `ground_name`.
+    Of the options, time step, friction and fixed base are used. All grounds become
+    geoms in the one world, named by `ground_name`.
     """
     import mujoco
 
@@ -77,27 +72,19 @@ def ground_name(number: int) -> str:
 
 
 def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
-    """Add ground to a MuJoCo specification: a plane if it is flat, else a heightfield.
+    """Add ground to a `mujoco.MjSpec`: a plane if it is flat, else a heightfield.
 
-    Args:
-      spec: a `mujoco.MjSpec`; changed.
-      ground: heights in the world frame.
-      name: name of the new geom.
+    `name` is that of the new geom, at heights in the world frame.
     """
     import mujoco
 
-    if ground.is_flat:
-        spec.worldbody.add_geom(
-            name=name,
-            type=mujoco.mjtGeom.mjGEOM_PLANE,
-            size=[0, 0, 1],
-            pos=[0, 0, float(ground.heights_m[0, 0])],
-            contype=0,
-            conaffinity=1,
-        )
-        return
     heights = ground.heights_m
     low, span = float(heights.min()), float(np.ptp(heights))
+    geom = spec.worldbody.add_geom(name=name, contype=0, conaffinity=1)
+    if ground.is_flat:
+        geom.type, geom.size = mujoco.mjtGeom.mjGEOM_PLANE, [0, 0, 1]
+        geom.pos = [0, 0, low]
+        return
     (x0, x1), (y0, y1) = ground.x_range_m, ground.y_range_m
     spec.add_hfield(
         name=name,
@@ -106,14 +93,8 @@ def add_ground(spec: Any, ground: Heightfield, name: str = "ground") -> None:
         size=[(x1 - x0) / 2, (y1 - y0) / 2, span, _BASE_THICKNESS_M],
         userdata=((heights - low) / span).ravel().tolist(),
     )
-    spec.worldbody.add_geom(
-        name=name,
-        type=mujoco.mjtGeom.mjGEOM_HFIELD,
-        hfieldname=name,
-        pos=[(x0 + x1) / 2, (y0 + y1) / 2, low],
-        contype=0,
-        conaffinity=1,
-    )
+    geom.type, geom.hfieldname = mujoco.mjtGeom.mjGEOM_HFIELD, name
+    geom.pos = [(x0 + x1) / 2, (y0 + y1) / 2, low]
 
 
 def touch_shares(description: Description) -> FloatArray:

@@ -33,12 +33,7 @@ class StartHeight:
     def heights_m(
         self, pose_rad: FloatArray, grounds: Sequence[Heightfield]
     ) -> FloatArray:
-        """(n,) height of each torso above the world's origin [m].
-
-        Args:
-          pose_rad: (n, joints) joint positions.
-          grounds: n grounds; the robots stand at x = y = 0.
-        """
+        """(n,) heights [m] of the torsos above the origin, in poses (n, joints)."""
         places = zip(pose_rad, grounds, strict=True)
         return np.array([self._height_m(pose, ground) for pose, ground in places])
 
@@ -46,11 +41,9 @@ class StartHeight:
         data = self._data
         data.qpos[ROOT_QPOS:] = pose_rad
         self._mujoco.mj_kinematics(self._model, data)
-        points_m = np.vstack(
-            [
-                data.xpos[body] + points_m @ data.xmat[body].reshape(3, 3).T
-                for body, points_m in self._soles
-            ]
-        )
-        x_m, y_m, z_m = points_m.T
+        soles_m = [
+            data.xpos[body] + points_m @ data.xmat[body].reshape(3, 3).T
+            for body, points_m in self._soles
+        ]
+        x_m, y_m, z_m = np.vstack(soles_m).T
         return float(np.max(ground.height_at(x_m, y_m) - z_m))

@@ -11,12 +11,7 @@ from robots.description import Description
 from terrain import Heightfield
 from worlds.observation import Observation, Truth
 from worlds.rollouts import RolloutWorld, Schedule
-from worlds.sim.model import (
-    ROOT_QPOS,
-    ROOT_QVEL,
-    mujoco_model,
-    touch_shares,
-)
+from worlds.sim.model import ROOT_QPOS, ROOT_QVEL, mujoco_model, touch_shares
 from worlds.sim.start_height import StartHeight
 from worlds.world import TICK_S, WorldOptions
 
@@ -32,9 +27,6 @@ class SimWorld(RolloutWorld):
     Attributes:
       qvel: (n, v) velocities of all v degrees of freedom [rad/s; m/s]; a live view of
         MuJoCo's data.
-
-    Example:
-      `worlds.make("sim", ...)` makes one; see the beginning of `worlds`.
     """
 
     def __init__(
@@ -70,14 +62,11 @@ class SimWorld(RolloutWorld):
         """Make a batch with a simulation for each robot on its own ground."""
         from mujoco.batch import Batch
 
-        models = {
-            id(ground): mujoco_model(
-                self.description,
-                self.options,
-                None if self.options.fixed_base else ground,
-            )
-            for ground in self._grounds
-        }
+        robot, options, models = self.description, self.options, {}
+        for ground in self._grounds:
+            if id(ground) not in models:
+                under = None if options.fixed_base else ground
+                models[id(ground)] = mujoco_model(robot, options, under)
         per_robot = [models[id(ground)] for ground in self._grounds]
         batch = Batch(per_robot[0], self.n, self.options.threads)
         if len(models) > 1:
