@@ -9,13 +9,7 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.reports.tables import (
-    SCORE_HEADINGS,
-    print_folder,
-    print_json,
-    print_table,
-    score_rows,
-)
+from experiments.reports.tables import SCORE_HEADINGS, print_result, score_rows
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, open_run
 from experiments.runs.gait_files import load_gaits
@@ -81,11 +75,8 @@ def main(config: Evaluate) -> None:
     with extra("a picture of the walks"):
         picture_run(folder)
     write_page(folder, "How fast and how surely do these gaits walk 3 m?", result)
-    if config.json:
-        print_json(result)
-    else:
-        print_table(SCORE_HEADINGS, score_rows(result))
-        print_folder(folder.path)
+    rows = score_rows(result)
+    print_result(config.json, result, SCORE_HEADINGS, rows, folder.path)
 
 
 if __name__ == "__main__":

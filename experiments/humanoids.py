@@ -17,7 +17,7 @@ from experiments.humanoid_study.page import (
     robot_rows,
     write_humanoids_page,
 )
-from experiments.reports.tables import print_folder, print_json, print_table
+from experiments.reports.tables import print_result
 from experiments.runs.extras import extra
 from experiments.runs.folder import (
     CHECKPOINT,
@@ -119,11 +119,7 @@ def main(config: Humanoids) -> None:
         walks = {short_name(name): _walk(folder, name) for name in config.robots}
         draw_humanoids(walks, folder.path / PICTURE)
     write_humanoids_page(folder, result)
-    if config.json:
-        print_json(result)
-    else:
-        print_table(*robot_rows(result))
-        print_folder(folder.path)
+    print_result(config.json, result, *robot_rows(result), folder.path)
 
 
 def _walk(folder: RunFolder, name: str) -> Recording:

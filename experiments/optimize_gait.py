@@ -7,13 +7,7 @@ from typing import Any
 
 import robots
 from experiments.command_line import run_verb
-from experiments.reports.tables import (
-    SCORE_HEADINGS,
-    print_folder,
-    print_json,
-    print_table,
-    score_rows,
-)
+from experiments.reports.tables import SCORE_HEADINGS, print_result, score_rows
 from experiments.runs.extras import extra
 from experiments.runs.folder import RESULT, RunFolder, open_run
 from experiments.runs.gait_files import load_gait, load_gaits
@@ -92,12 +86,8 @@ def main(config: OptimizeGait) -> None:
     """Run the search and the evaluation, and print the scores."""
     folder, _ = tune_gait(config)
     result = folder.read_json(RESULT)
-    if config.json:
-        print_json(result)
-    else:
-        scores = {world: result[world] for world in WORLDS}
-        print_table(SCORE_HEADINGS, score_rows(scores))
-        print_folder(folder.path)
+    rows = score_rows({world: result[world] for world in WORLDS})
+    print_result(config.json, result, SCORE_HEADINGS, rows, folder.path)
 
 
 def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:

@@ -11,7 +11,7 @@ import tyro
 import robots
 import worlds
 from experiments.command_line import run_verb
-from experiments.reports.tables import print_folder, print_json, print_table
+from experiments.reports.tables import print_result
 from experiments.runs.extras import extra
 from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.runs.gait_files import load_gaits
@@ -103,11 +103,8 @@ def main(config: TerrainStress) -> None:
     with extra("the pictures"):
         draw_stress(curves, folder.path)
     write_stress_page(folder, curves)
-    if config.json:
-        print_json(result)
-    else:
-        print_table(HALF_HEADINGS, half_rows(curves))
-        print_folder(folder.path)
+    rows = half_rows(curves)
+    print_result(config.json, result, HALF_HEADINGS, rows, folder.path)
 
 
 def _walk_cells(

@@ -64,6 +64,21 @@ def score_rows(scores: Scores) -> list[tuple[str, str, str, str]]:
     ]
 
 
+def print_result(
+    as_json: bool,
+    result: Mapping[str, Any],
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    folder: Path,
+) -> None:
+    """Print a run's result as JSON, or as a table with the path of the run's folder."""
+    if as_json:
+        print_json(result)
+    else:
+        print_table(columns, rows)
+        print_folder(folder)
+
+
 def print_json(result: Mapping[str, Any]) -> None:
     """Print a result as JSON, the only text on standard output, for other programs."""
     print(json.dumps(result, indent=1))
