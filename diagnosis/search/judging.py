@@ -88,22 +88,16 @@ class Judge:
     def worth(self, before: float, after: float, nothing: float) -> bool:
         """Whether adding an effect to a model improves the fit enough to be believed.
 
-        Args:
-          before: energy of the smaller model on the selection data [nats].
-          after: energy of the larger model on these data.
-          nothing: energy of the nominal sim on these data.
+        Energies [nats] of the smaller model, the larger one and the nominal sim are
+        those on the selection data.
         """
         return before - after > self.least_gain and self.matters(before, after, nothing)
 
     def matters(self, before: float, after: float, nothing: float) -> bool:
         """Whether a larger model removes enough of the energy that is left to explain.
 
-        The noise level itself is uncertain; close to it no minimum share is required.
-
-        Args:
-          before: energy of the smaller model on the selection data [nats].
-          after: energy of the larger model on these data.
-          nothing: energy of the nominal sim on these data.
+        Arguments are those of `worth`. The noise level itself is uncertain; close to it
+        no minimum share is required.
         """
         rules = self.rules
         left = before - (1 + rules.unsure_floor) * self.floor
@@ -116,10 +110,8 @@ class Judge:
     def believes(self, best: Judged, energy: float, fitted: float) -> bool:
         """Whether the best model of a round of the search is believed.
 
-        Args:
-          best: the model.
-          energy: energy of the best smaller model on the selection data [nats].
-          fitted: energy of that smaller model on the fitting data [nats].
+        `energy` and `fitted` [nats] are those of the best smaller model on the
+        selection and on the fitting data.
         """
         gains = fitted - best.fit.energy, energy - best.selected
         if self.shows(*gains) and self.matters(energy, best.selected, self.nothing):
@@ -127,27 +119,19 @@ class Judge:
         return len(best.model) == 1 and self.hints(*gains)
 
     def shows(self, fitted: float, selected: float) -> bool:
-        """Whether an effect gains enough on each of the two kinds of data.
+        """Whether an effect gains enough [nats] on fitting and on selection data each.
 
         A model that gains on the selection data by chance gains little on the fitting
         data.
-
-        Args:
-          fitted: gain on the fitting data [nats].
-          selected: gain on the selection data [nats].
         """
         return min(fitted, selected) > self.least_gain
 
     def hints(self, fitted: float, selected: float) -> bool:
-        """Whether a single effect gains enough on both kinds of data together.
+        """Whether a single effect gains enough [nats] on both kinds of data together.
 
         A joint may move less in the selection data than in the fitting data, and an end
         stop or a push may not occur there at all. With a floating base the answer is
         no: recordings differ by chance, so that gains in only one of them mean nothing.
-
-        Args:
-          fitted: gain on the fitting data [nats].
-          selected: gain on the selection data [nats].
         """
         rules, gain = self.rules, fitted + selected
         left = self.nothing_fit - (1 + rules.unsure_floor) * self.floor_fit
@@ -174,29 +158,23 @@ class Judge:
           starts: models with values to begin with.
           jacobians: (N, p) Jacobian of each model at these values; None if unknown.
         """
-        return self.saved(lambda: self._judged(starts, jacobians))
+
+        def work() -> list[Judged]:
+            steps = self.rules.first_steps
+            rough = fit_all(self.fit, starts, steps, followed=True, jacobians=jacobians)
+            rough.sort(key=lambda fit: fit.energy)
+            count = self._worthy([fit.energy for fit in rough])
+            models = [fit.model for fit in rough[:count]]
+            known = [fit.jacobian for fit in rough[:count]]
+            fits = fit_all(self.fit, models, followed=True, jacobians=known)
+            return distinct(self.ranked(self.judge([*fits, *rough[count:]])))
+
+        return self.saved(work)
 
     def saved(self, work: Callable[[], list[Judged]]) -> list[Judged]:
         """Judged models from the checkpoint, or computed by `work` and stored there."""
         plant = self.fit.plant
         return self.hooks.saved(work, pack, lambda stored: unpack(stored, plant))
-
-    def _judged(
-        self, starts: Sequence[Model], jacobians: Sequence[FloatArray | None] | None
-    ) -> list[Judged]:
-        """Fit and judge models like `judged`, but without the checkpoint."""
-        rough = fit_all(
-            self.fit, starts, self.rules.first_steps, followed=True, jacobians=jacobians
-        )
-        rough.sort(key=lambda fit: fit.energy)
-        count = self._worthy([fit.energy for fit in rough])
-        fits = fit_all(
-            self.fit,
-            [fit.model for fit in rough[:count]],
-            followed=True,
-            jacobians=[fit.jacobian for fit in rough[:count]],
-        )
-        return distinct(self.ranked(self.judge([*fits, *rough[count:]])))
 
     def replays_of(self, starts: Sequence[Model]) -> int:
         """Rough number of simulations needed to fit and judge models from starts."""
@@ -207,9 +185,7 @@ class Judge:
     def judge(self, fits: Sequence[FittedModel], exactly: bool = False) -> list[Judged]:
         """Evaluate fitted models on the selection data, in the order given.
 
-        Args:
-          fits: models fitted to the fitting data.
-          exactly: remove each model's own integration error, not one common to all.
+        `exactly` removes each model's own integration error, not one common to all.
         """
         energies = self.energies([fit.model for fit in fits], exactly)
         return [
@@ -218,11 +194,7 @@ class Judge:
         ]
 
     def _worthy(self, energies: Sequence[float]) -> int:
-        """Number of the best models that are not far behind the very best.
-
-        Args:
-          energies: energies of the models on the fitting data [nats], increasing.
-        """
+        """Number of models, best first, whose energies [nats] are not far behind."""
         if not energies:
             return 0
         explained = self.nothing_fit - energies[0]
@@ -234,11 +206,8 @@ class Judge:
         """Energies [nats] of models on the selection data, with a penalty.
 
         The penalty is the model's gain on recordings of the healthy robot, if there are
-        any: what was there before is no change.
-
-        Args:
-          models: the effects with values.
-          exactly: remove each model's own integration error, not one common to all.
+        any: what was there before is no change. `exactly` removes each model's own
+        integration error, not one common to all.
         """
         if not models:
             return []
@@ -250,7 +219,7 @@ class Judge:
     def _gains_before(self, models: Sequence[Model]) -> list[float]:
         """Gain of each model [nats, at least 0] on recordings of the healthy robot.
 
-        Gains are scaled to the length of the selection data; 0 without such recordings.
+        Gains are scaled to the length of the selection data.
         """
         if not self.healthy:
             return [0.0] * len(models)

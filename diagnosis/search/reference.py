@@ -87,22 +87,12 @@ def _learned(
         known = ReferenceNoise.known(model, count)
         floats = plant.base == "floating"
         every = [late for one in traces for late in _shifted(one)] if floats else traces
-        predictor = Predictor(
-            plant,
-            every,
-            channels,
-            threads=threads,
-            noise=known,
-            on_replay=hooks.advance,
-        )
+        options = None, threads, known, hooks.advance
+        predictor = Predictor(plant, every, channels, *options)
         predictor.calibrate()
-        residual, scored = predictor.residuals([()])[0], predictor.scored
-        return ReferenceNoise.of(
-            model,
-            residual.reshape(-1, count),
-            scored.reshape(-1, count),
-            predictor.blocks,
-        )
+        residual = predictor.residuals([()])[0].reshape(-1, count)
+        scored = predictor.scored.reshape(-1, count)
+        return ReferenceNoise.of(model, residual, scored, predictor.blocks)
 
     return hooks.saved(work, pack_noise, unpack_noise)
 
@@ -119,14 +109,8 @@ def reference_checks(
     An effect that explains as much of these recordings is no change. Each half of them
     is judged with the noise learned from the other half: with its own noise nothing
     would be left to explain. With a fixed base the list is empty: effects of the
-    healthy robot are part of the nominal model there.
-
-    Args:
-      plant: nominal robot model.
-      traces: recordings of the healthy robot.
-      channels: the quantities to compare, with their noise.
-      threads: number of threads that simulate.
-      hooks: progress display and checkpoint; None for neither.
+    healthy robot are part of the nominal model there. Arguments are those of
+    `learn_reference`.
     """
     if plant.base == "fixed":
         return []
@@ -173,9 +157,8 @@ def _explained(
     """The effects, with values, that a search finds in recordings."""
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select
-    whole = Predictor(
-        plant, [*fit, *select], channels, threads=threads, on_replay=hooks.advance
-    )
+    options = None, threads, None, hooks.advance
+    whole = Predictor(plant, [*fit, *select], channels, *options)
     whole.calibrate()
     first, last = len(fit), len(fit) + len(select)
     judge = Judge(whole.part(0, first), whole.part(first, last), rules, hooks=hooks)

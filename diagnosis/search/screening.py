@@ -85,9 +85,9 @@ class Screen:
 
         Args:
           residual: (N,) residual to explain [noise].
-          jacobian: (N, p) Jacobian of the model that leaves the residual. With it the
-            model's values may change when an effect is added, so that two effects that
-            nearly cancel each other are found. None keeps these values fixed.
+          jacobian: (N, p) Jacobian of the model that leaves the residual: its values
+            may change when an effect is added, so that two effects that nearly cancel
+            each other are found. None keeps them fixed.
         """
         view = self._view(residual, jacobian)
         best: dict[str, Guess] = {}
@@ -133,13 +133,9 @@ class Screen:
             for group in self._groups
             if len(group) > 1 and (guess := self._guess(free, [group]))
         ]
-        vectors = [group for _, group in sorted(guesses, reverse=True)[:VECTORS_PAIRED]]
-        pairs += [
-            (vector, other)
-            for vector in vectors
-            for other in self._groups
-            if other is not vector
-        ]
+        for _, vector in sorted(guesses, reverse=True)[:VECTORS_PAIRED]:
+            others = [group for group in self._groups if group is not vector]
+            pairs += [(vector, other) for other in others]
         return pairs
 
     def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
@@ -188,10 +184,7 @@ class Screen:
         return _View(wanted, self._products - done @ done.T, SAME)
 
     def _guess(self, view: "_View", groups: Sequence[list[int]]) -> Guess | None:
-        """The best allowed sizes of some effects (groups of signature indices).
-
-        None if they explain nothing.
-        """
+        """The best allowed sizes of some groups of signatures; None if useless."""
         rows = [row for group in groups for row in group]
         products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]
         ridge = np.diag(view.ridge * np.diag(self._products)[rows] + 1e-12)
@@ -202,12 +195,8 @@ class Screen:
         gain = float(clipped @ target - 0.5 * clipped @ products @ clipped)
         if gain <= 0 or (clipped == 0).all():
             return None
-        model, first = [], 0
-        for group in groups:
-            stretch = clipped[first : first + len(group)]
-            model.append(self._placed(group, stretch))
-            first += len(group)
-        return Guess(tuple(model), gain)
+        stretches = np.split(clipped, np.cumsum([len(group) for group in groups])[:-1])
+        return Guess(tuple(map(self._placed, groups, stretches)), gain)
 
     def _placed(self, group: list[int], stretch: FloatArray) -> PlacedEffect:
         """The effect of a group of signatures, with tried sizes times `stretch`."""

@@ -63,9 +63,10 @@ def signatures(
             if joint_wise:
                 own = predictor.channels.of_joint(placed.place)
                 rows = np.flatnonzero(np.isin(predictor.channel, own))
-            found.append(
-                Signature(placed, change[rows], rows, _two_sided(predictor, placed))
-            )
+            # whether its first value may be below and above the neutral one
+            first = Coordinates(predictor.plant, (placed,)).parameters[0]
+            two_sided = first.low < first.neutral < first.high
+            found.append(Signature(placed, change[rows], rows, two_sided))
     return found
 
 
@@ -110,9 +111,3 @@ def tips(plant: Plant) -> frozenset[str]:
     carrying = {int(parent) for parent in model.body_parentid[1:]}
     every = range(1, model.nbody)
     return frozenset(model.body(i).name for i in every if i not in carrying)
-
-
-def _two_sided(predictor: Predictor, placed: PlacedEffect) -> bool:
-    """Whether the effect's first value may be below and above the neutral one."""
-    first = Coordinates(predictor.plant, (placed,)).parameters[0]
-    return first.low < first.neutral < first.high

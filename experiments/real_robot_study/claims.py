@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from diagnosis import Verdict
-from diagnosis.verdict import Estimate, Pulse
+from diagnosis.verdict import Pulse
 from experiments.diagnosis_report.findings import pulse_sentences
 from experiments.diagnosis_report.numbers import estimate_text
-from experiments.real_robot_study.cases import Published, RealRobot
+from experiments.real_robot_study.cases import RealRobot
 from experiments.transfer.claims import Claim
 
 TWICE = 2.0
@@ -43,20 +43,13 @@ def sane_bounds(robot: RealRobot, effect: str, parameter: str) -> str:
 def _published(robot: RealRobot, verdict: Verdict) -> Iterator[Claim]:
     """Yield for each published value the claim that the verdict's interval holds it."""
     for known in robot.published:
-        found = _estimate(verdict, known)
+        own = [one.parameters for one in verdict.effects if one.name == known.effect]
+        found = next(
+            (one[known.parameter] for one in own if known.parameter in one), None
+        )
         text = f"{known.text}: the 80 % interval holds the published {known.value:g}"
-        if found is None:
-            yield Claim(text, False, "not found")
-        else:
-            holds = found.low <= known.value <= found.high
-            yield Claim(text, holds, estimate_text(found))
-
-
-def _estimate(verdict: Verdict, known: Published) -> Estimate | None:
-    for effect in verdict.effects:
-        if effect.name == known.effect and known.parameter in effect.parameters:
-            return effect.parameters[known.parameter]
-    return None
+        holds = found is not None and found.low <= known.value <= found.high
+        yield Claim(text, holds, estimate_text(found) if found else "not found")
 
 
 def _pulses(count: int, pulses: tuple[Pulse, ...]) -> Claim:

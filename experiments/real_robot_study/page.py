@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from diagnosis import Verdict
-from diagnosis.verdict import Found
+from diagnosis import PlacedEffect, Verdict
+from diagnosis.verdict import Errors, Found
 from experiments.diagnosis_report.numbers import estimate_text, percent
 from experiments.diagnosis_report.text import answer, badge, next_step
 from experiments.real_robot_study.cases import RealRobot
@@ -56,21 +56,21 @@ def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
 
 def _doubts(verdict: Verdict) -> list[str]:
     """Markdown list of the doubts: other answers, limits of the data, error left."""
-    lines = [
-        f"- instead of {effect.name} at {effect.place} it may be "
-        + ", ".join(
-            f"{other.name} at {other.place}" for other in effect.confusable_with
-        )
-        for effect in verdict.effects
-        if effect.confusable_with
-    ]
-    lines += [
-        "- another answer that fits as well: "
-        + " with ".join(f"{one.name} at {one.place}" for one in answer)
-        for answer in verdict.alternatives
-    ]
+    lines = []
+    for effect in verdict.effects:
+        others = ", ".join(map(_at, effect.confusable_with))
+        if others:
+            lines.append(f"- instead of {_at(effect)} it may be {others}")
+    for effects in verdict.alternatives:
+        together = " with ".join(map(_at, effects))
+        lines.append(f"- another answer that fits as well: {together}")
     lines += _rest_of_fit(verdict)
-    lines += _may_be_nothing(verdict.effects)
+    unsure = [
+        _at(effect)
+        for effect in verdict.effects
+        if (first := next(iter(effect.parameters.values()))).low <= 0 <= first.high
+    ]
+    lines += [f"- may be nothing: {', '.join(unsure)}"] if unsure else []
     rest = verdict.unexplained
     if rest is not None:
         lines.append(
@@ -81,6 +81,10 @@ def _doubts(verdict: Verdict) -> list[str]:
     step = next_step(verdict)
     lines += [f"- next: {step}"] if step else []
     return ["Doubts:", "", *(lines or ["- none"])]
+
+
+def _at(effect: Found | PlacedEffect) -> str:
+    return f"{effect.name} at {effect.place}"
 
 
 def _rest_of_fit(verdict: Verdict) -> list[str]:
@@ -101,16 +105,6 @@ def _rest_of_fit(verdict: Verdict) -> list[str]:
     return [left]
 
 
-def _may_be_nothing(effects: Sequence[Found]) -> list[str]:
-    """A Markdown line with the effects whose first parameter may be 0, if any."""
-    names = [
-        f"{effect.name} at {effect.place}"
-        for effect in effects
-        if (first := next(iter(effect.parameters.values()))).low <= 0 <= first.high
-    ]
-    return [f"- may be nothing: {', '.join(names)}"] if names else []
-
-
 def _fit(verdict: Verdict) -> list[str]:
     """Markdown table of held-out errors by channel, and of all channels together."""
     fit = verdict.fit
@@ -118,21 +112,16 @@ def _fit(verdict: Verdict) -> list[str]:
         return ["Nothing was held out."]
     columns = ["channel", "unit", "sim", "corrected", "noise floor", "regression"]
     columns += ["same effect, other place", "other effect, same place"]
-    every = {
-        **{name: (one, one.unit) for name, one in fit.channels.items()},
-        "all": (fit, "noise"),
+    every: dict[str, tuple[Errors, str]] = {
+        name: (one, one.unit) for name, one in fit.channels.items()
     }
-    rows = [
-        [name, unit]
-        + [
-            "-" if value is None else f"{value:.3g}"
-            for value in (
-                *(one.nominal, one.corrected, one.floor, one.ceiling),
-                *(one.wrong_place, one.wrong_effect),
-            )
-        ]
-        for name, (one, unit) in every.items()
-    ]
+    every["all"] = fit, "noise"
+    rows = []
+    for name, (one, unit) in every.items():
+        errors = [one.nominal, one.corrected, one.floor, one.ceiling]
+        errors += [one.wrong_place, one.wrong_effect]
+        texts = ["-" if value is None else f"{value:.3g}" for value in errors]
+        rows.append([name, unit, *texts])
     return markdown_table(columns, rows)
 
 
@@ -154,10 +143,8 @@ def _pulses(verdict: Verdict) -> list[str]:
 def _recordings(verdict: Verdict) -> list[str]:
     used = verdict.recordings
     return [
-        f"- {use}: {', '.join(names)}"
-        for use, names in (
-            ("fitted", used.fit),
-            ("to select effects", used.select),
-            ("held out", used.test),
-        )
-    ] + [f"- {verdict.seconds:.0f} s"]
+        f"- fitted: {', '.join(used.fit)}",
+        f"- to select effects: {', '.join(used.select)}",
+        f"- held out: {', '.join(used.test)}",
+        f"- {verdict.seconds:.0f} s",
+    ]

@@ -40,17 +40,26 @@ class Goal:
             found = found[key]
         return dict(found)
 
-    def holds(self, figures: Mapping[str, Any]) -> bool | None:
-        """Whether the figure meets the goal; None if nothing was counted."""
-        value = self.of(figures)["value"]
-        if value is None:
-            return None
-        above = self.low is None or value >= self.low
-        return above and (self.high is None or value <= self.high)
+    def less_than(self, score: Mapping[str, Any]) -> float | None:
+        """Limit for a control: half of what the diagnosis closes; None for others."""
+        closed = score["closed"]["closed"]["value"]
+        is_control = self.path[0] == "closed" and self.path[1] != "closed"
+        return 0.5 * closed if is_control and closed is not None else None
 
-    @property
-    def asked(self) -> str:
+    def holds(self, score: Mapping[str, Any]) -> bool | None:
+        """Whether the figure meets the goal; None without a goal or a figure."""
+        value, limit = self.of(score)["value"], self.less_than(score)
+        if value is None or not self.asked(score):
+            return None
+        below = self.high is None or value <= self.high
+        below = below and (limit is None or bool(value < limit))
+        return below and (self.low is None or value >= self.low)
+
+    def asked(self, score: Mapping[str, Any]) -> str:
         """The goal in words, such as "at least 0.9"; "" without bounds."""
+        limit = self.less_than(score)
+        if limit is not None:
+            return f"less than {limit:.3g}"
         if self.low is not None and self.high is not None:
             return f"{self.low:.0%} to {self.high:.0%}"
         if self.low is not None:
@@ -102,36 +111,11 @@ def score_rows(score: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
     columns = ["figure", "goal", "holds", "diagnosis", *baselines]
     rows = []
     for goal in GOALS:
-        holds = _holds(goal, score)
-        verdict = {True: "yes", False: "no", None: ""}[holds]
+        holds = {True: "yes", False: "no", None: ""}[goal.holds(score)]
         others = [text_of(goal.of(each), False) for each in baselines.values()]
-        row = [goal.title, _asked(goal, score), verdict, text_of(goal.of(score))]
+        row = [goal.title, goal.asked(score), holds, text_of(goal.of(score))]
         rows.append([*row, *others])
     return columns, rows
-
-
-def _is_control(goal: Goal) -> bool:
-    return goal.path[0] == "closed" and goal.path != ("closed", "closed")
-
-
-def _half(score: Mapping[str, Any]) -> float | None:
-    value = score["closed"]["closed"]["value"]
-    return None if value is None else 0.5 * value
-
-
-def _asked(goal: Goal, score: Mapping[str, Any]) -> str:
-    half = _half(score)
-    if _is_control(goal) and half is not None:
-        return f"less than {half:.3g}"
-    return goal.asked
-
-
-def _holds(goal: Goal, score: Mapping[str, Any]) -> bool | None:
-    """Whether a goal is met; None if it has no bounds, or nothing was counted."""
-    if _is_control(goal):
-        half, value = _half(score), goal.of(score)["value"]
-        return None if half is None or value is None else bool(value < half)
-    return goal.holds(score) if goal.asked else None
 
 
 def score_report(score: Mapping[str, Any], figure: str) -> Report:
@@ -151,21 +135,18 @@ def score_report(score: Mapping[str, Any], figure: str) -> Report:
 
 def _answer(score: Mapping[str, Any]) -> list[str]:
     """A sentence with the main figures and the number of goals that are met."""
-    held = [holds for goal in GOALS if (holds := _holds(goal, score)) is not None]
+    held = [holds for goal in GOALS if (holds := goal.holds(score)) is not None]
     right, wrong = score["top1"]["all"]["value"], score["null_false_alarms"]["value"]
     whole = score["right"]
-    told = [
-        f"{round(whole['value'] * whole['n'])} answers are right as a whole",
-        f"the right effect is named first in {right:.0%} of the cases with one effect"
-        if right is not None
-        else "",
-        f"something is named in {wrong:.0%} of those in which nothing is missing"
-        if wrong is not None
-        else "",
-    ]
-    counted = ", ".join(filter(None, told))
+    told = f"{round(whole['value'] * whole['n'])} answers are right as a whole"
+    if right is not None:
+        first = f"the right effect is named first in {right:.0%}"
+        told += f", {first} of the cases with one effect"
+    if wrong is not None:
+        named = f"something is named in {wrong:.0%}"
+        told += f", {named} of those in which nothing is missing"
     met = f"The diagnosis meets {sum(held)} of the {len(held)} goals that count here."
-    return [f"Of {score['cases']} cases: {counted}. {met}"]
+    return [f"Of {score['cases']} cases: {told}. {met}"]
 
 
 def _unanswered(score: Mapping[str, Any]) -> list[str]:
