@@ -22,11 +22,7 @@ Generators = Sequence[np.random.Generator]
 
 
 class NoiseLaw(Protocol):
-    """The distribution of one robot's noise; a new law needs `dimensions` and `chunk`.
-
-    Example:
-      See `WhiteNoise`.
-    """
+    """Distribution of one robot's noise; a new law needs `dimensions` and `chunk`."""
 
     @property
     def dimensions(self) -> int:
@@ -65,11 +61,7 @@ class WhiteNoise:
 
 
 class NoiseStream:
-    """Draws the noise of n robots through one episode, each from its own seed.
-
-    Example:
-      See `WhiteNoise`.
-    """
+    """Draws the noise of n robots through one episode, each from its own seed."""
 
     def __init__(self, law: NoiseLaw, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode of n robots, each with its own seed."""

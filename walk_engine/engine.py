@@ -53,8 +53,8 @@ class WalkEngine:
 
         Args:
           biped: the robots' legs and joints.
-          gaits: n gaits, or their vectors as an (n, 16) array, with values for the
-            NAO; they are scaled to the robot's size.
+          gaits: n gaits, or an (n, 16) array of their vectors, with values for the NAO;
+            they are scaled to the robot's size.
           tick_s: time between two calls of `step` [s].
           first_swing: the foot that swings first.
           config: constants that are the same for all gaits, for the NAO; scaled, too.

@@ -33,13 +33,10 @@ class Posture:
         """Joint targets (joints, n) [rad], before the limits of range and speed.
 
         Joints that belong to neither a leg nor a shoulder stay at 0, or at the angle of
-        their range that is nearest to 0.
-
-        Args:
-          feet: target positions of the feet.
-          down: (n,) depth of the crouch, 0 standing upright, 1 at the walking height.
-            The torso's lean and the offset of the hip are proportional to it.
-          ankle_rad: (2, 2, n) angles added to pitch and roll of each ankle [rad].
+        their range that is nearest to 0. The torso's lean and the offset of the hip are
+        proportional to `down` (n,), the depth of the crouch: 0 upright, 1 at the
+        walking height. `ankle_rad` (2, 2, n) is added to pitch and roll of each ankle
+        [rad].
         """
         biped = self._biped
         target = np.repeat(self._rest_rad[:, None], len(down), axis=1)

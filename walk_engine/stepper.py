@@ -92,11 +92,7 @@ class Stepper:
         self._still = Speeds(*np.zeros((3, len(self._leg_height_m))))
 
     def start(self, left_first: bool) -> Progress:
-        """Progress of robots in the state READY.
-
-        Args:
-          left_first: whether the left foot swings first.
-        """
+        """Progress of robots in the state READY."""
         n = len(self._leg_height_m)
         return Progress(
             state=np.full(n, WalkState.READY, dtype=np.int8),
@@ -110,16 +106,10 @@ class Stepper:
     def advance(
         self, before: Progress, request: Velocity, force_n: FloatArray
     ) -> tuple[Progress, Feet, FloatArray]:
-        """Advance all robots by one tick.
+        """Advance all robots by one tick, with readings (8, n) of the sensors [N].
 
-        Args:
-          before: the progress before the tick.
-          request: requested velocities.
-          force_n: (8, n) readings of the force sensors [N].
-
-        Returns:
-          The new progress, the positions of the feet, and the depth (n,) of each
-          robot's crouch: 0 standing upright, 1 at the walking height.
+        The result is the new progress, the positions of the feet, and the depth (n,) of
+        each robot's crouch: 0 standing upright, 1 at the walking height.
         """
         now = self._begin(before, request)
         time_s = now.ticks * self._tick_s

@@ -116,10 +116,9 @@ class ForwardModel(NetworkModel[ForwardConfig]):
     def residuals(self, transitions: Transitions) -> FloatArray:
         """(N, p) standardised residuals: the noise for which `sample` gives the data.
 
-        They are white and standard normal if the model is right. In an ensemble, each
-        episode is assigned one network. In a mixture, each next state is assigned a
-        component by its probability, with evenly spread numbers in place of random
-        ones.
+        They are white and standard normal if the model is right. An ensemble's networks
+        take turns by episode. Components of a mixture are drawn by their probability,
+        with evenly spread numbers in place of random ones.
         """
         _, index = np.unique(transitions.episode, return_inverse=True)
         member = index % self.config.members

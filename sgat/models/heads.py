@@ -254,8 +254,7 @@ class MixtureHead(Head):
         """(n, d) noise for which `sample` gives the values y (n, d).
 
         The component of each row is drawn, with `choice` (n,), by its probability of
-        having produced y. With the most probable one instead, the residuals of
-        overlapping components would be too small.
+        having produced y: with the most probable one, residuals would be too small.
         """
         weights, means, deviations = parts
         z = (y[..., None, :] - means) / deviations

@@ -149,10 +149,7 @@ _FORMAT = 1
 def write_model(
     path: Path, kind: str, config: NetworkConfig, network: ScaledNetwork
 ) -> None:
-    """Write a fitted network and its settings; the folder is made if it does not exist.
-
-    `kind` names the kind of model, which `read_model` checks.
-    """
+    """Write a fitted network and its settings; `kind` is checked by `read_model`."""
     header = {"format": _FORMAT, "kind": kind, "config": asdict(config)}
     content = io.BytesIO()
     torch.save({"header": json.dumps(header), "tensors": network.to_tensors()}, content)
@@ -164,8 +161,7 @@ def read_model(
 ) -> tuple[Config, ScaledNetwork]:
     """Read a file that `write_model` wrote; all numbers are equal to the last bit.
 
-    Only tensors and plain values are read (torch's `weights_only`), so no code of the
-    file is run.
+    Only tensors and plain values are read (torch's `weights_only`): no code is run.
 
     Raises:
       BadModelError: the file cannot be read, is damaged, or has another kind of model.

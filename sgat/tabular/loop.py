@@ -25,9 +25,6 @@ class TabularLoop:
       calm_steps: the loop ends after this number of grounding steps in a row without an
         improvement.
       most_steps: the loop ends after this number of grounding steps in any case.
-
-    Example:
-      See `ground_until_calm`.
     """
 
     episodes: int = 10_000
@@ -59,9 +56,6 @@ class Settled:
       steps: number of grounding steps.
       transitions: number of real transitions in all steps.
       calm: whether the loop ended because nothing improved any more.
-
-    Example:
-      See `ground_until_calm`.
     """
 
     policy: IntArray
@@ -84,13 +78,12 @@ def ground_until_calm(
     Args:
       sim: a deterministic simulator; the loop begins with its optimal policy.
       real: the world in which episodes are played; its table is not used otherwise.
-      samples: True for SGAT, False for GAT; see `grounded_sim`.
+      samples: True for SGAT, False for GAT.
       loop: how much data is collected, and when to stop.
       generator: draws the real world's outcomes.
 
     Example:
-      >>> settled = ground_until_calm(sim, real, True, TabularLoop(), rng)
-      >>> settled.policy
+      >>> ground_until_calm(sim, real, True, TabularLoop(), rng).policy
     """
     policy = policy_iteration(sim)
     counts = np.zeros(sim.transition.shape, np.intp)

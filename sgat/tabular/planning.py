@@ -27,11 +27,7 @@ def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray
     An action changes only if another one is better by more than rounding, so each round
     improves the policy and the search ends. Of equally good actions the first is taken.
     Steps should cost something; else never ending can be as good as reaching a goal.
-
-    Args:
-      mdp: the world to plan in.
-      policy: (S,) actions to start from, by default the first action in every state.
-        The result does not depend on it.
+    The result does not depend on the `policy` to start from.
 
     Example:
       >>> policy_iteration(stay_or_go)

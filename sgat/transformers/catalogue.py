@@ -71,11 +71,7 @@ def grounding(name: str) -> "Grounding":
 
 
 def file_kind(cls: T) -> T:
-    """Class decorator: this class reads transformer folders of the kind `cls.kind`.
-
-    Example:
-      See `sgat.transformers.direct_transformer.DirectTransformer`.
-    """
+    """Class decorator: this class reads transformer folders of the kind `cls.kind`."""
     _KINDS[cls.kind] = cls
     return cls
 
@@ -110,9 +106,6 @@ def write_transformer(folder: Path, transformer: KeptTransformer) -> None:
     Raises:
       BadValueError: the transformer is not fitted, or has other noise than white noise,
         whose data the files cannot hold.
-
-    Example:
-      See docs/python.md, "Learn with Gymnasium".
     """
     low, high = (bound.tolist() for bound in transformer.bounds)
     header: dict[str, Any] = {"format": _FORMAT, "low": low, "high": high}

@@ -30,9 +30,6 @@ class KeptTransformer(Transformer, Protocol):
 
     Attributes:
       kind: name of this class in the folder's header, by which the reader finds it.
-
-    Example:
-      See `write_transformer`.
     """
 
     kind: ClassVar[str]

@@ -40,9 +40,6 @@ class WalkSenses:
       outcomes: number of columns of a next state.
       sim_columns: how many of a state's first columns matter in a world without
         latency: all but the commands.
-
-    Example:
-      See `leg_senses`.
     """
 
     def __init__(self, joints: Sequence[int]) -> None:
@@ -133,13 +130,9 @@ def tilted(
 ) -> FloatArray:
     """(n, 3) estimates of the world's up axis in the torso frame, one tick later.
 
-    A complementary filter: d(up)/dt = up x rate, corrected towards the direction of the
-    accelerometer unless that is almost zero.
-
-    Args:
-      up: (n, 3) present estimates, which are unit vectors.
-      rate_rad_s: (n, 3) gyroscope [rad/s].
-      force_m_s2: (n, 3) accelerometer [m/s^2].
+    A complementary filter of unit vectors `up` (n, 3): d(up)/dt = up x rate, with the
+    gyroscope's rate (n, 3) [rad/s], corrected towards the direction of the
+    accelerometer (n, 3) [m/s^2] unless that is almost zero.
     """
     turned = up + TICK_S * np.cross(up, rate_rad_s)
     length = np.linalg.norm(force_m_s2, axis=1, keepdims=True)

@@ -14,11 +14,7 @@ from worlds import End, Observation, Truth, World, WorldOptions
 
 
 class WorldWrapper:
-    """A world that passes every call on to the world inside; subclasses change some.
-
-    Example:
-      See `GroundedWorld`.
-    """
+    """A world that passes every call on to the world inside; subclasses change some."""
 
     def __init__(self, world: World) -> None:
         """Choose the world inside."""
@@ -144,14 +140,13 @@ class WatchedWorld(WorldWrapper):
         exploration_rad: float | FloatArray = 0.0,
         seed: np.random.SeedSequence | None = None,
     ) -> None:
-        """Wrap a world.
+        """Wrap a world with n robots.
 
         Args:
-          world: the world to learn about, with n robots.
+          world: the world to learn about.
           senses: makes the states and actions that are recorded.
           exploration_rad: standard deviation [rad] of the noise on the commands of the
-            grounded joints: one number, or (n, 1). The noise starts at zero and grows
-            to this deviation.
+            grounded joints: one number, or (n, 1). The noise grows from zero.
           seed: seed of that noise.
 
         Raises:
