@@ -20,10 +20,7 @@ if TYPE_CHECKING:
 class Claim:
     """A statement, mostly of the SGAT paper, and whether a study confirms it.
 
-    Attributes:
-      text: the statement.
-      holds: whether the study confirms it.
-      found: the numbers that decide it, as text.
+    `found` has the numbers that decide it, as text.
     """
 
     text: str
@@ -70,12 +67,8 @@ def write_transfer_page(
 ) -> None:
     """Write a study's `result.md` and `report.html`: answer, claims, then the body.
 
-    Args:
-      folder: the run's folder; the pictures are in it already.
-      title: the study's question, as a heading.
-      claims: claims that the study has checked.
-      body: lines of Markdown.
-      answer: sentences that answer the question; if empty, how many claims hold.
+    The title is the study's question. The answer is sentences; if there are none, it
+    says how many claims hold. The pictures are in the run's folder already.
     """
     lines = [*claim_lines(claims), "", *body]
     answer = answer or claims_answer(claims)

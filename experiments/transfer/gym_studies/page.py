@@ -88,5 +88,5 @@ def _notes(study: GymStudy) -> str:
         envelopes=", ".join(f"{level:g}" for level in study.envelopes),
         search_episodes=study.search_episodes,
         episodes=study.episodes,
-        trpo=", ".join(f"{name} {value:g}" for name, value in vars(study.trpo).items()),
+        trpo=", ".join(f"{name} {value:g}" for name, value in study.trpo.items()),
     ).strip()

@@ -9,15 +9,23 @@ from experiments.transfer.gym_studies.environments import (
     INVERTED_PENDULUM,
 )
 from experiments.transfer.gym_studies.study import GymStudy
-from experiments.transfer.gym_studies.training import TrpoConfig
 
 SizeName = Literal["full", "reduced", "smoke"]
 
-PENDULUM_TRPO = TrpoConfig(5000, 0.98, 0.9, 0.01, 20, 2.35e-4, 10, 0.00428, 125)
-CHEETAH_TRPO = TrpoConfig(2048, 0.99, 0.95, 0.01, 15, 0.1, 5, 1e-3, 128)
+PENDULUM_TRPO = {
+    "batch": 5000, "gamma": 0.98, "gae_lambda": 0.9, "max_kl": 0.01, "cg_steps": 20,
+    "cg_damping": 2.35e-4, "value_epochs": 10, "value_rate": 0.00428,
+    "value_batch": 125,
+}  # fmt: skip
+CHEETAH_TRPO = {
+    "batch": 2048, "gamma": 0.99, "gae_lambda": 0.95, "max_kl": 0.01, "cg_steps": 15,
+    "cg_damping": 0.1, "value_epochs": 5, "value_rate": 1e-3, "value_batch": 128,
+}  # fmt: skip
 """Parameters from `rl_gat`, later code by the authors of the GAT and SGAT papers."""
 
-SMOKE_TRPO = TrpoConfig(64, 0.99, 0.95, 0.01, 5, 0.1, 1, 1e-3, 64)
+SMOKE_TRPO = CHEETAH_TRPO | {
+    "batch": 64, "cg_steps": 5, "value_epochs": 1, "value_batch": 64,
+}  # fmt: skip
 """Parameters for a smoke test: every step runs, but nothing useful is learned."""
 
 PENDULUM = GymStudy(
@@ -53,7 +61,7 @@ SIZES: Mapping[str, Mapping[SizeName, GymStudy]] = {
             seeds=6,
             timesteps=100_000,
             episodes=20,
-            trpo=replace(PENDULUM_TRPO, batch=1024, max_kl=0.04, value_batch=128),
+            trpo=PENDULUM_TRPO | {"batch": 1024, "max_kl": 0.04, "value_batch": 128},
             sim_steps=10_000,
             envelopes=(0.2, 0.5),
             search_episodes=5,

@@ -13,7 +13,7 @@ from experiments.transfer.gym_studies.environments import NOISY_SIM, Domain
 from experiments.transfer.gym_studies.grounding import ground
 from experiments.transfer.gym_studies.training import (
     MakeEnvironment,
-    TrpoConfig,
+    TrpoSettings,
     evaluate,
     load,
     save,
@@ -66,7 +66,7 @@ class GymStudy:
     seeds: int
     timesteps: int
     episodes: int
-    trpo: TrpoConfig
+    trpo: TrpoSettings
     real_steps: int
     sim_steps: int
     envelopes: tuple[float, ...]

@@ -1,8 +1,7 @@
 """TRPO policies for Gymnasium environments: training, files, and trials."""
 
 import io
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -21,50 +20,31 @@ ENVIRONMENTS = 8
 """Number of environments side by side in a training; one call gives all actions."""
 
 
-@dataclass(frozen=True)
-class TrpoConfig:
-    """Parameters of TRPO; the network is 64 x 64 tanh, observations are not scaled.
+TrpoSettings = Mapping[str, Any]
+"""Parameters of TRPO by the names in `SB3_NAMES`, and the `batch`: the steps between
+two updates in all environments together. Environments and `value_batch` divide it. The
+network is 64 x 64 tanh, observations are not scaled."""
 
-    Attributes:
-      batch: steps between two updates, in all environments together.
-      gamma: discount factor per step.
-      gae_lambda: decay of the generalised advantage estimate.
-      max_kl: largest mean KL divergence of an update: the trust region.
-      cg_steps: largest number of conjugate-gradient steps.
-      cg_damping: number added to the diagonal of the Fisher matrix.
-      value_epochs: passes of the value function through a batch.
-      value_rate: learning rate of the value function.
-      value_batch: size of the value function's minibatches.
-    """
-
-    batch: int
-    gamma: float
-    gae_lambda: float
-    max_kl: float
-    cg_steps: int
-    cg_damping: float
-    value_epochs: int
-    value_rate: float
-    value_batch: int
-
-    def to_keywords(self) -> dict[str, Any]:
-        """The parameters under the names of sb3-contrib's TRPO."""
-        return {
-            "n_steps": self.batch // ENVIRONMENTS,
-            "gamma": self.gamma,
-            "gae_lambda": self.gae_lambda,
-            "target_kl": self.max_kl,
-            "cg_max_steps": self.cg_steps,
-            "cg_damping": self.cg_damping,
-            "n_critic_updates": self.value_epochs,
-            "learning_rate": self.value_rate,
-            "batch_size": self.value_batch,
-        }
+SB3_NAMES = {
+    "gamma": "gamma",
+    "gae_lambda": "gae_lambda",
+    "max_kl": "target_kl",
+    "cg_steps": "cg_max_steps",
+    "cg_damping": "cg_damping",
+    "value_epochs": "n_critic_updates",
+    "value_rate": "learning_rate",
+    "value_batch": "batch_size",
+}
+"""Names of sb3-contrib's TRPO. In order: discount factor per step, decay of the
+generalised advantage estimate, largest mean KL divergence of an update (the trust
+region), largest number of conjugate-gradient steps, number added to the diagonal of the
+Fisher matrix, and of the value function passes through a batch, learning rate and size
+of minibatches."""
 
 
 def train(
     make: MakeEnvironment,
-    config: TrpoConfig,
+    trpo: TrpoSettings,
     timesteps: int,
     seed: int,
     start: Path | None = None,
@@ -76,7 +56,7 @@ def train(
 
     Args:
       make: makes a new environment.
-      config: parameters of TRPO.
+      trpo: parameters of TRPO.
       timesteps: steps in all environments together, rounded up to whole batches.
       seed: seed of everything random.
       start: file of the policy to start from; None for random weights.
@@ -86,7 +66,9 @@ def train(
 
     envs = DummyVecEnv([make] * ENVIRONMENTS)
     if start is None:
-        model = TRPO("MlpPolicy", envs, seed=seed, device="cpu", **config.to_keywords())
+        settings = {name: trpo[own] for own, name in SB3_NAMES.items()}
+        settings["n_steps"] = trpo["batch"] // ENVIRONMENTS
+        model = TRPO("MlpPolicy", envs, seed=seed, device="cpu", **settings)
     else:
         model = TRPO.load(start, envs, device="cpu")
         model.set_random_seed(seed)

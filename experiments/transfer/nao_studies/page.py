@@ -35,24 +35,15 @@ def table_of(cells: Sequence[Cell]) -> list[list[str]]:
     rows = []
     for cell in sorted(cells, key=lambda cell: cell["step"]):
         low, high = wilson(cell["falls"], cell["trials"])
-        rows.append(
-            [
-                cell["method"],
-                str(cell["step"]),
-                f"{cell['speed_mean']:.1f} ± {cell['speed_std']:.1f}",
-                f"{cell['falls']}/{cell['trials']}",
-                f"{low:.0%} to {high:.0%}",
-                str(cell["real_walks"]),
-            ]
-        )
+        speed = f"{cell['speed_mean']:.1f} ± {cell['speed_std']:.1f}"
+        falls = f"{cell['falls']}/{cell['trials']}", f"{low:.0%} to {high:.0%}"
+        walks = str(cell["real_walks"])
+        rows.append([cell["method"], str(cell["step"]), speed, *falls, walks])
     return rows
 
 
 def more_falls_p(often: Cell, seldom: Cell) -> float:
-    """Fisher's exact test that the first method's gait falls more often: p, one-sided.
-
-    The null hypothesis is that both gaits fall equally often (Fisher 1922).
-    """
+    """One-sided p value that the first gait falls more often (Fisher's exact test)."""
     from scipy.stats import fisher_exact
 
     table = [
@@ -62,10 +53,7 @@ def more_falls_p(often: Cell, seldom: Cell) -> float:
 
 
 def faster_p(fast: Cell, slow: Cell) -> float:
-    """Welch's test that the first method's gait is faster: p value, one-sided.
-
-    The null hypothesis is that both gaits are equally fast (Welch 1947).
-    """
+    """One-sided p value that the first method's gait is faster (Welch's test)."""
     from scipy.stats import ttest_ind_from_stats
 
     numbers = [
@@ -78,10 +66,7 @@ def faster_p(fast: Cell, slow: Cell) -> float:
 
 
 def claims_of(cells: Sequence[Cell]) -> list[Claim]:
-    """The claims of the SGAT paper's table, checked on the study's cells.
-
-    The list is empty if a method that they need was not tried.
-    """
+    """Claims of the SGAT paper's table; none if a method they need was not tried."""
     at = {(cell["method"], cell["step"]): cell for cell in cells}
     if all((name, 1) in at for name in (NONE, DIAGNOSED_SIM)):
         return [_better_than_nominal(at[DIAGNOSED_SIM, 1], at[NONE, 1])]
@@ -94,12 +79,12 @@ def claims_of(cells: Sequence[Cell]) -> list[Claim]:
             f"after two steps SGAT walks at least {GOAL_SPEED_CM_S:.0f} cm/s and falls "
             f"in at most {GOAL_FALLS:.0%} of its trials",
             _is_good(sgat),
-            f"{_walked(sgat)}",
+            _walked(sgat),
         ),
         Claim(
             "after two steps SGAT on an uneven sim does, too",
             _is_good(best),
-            f"{_walked(best)}",
+            _walked(best),
         ),
         Claim(
             "GAT falls significantly more often",
@@ -128,13 +113,9 @@ def _better_than_nominal(diagnosed: Cell, nominal: Cell) -> Claim:
 def write_nao_page(
     folder: RunFolder, cells: Sequence[Cell], planned: int, course: RealCourse
 ) -> None:
-    """Write `result.md` and `report.html`.
+    """Write `result.md` and `report.html` with the results so far.
 
-    Args:
-      folder: the run's folder.
-      cells: results so far, each of a method after a grounding step.
-      planned: number of cells that the study will have.
-      course: real course on which the gaits were tried.
+    `planned` is the number of cells that the study will have.
     """
     trials = cells[0]["trials"]
     missing = planned - len(cells)
@@ -150,8 +131,7 @@ def write_nao_page(
         "",
         *markdown_table(HEADINGS, table_of(cells)),
         "",
-        *_white_noise(cells),
-        *_own_groundings(cells),
+        *_groundings(cells),
         "All groundings learn from the same real walks, half of them with noise on the",
         "commands.",
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
@@ -178,20 +158,14 @@ def _ground(course: RealCourse) -> str:
             return f"of `{course.terrain}`"
 
 
-def _white_noise(cells: Sequence[Cell]) -> list[str]:
-    """Says how SGAT's noise was drawn, if SGAT is among the cells."""
-    if all(cell["method"] != SGAT for cell in cells):
-        return []
-    return [f"{SGAT}'s noise is white, as in the SGAT paper."]
-
-
-def _own_groundings(cells: Sequence[Cell]) -> list[str]:
-    """Markdown lines on those of the cells' groundings that the SGAT paper lacks."""
-    lines: list[str] = []
+def _groundings(cells: Sequence[Cell]) -> list[str]:
+    """Markdown lines on SGAT's noise, and on groundings that the SGAT paper lacks."""
+    tried = {cell["method"] for cell in cells}
+    lines = []
+    if SGAT in tried:
+        lines.append(f"{SGAT}'s noise is white, as in the SGAT paper.")
     for one in groundings().values():
-        if any(
-            cell["method"] in (one.title, f"{one.title}, diagnosed") for cell in cells
-        ):
+        if tried & {one.title, f"{one.title}, {DIAGNOSED}"}:
             lines += one.means
             if one.uneven_sim:
                 lines.append(
@@ -246,9 +220,7 @@ def _walked(cell: Cell) -> str:
 def worth_cm_s(cell: Cell) -> float:
     """Speed minus the SGAT paper's cost of falls [cm/s], by which gaits are compared.
 
-    Searches in a grounded sim charge `FALL_PENALTY_WALK_CM_S`, four times as much,
-    since their walks are short. Here whole courses were walked, so the paper's value is
-    used.
+    Searches charge four times as much for a fall, since their walks are short.
     """
     falls = FALL_PENALTY_CM_S * cell["falls"] / cell["trials"]
     return float(cell["speed_mean"] - falls)

@@ -58,23 +58,10 @@ DIAGNOSED_UNEVEN, DIAGNOSED_SGAT = UNEVEN + _ON_DIAGNOSED, SGAT + _ON_DIAGNOSED
 """Methods that ground a sim which a diagnosis has corrected."""
 
 PLAN = (
-    (START, 0),
-    (DIAGNOSED_SIM, 1),
-    (DIAGNOSED_UNEVEN, 1),
-    (DIAGNOSED_UNEVEN, 2),
-    (DIAGNOSED_SGAT, 1),
-    (DIAGNOSED_SGAT, 2),
-    (UNEVEN, 1),
-    (UNEVEN, 2),
-    (SGAT, 1),
-    (GAT, 1),
-    (SGAT, 2),
-    (GAT, 2),
-    (NONE, 1),
-    (RANDOMISED, 1),
-    (ANE, 1),
-    (REAL, 1),
-)
+    (START, 0), (DIAGNOSED_SIM, 1), (DIAGNOSED_UNEVEN, 1), (DIAGNOSED_UNEVEN, 2),
+    (DIAGNOSED_SGAT, 1), (DIAGNOSED_SGAT, 2), (UNEVEN, 1), (UNEVEN, 2), (SGAT, 1),
+    (GAT, 1), (SGAT, 2), (GAT, 2), (NONE, 1), (RANDOMISED, 1), (ANE, 1), (REAL, 1),
+)  # fmt: skip
 """Method and grounding step of each result, in the order of computation."""
 
 METHODS = tuple(
@@ -200,10 +187,8 @@ class NaoStudy:
     def _first_step(
         self, places: Places, beside: GroundingStep | None = None
     ) -> GroundingStep:
-        walks, seed = (
-            (self._config.real_walks, self._config.sim_walks),
-            self._seed(OF_DATA),
-        )
+        walks = self._config.real_walks, self._config.sim_walks
+        seed = self._seed(OF_DATA)
         return GroundingStep(
             START_GAIT, GaitCloud(), walks, seed, places=places, beside=beside
         )
