@@ -148,9 +148,9 @@ def _robot(
         "mass_kg": description.mass_kg,
         "scale": dataclasses.asdict(description.scale),
         **scores,
-        "sole": sole(description)._asdict(),
-        "reach": reach(description, tuned)._asdict(),
-        "saturation": limits._asdict(),
+        "sole": sole(description),
+        "reach": reach(description, tuned),
+        "saturation": limits,
         "gait": dict(tuned),
     }
 

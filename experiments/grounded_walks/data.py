@@ -34,8 +34,7 @@ WALK = TrialRules(limit_s=7.5, start_spread_rad=0.01)
 0.01 rad (standard deviation)."""
 
 ON_COURSE = TrialRules(limit_s=15.0, start_spread_rad=0.01)
-"""Rules of a walk of 15 s, the time for a course of 3 m at 20 cm/s. Joint positions at
-the start vary by 0.01 rad (standard deviation)."""
+"""Rules of a walk of 15 s, the time for a course of 3 m at 20 cm/s."""
 
 FLAT_TICKS = 300
 """Ticks (3 s) at the start of a real walk that a grounding does not learn from: the
@@ -51,19 +50,11 @@ def walk(
     exploration_rad: Sequence[float] = (0.0,),
     rules: TrialRules = WALK,
 ) -> tuple[Trials, Transitions]:
-    """Let each gait walk once, on ground of its own, and record all transitions.
+    """Let each gait (n, 16) walk once, on ground of its own; record all transitions.
 
-    Args:
-      place: the world and its grounds.
-      description: the robot.
-      vectors: (n, 16) gaits, in the units of `walk_engine.PARAMETERS`.
-      seed: seed of grounds, sensor noise, start poses and noise on commands.
-      exploration_rad: standard deviations [rad] of noise on the joint commands; the
-        gaits get them in turn.
-      rules: when a walk is over.
-
-    Returns:
-      Results of the n walks, and their transitions in the same order.
+    The gaits get noise on the joint commands with the standard deviations
+    `exploration_rad` in turn; everything random follows from the seed. The transitions
+    are in the order of the walks.
 
     Example:
       >>> vectors = GaitCloud().draw(gaits.get("start"), 4, np.random.SeedSequence(1))
@@ -192,19 +183,10 @@ def walk_in_sim(
 ) -> Trials:
     """Let each gait walk several times in a sim.
 
-    By default all gaits get the same random numbers, so that differences between their
-    results come from the gaits alone.
-
-    Args:
-      sim: grounded or not.
-      vectors: (gaits, 16) in the units of `walk_engine.PARAMETERS`.
-      repeats: walks of each gait.
-      seed: seed of grounds, start poses and the transformer's noise.
-      rules: when a walk is over.
-      own_seeds: whether every gait gets random numbers of its own instead.
-
-    Returns:
-      gaits * repeats trials; those of one gait follow each other.
+    All gaits (n, 16) get the same random numbers, so that differences between their
+    results come from the gaits alone, or with `own_seeds` numbers of their own. They
+    are for grounds, start poses and the transformer's noise. The repeats of one gait
+    follow each other in the trials.
 
     Example:
       >>> trials = walk_in_sim(GroundedSim(), vectors, 2, np.random.SeedSequence(1))

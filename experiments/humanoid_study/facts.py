@@ -1,6 +1,6 @@
 """Measures of what limits a robot in a gait: joint ranges, motors, size of soles."""
 
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -17,59 +17,27 @@ FEET_PARTS = (-1.0, 0.0, 1.0)
 below and ahead, in units of a quarter of the distance walked in one gait cycle."""
 
 
-class Reach(NamedTuple):
-    """How far the joints' ranges keep a robot's feet from the poses of a gait.
-
-    Attributes:
-      place_m: largest distance of an ankle from its target [m].
-      tilt_rad: largest tilt of a sole, which should be level [rad].
-      joint: the leg joint whose target is farthest outside its range; "" if none is.
-    """
-
-    place_m: float
-    tilt_rad: float
-    joint: str
-
-
-class Saturation(NamedTuple):
-    """The motor that is at its limit for the largest share of a walk.
-
-    Attributes:
-      share: share of the walk's time at the limit, from 0 to 1.
-      joint: name of the motor's joint; "" if no motor is ever at its limit.
-    """
-
-    share: float
-    joint: str
-
-
-class Sole(NamedTuple):
+def sole(description: Description) -> dict[str, float]:
     """Length and width of a sole, relative to the NAO's scaled to the robot's size."""
-
-    length: float
-    width: float
-
-
-def sole(description: Description) -> Sole:
-    """Measure a robot's sole relative to the NAO's sole scaled to the robot's size."""
     of_nao, own = (
         np.ptp(robot.feet[0].outline_m, axis=0) / robot.scale.length
         for robot in (robots.get("nao"), description)
     )
-    length, width = (own / of_nao).tolist()
-    return Sole(length, width)
+    return dict(zip(("length", "width"), (own / of_nao).tolist(), strict=True))
 
 
-def reach(description: Description, gait: Gait) -> Reach:
+def reach(description: Description, gait: Gait) -> dict[str, Any]:
     """Measure how far the joint ranges keep a gait's feet from their targets.
 
     The targets are behind, below and ahead of the hips, on the ground and lifted. The
     walk engine's inverse kinematics gives the joint angles, which are clipped to the
-    ranges; forward kinematics then gives the poses of the feet.
+    ranges; forward kinematics then gives the poses of the feet. The gait is in the
+    NAO's size, and scaled to the robot.
 
-    Args:
-      description: the robot model.
-      gait: the gait in the NAO's size; it is scaled to the robot.
+    Returns:
+      `place_m`, largest distance of an ankle from its target [m]; `tilt_rad`, largest
+      tilt of a sole, which should be level [rad]; `joint`, the leg joint whose target
+      is farthest outside its range, "" if none is.
     """
     body = biped(description)
     ankle_m = _targets_m(body, gait)
@@ -88,13 +56,18 @@ def reach(description: Description, gait: Gait) -> Reach:
         _, x, y, _ = reached[name].orientation.T
         tilts.append(2 * np.arcsin(np.clip(np.hypot(x, y), 0, 1)).max())
     joint = description.joints[worst] if beyond[:, worst].max() > 0 else ""
-    return Reach(float(max(places)), float(max(tilts)), joint)
+    return {
+        "place_m": float(max(places)),
+        "tilt_rad": float(max(tilts)),
+        "joint": joint,
+    }
 
 
-def saturation(description: Description, recording: Recording) -> Saturation:
-    """Find the motor that is at its limit for the largest share of a walk.
+def saturation(description: Description, recording: Recording) -> dict[str, Any]:
+    """The motor that is at its limit for the largest share of a walk, and this share.
 
     Its torque is computed from the commands, positions and velocities in the recording.
+    The `joint` is "" if no motor is ever at its limit.
     """
     shares = {}
     for joint in description.links:
@@ -102,8 +75,8 @@ def saturation(description: Description, recording: Recording) -> Saturation:
         error = column[f"command.{joint.name}"] - column[f"position.{joint.name}"]
         drive = motor.drive_nm(error, column[f"velocity.{joint.name}"])
         shares[joint.name] = float(np.mean(np.abs(drive) >= motor.stall_torque_nm))
-    joint_name = max(shares, key=lambda name: shares[name])
-    return Saturation(shares[joint_name], joint_name if shares[joint_name] else "")
+    worst = max(shares, key=lambda name: shares[name])
+    return {"share": shares[worst], "joint": worst if shares[worst] else ""}
 
 
 def _targets_m(body: Biped, gait: Gait) -> FloatArray:

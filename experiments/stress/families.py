@@ -25,9 +25,7 @@ FLAT = "flat"
 class Family(Ladder):
     """A family of ground that is difficult to walk on, by its shape or its material.
 
-    Attributes:
-      terrain: name of the terrain.
-      options: function that returns, for a severity, the changed world options by name.
+    `options` gives, for a severity, the changed world options by name.
     """
 
     terrain: str = FLAT
@@ -58,13 +56,9 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Place:
-    """A family of ground at one severity, for a robot in a world.
+    """A family of ground (or `FLAT`) at one severity, for a robot in a world.
 
-    Attributes:
-      robot: name of the robot.
-      world: "sim" or "real".
-      family: a key of `FAMILIES`, or `FLAT`.
-      severity: severity in the unit of the family; 0 for `FLAT`.
+    The severity is in the unit of the family; 0 for `FLAT`.
     """
 
     robot: str

@@ -28,10 +28,6 @@ def half_text(curve: Mapping[str, Any], interval: bool = True) -> str:
     trials fall even at the hardest severity, 20 mm; "below 2 mm" or, for friction,
     "above 0.6" if more than half fall at the mildest. An end of the interval outside of
     the severities tried is "?".
-
-    Args:
-      curve: results of one gait on one family of ground, as `curves_of` makes them.
-      interval: whether the interval is part of the text.
     """
     half, unit = curve["half"], curve["unit"]
     if half is None:

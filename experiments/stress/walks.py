@@ -26,7 +26,7 @@ LIMIT_PENDULUMS = 50.0
 """Time limit of a trial in units of sqrt(leg length / gravity); 8 s for the NAO."""
 
 BEGIN_LEGS = (0.8, 1.6)
-"""Range [leg lengths] from which each trial's flat area around the start is drawn."""
+"""Range [leg lengths] of the radius of each trial's flat area around the start."""
 
 START_SPREAD_RAD = 0.01
 """Standard deviation of the joint angles in the start poses [rad], so that trials
@@ -38,17 +38,10 @@ Row = tuple[str, int]
 
 @dataclass(frozen=True)
 class Trial:
-    """The result of one trial.
+    """The result of one trial: distance forward at the end, and duration.
 
-    Attributes:
-      gait: name of the gait.
-      number: number of the trial; trials with the same number have the same ground,
-        noise and start pose.
-      distance_m: distance forward at the end [m].
-      time_s: duration [s].
-      end: reason of an early end, such as "fall"; "" if the time was up or the course
-        finished.
-      cause: cause of the fall; "" without a fall.
+    Trials with the same number have the same ground, noise and start pose. `end` is the
+    reason of an early end, such as "fall", else ""; so is the cause without a fall.
     """
 
     gait: str
@@ -84,13 +77,9 @@ def walk_at(
 ) -> Iterator[tuple[Trial, Scene]]:
     """Run trials at a place, and record them; none depends on the others beside it.
 
-    Args:
-      place: robot, world, family of ground and severity.
-      gaits: the gaits by name.
-      rows: gait and number of every trial.
-      seed: the random numbers of a trial follow from it and from the trial's number.
-      threads: threads of the sim, or processes of the real world; 0 for one per core.
-      on_end: called once at the end of each trial.
+    The random numbers of a trial follow from the seed and the trial's number. `threads`
+    are those of the sim, or processes of the real world; 0 is one per core. `on_end` is
+    called at the end of each trial.
     """
     description = robots.get(place.robot)
     options = place.options(

@@ -24,19 +24,10 @@ def write_worst(
 ) -> list[dict[str, object]]:
     """Write recordings and Rerun files of each robot's, world's and gait's worst falls.
 
-    The walks are simulated again: the same seeds give the same bits, so that the test
-    need not keep the recordings of all trials.
-
-    Args:
-      folder: the run's folder; files that it already holds are not changed.
-      gaits: the gaits by name.
-      cells: all cells (trials at one place) of the test.
-      count: largest number of falls for each robot, world and gait.
-      seed: the test's seed.
-      threads: threads of the sim, or processes of the real world; 0 for one per core.
-
-    Returns:
-      Place, trial and file name of each fall, as JSON values.
+    These are at most `count` each. The walks are simulated again: the same seed gives
+    the same bits, so that the test need not keep the recordings of all trials. Files
+    that the run's folder already holds are not changed. Seed and threads are those of
+    the test; the result is place, trial and file name of each fall, as JSON values.
     """
     written: list[dict[str, object]] = []
     for robot, world in dict.fromkeys((c["robot"], c["world"]) for c in cells):

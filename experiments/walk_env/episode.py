@@ -13,12 +13,7 @@ class WalkEpisode:
     """A trial as in `experiments.walking.trials.walk_trials`, one tick at a time.
 
     If nothing is added to the commands, it is equal to that trial to the last bit.
-
-    Attributes:
-      command_rad: (joints,) the walk engine's command for the next tick [rad].
-      observation: measurements of the last tick.
-      ticks: number of ticks so far.
-      distance_m: distance walked so far, along the x axis [m].
+    `distance_m` is the distance so far along the x axis, after `ticks`.
     """
 
     def __init__(

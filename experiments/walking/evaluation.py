@@ -182,13 +182,8 @@ def walk_recorded(
 ) -> tuple[Trials, dict[int, Recording]]:
     """Run trials side by side in a world, close it, and record some of the trials.
 
-    Args:
-      world: made with the grounds and the noise of the rows' starts.
-      rows: gait and start of every trial.
-      rules: when a trial is over.
-      recorded: indices of the trials to record.
-      about: world and source of the recordings, for their metadata.
-      on_end: called once at the end of each trial.
+    The world has the grounds and the noise of the rows' starts. `recorded` are indices
+    of rows; `about` is world and source for the metadata of the recordings.
     """
     robot, recorder = world.description, Recorder(world.description, recorded)
     poses = [start.of_pose for _, start in rows]

@@ -39,9 +39,9 @@ def of(falls=0, place_m=0.0, tilt_rad=0.0, joint="", share=0.0, motor="knee"):
 @pytest.mark.parametrize("name", ["nao", "g1", "icub"])
 def test_legs_that_reach_what_the_gait_asks(name):
     found = reach(robots.get(name), GAIT)
-    assert found.place_m < 1e-6
-    assert found.tilt_rad < 1e-6
-    assert found.joint == ""
+    assert found["place_m"] < 1e-6
+    assert found["tilt_rad"] < 1e-6
+    assert found["joint"] == ""
 
 
 def test_ranges_that_keep_a_sole_from_level():
@@ -51,23 +51,23 @@ def test_ranges_that_keep_a_sole_from_level():
     stiff = replace(nao.links[ankle], range_rad=(-0.3, 0.9))
     links = (*nao.links[:ankle], stiff, *nao.links[ankle + 1 :])
     found = reach(replace(nao, links=links), GAIT)
-    assert found.joint == "LAnklePitch"
-    assert 0.1 < found.tilt_rad < 0.4
-    assert found.place_m < 1e-6  # the foot's joint is at the ankle
+    assert found["joint"] == "LAnklePitch"
+    assert 0.1 < found["tilt_rad"] < 0.4
+    assert found["place_m"] < 1e-6  # the foot's joint is at the ankle
 
 
 def test_a_file_with_ranges_that_no_leg_can_have():
     found = reach(robots.get("simple_humanoid_as_is"), GAIT)
-    assert found.tilt_rad > math.radians(20)
-    assert reach(robots.get("simple_humanoid"), GAIT).tilt_rad < 1e-6
+    assert found["tilt_rad"] > math.radians(20)
+    assert reach(robots.get("simple_humanoid"), GAIT)["tilt_rad"] < 1e-6
 
 
 def test_soles_for_a_size():
     """G1: 170 x 60 mm at 2.78 times the NAO, whose soles are 150 x 89 mm."""
-    assert sole(robots.get("nao")) == (1.0, 1.0)
+    assert sole(robots.get("nao")) == {"length": 1.0, "width": 1.0}
     small = sole(robots.get("g1"))
-    assert small.length == pytest.approx(0.17 / (2.779 * 0.1501), rel=1e-2)
-    assert small.width == pytest.approx(0.06 / (2.779 * 0.0888), rel=1e-2)
+    assert small["length"] == pytest.approx(0.17 / (2.779 * 0.1501), rel=1e-2)
+    assert small["width"] == pytest.approx(0.06 / (2.779 * 0.0888), rel=1e-2)
 
 
 def recording(description, command_rad):
@@ -85,10 +85,13 @@ def test_saturation_counts_full_drive():
     """The NAO's boards give all they can at an error of 0.13 rad."""
     nao = robots.get("nao")
     command = np.zeros((10, len(nao.joints)))
-    assert saturation(nao, recording(nao, command)) == (0.0, "")
+    assert saturation(nao, recording(nao, command)) == {"share": 0.0, "joint": ""}
     knee = nao.joints.index("RKneePitch")
     command[:4, knee], command[4:, knee] = 0.14, 0.12
-    assert saturation(nao, recording(nao, command)) == (0.4, "RKneePitch")
+    assert saturation(nao, recording(nao, command)) == {
+        "share": 0.4,
+        "joint": "RKneePitch",
+    }
 
 
 def test_the_answer_names_causes_only_where_there_are_falls():

@@ -26,12 +26,9 @@ CLIFF_COLOUR, GOAL_COLOUR = "#f4c7b8", "#bfe3d0"
 
 
 def cliff_figure(rows: Sequence[Row], grid: tuple[int, int]) -> "Figure":
-    """Returns of all methods above; below, the paths of GAT and SGAT.
+    """Returns of all methods above; below, paths where GAT and SGAT differ most.
 
-    The paths are those at the noise value where the two methods differ most.
-
-    `rows` has at least one entry of results, one for each noise value; `grid` is the
-    number of rows and of columns of the grid world.
+    `grid` is the number of rows and of columns of the grid world.
     """
     from matplotlib.figure import Figure
 

@@ -13,9 +13,6 @@ GOAL, CLIFF, STEP = 100.0, -10.0, -0.1
 """Rewards of the SGAT paper: for the goal, for the cliff, and for every step, the last
 one included."""
 
-LEAST_ROWS, LEAST_COLUMNS = 2, 3
-"""Numbers of rows and columns of the smallest grid that has a cliff."""
-
 
 def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
     """The grid world in the SGAT paper's study of cliff walking.
@@ -24,19 +21,15 @@ def cliff_walking(rows: int, columns: int, noise: float = 0.0) -> FiniteMdp:
     Episodes begin at the bottom left. They end at the goal, bottom right, or in the
     cliff: the cells of the bottom row in between. A move into a wall has no effect.
 
-    Args:
-      rows: number of rows of the grid.
-      columns: number of columns of the grid.
-      noise: probability, at each step, that the move is a random one of the four
-        instead of the chosen one. Without noise this world is the simulator.
+    `noise` is the probability, at each step, that the move is a random one of the four
+    instead of the chosen one. Without noise this world is the simulator.
 
     Raises:
       BadValueError: there is no room for a cliff, or noise is no probability.
     """
-    if rows < LEAST_ROWS or columns < LEAST_COLUMNS:
+    if rows < 2 or columns < 3:
         raise BadValueError(
-            f"the grid is {rows} x {columns}; it must be at least "
-            f"{LEAST_ROWS} x {LEAST_COLUMNS}"
+            f"the grid is {rows} x {columns}; it must be at least 2 x 3"
         )
     if not 0 <= noise <= 1:
         raise BadValueError(f"noise is {noise}; it must be from 0 to 1")

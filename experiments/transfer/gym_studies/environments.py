@@ -27,8 +27,8 @@ class Domain:
       name: name of the domain on the command line.
       title: heading of its page.
       environment: id of the environment in Gymnasium.
-      mass_factor: mass and inertia of the real world's heavier bodies over the sim's.
-      heavy_bodies: names of those bodies; all bodies if empty.
+      mass_factor: mass and inertia of the real world's heavier bodies (all if none are
+        named) over the sim's.
       control_cost: cost in the reward per squared action.
       settings: real worlds of the SGAT paper, `NOISY_SIM` or `NOISY_REAL`.
     """

@@ -42,10 +42,10 @@ def ground(
     name: str,
     seed: np.random.SeedSequence,
 ) -> tuple[Callable[[], KeptTransformer], dict[str, float]]:
-    """Collect data in both worlds with a policy, and fit the models.
+    """Collect data in both worlds with a policy of the sim, and fit the models.
 
     Args:
-      model: the policy, which was trained in the sim.
+      model: the policy.
       domain: the environment.
       real: setting and noise of the real world; see `Domain.real`.
       steps: numbers of transitions to collect in the real world and in the sim.
@@ -133,10 +133,8 @@ def noise_ratio(
     sim: the action that leads to the real next state, minus the one that leads to the
     predicted mean. Below 1, the grounded sim is less noisy than the real world. That
     happens if one noise moves several dimensions, but the model samples each dimension
-    independently: the inverse model then averages the differences out.
-
-    `inverse` is the transformer's inverse model, `real` holds real transitions that the
-    models have not seen, and the seed is that of the transformer's noise.
+    independently: the inverse model then averages the differences out. The models have
+    not seen the transitions; the seed is that of the transformer's noise.
     """
     n = min(LOOKED_AT, real.n)
     state, asked = real.state[:n], real.action[:n]

@@ -51,15 +51,10 @@ def train(
 ) -> "TRPO":
     """Train a policy for at least a given number of steps.
 
-    Stable-Baselines seeds and uses the global generators of torch and NumPy: call this
-    in a process of its own.
-
-    Args:
-      make: makes a new environment.
-      trpo: parameters of TRPO.
-      timesteps: steps in all environments together, rounded up to whole batches.
-      seed: seed of everything random.
-      start: file of the policy to start from; None for random weights.
+    The steps of all environments together are rounded up to whole batches. `start` is
+    the file of the policy to start from; None for random weights. Stable-Baselines
+    seeds and uses the global generators of torch and NumPy: call this in a process of
+    its own.
     """
     from sb3_contrib import TRPO
     from stable_baselines3.common.vec_env import DummyVecEnv
