@@ -69,10 +69,8 @@ def believed_effects(
 ) -> tuple[Found, ...]:
     """The effects of a verdict with estimates, the most probable first.
 
-    Args:
-      both: predictor of fitting and selection data.
-      searched: the result of the search.
-      refitted: the winning model fitted to these data; None if it has no effect.
+    `refitted` is the search's winner fitted to the data of `both`, which simulates
+    fitting and selection data; None if it has no effect.
     """
     if refitted is None or searched.winner is None:
         return ()

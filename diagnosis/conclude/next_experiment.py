@@ -80,12 +80,10 @@ def _rivals(found: SearchResult) -> tuple[Model, Model] | None:
     winner = found.winner
     if winner is None:
         return None
-    others = [
-        judged
-        for judged in found.best[found.chosen]
-        if judged.keys != winner.keys and found.worse(judged) <= TIED_NATS
-    ]
-    return (winner.model, others[0].model) if others else None
+    for judged in found.best[found.chosen]:
+        if judged.keys != winner.keys and found.worse(judged) <= TIED_NATS:
+            return winner.model, judged.model
+    return None
 
 
 def _trace(plant: Plant, usage: Usage, motion: Motion, like: Trace) -> Trace:

@@ -83,12 +83,9 @@ def log_score_gain(nominal: FloatArray, fitted: FloatArray, channel: IntArray) -
 
     Errors are taken as Gaussian. Error that the fitted model cannot explain, such as
     the difference between two engines, counts as noise: a channel's variance is the
-    larger of its sensor's and of the fitted model's mean squared error.
-
-    Args:
-      nominal: (N,) residuals in units of the sensor's noise; 0 where not scored.
-      fitted: (N,) residuals of the fitted model, in the same units.
-      channel: (N,) index of the channel of each residual.
+    larger of its sensor's and of the fitted model's mean squared error. Residuals (N,)
+    are in units of the sensor's noise, 0 where not scored; `channel` (N,) are their
+    channels.
     """
     gain = 0.0
     for number in np.unique(channel):

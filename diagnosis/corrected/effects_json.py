@@ -89,12 +89,11 @@ class Correction:
         if obstacle:
             raise BadModelError(obstacle)
         _check_place(plant, part)
-        placed = PlacedEffect(part.name, part.place, tuple(part.parameters.values()))
-        names = _parameters(plant, placed)
+        names = _parameters(plant, part)
         if sorted(names) != sorted(part.parameters):
             raise BadModelError(
-                f"{placed.key} has the parameters {', '.join(part.parameters)}; "
-                f"it needs {', '.join(names)}"
+                f"{part.name}@{part.place} has the parameters "
+                f"{', '.join(part.parameters)}; it needs {', '.join(names)}"
             )
         values = tuple(part.parameters[name] for name in names)
         return PlacedEffect(part.name, part.place, values)
@@ -117,7 +116,12 @@ def load_correction(source: str | Path, plant: Plant) -> Model:
     """
     path = _file(Path(source))
     try:
-        return _correction(path.read_text(), plant).model(plant)
+        text = path.read_text()
+        plain = parse_object(text, "correction", FORMAT)
+        if "kind" in plain:
+            verdict = Verdict.from_json(text)
+            return Correction.of_verdict(verdict, plant.name, "fixed").model(plant)
+        return from_plain(Correction, plain, "correction").model(plant)
     except (UnicodeDecodeError, BadValueError) as error:
         raise BadModelError(f"{path} is no diagnosis: {error}") from None
     except BadModelError as error:
@@ -137,33 +141,22 @@ def _file(source: Path) -> Path:
     )
 
 
-def _correction(text: str, plant: Plant) -> Correction:
-    plain = parse_object(text, "correction", FORMAT)
-    if "kind" in plain:
-        verdict = Verdict.from_json(text)
-        return Correction.of_verdict(verdict, plant.name, "fixed")
-    return from_plain(Correction, plain, "correction")
-
-
 def _sorted(parts: Sequence[Entry]) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
     """Divide effects into those that MuJoCo can simulate and the others."""
     native = tuple(part for part in parts if effect(part.name).native)
     return native, tuple(part for part in parts if not effect(part.name).native)
 
 
-def _parameters(plant: Plant, placed: PlacedEffect) -> list[str]:
-    one = effect(placed.name)
-    return [parameter.name for parameter in one.parameters(plant, placed.place)]
+def _parameters(plant: Plant, placed: PlacedEffect | Entry) -> list[str]:
+    every = effect(placed.name).parameters(plant, placed.place)
+    return [parameter.name for parameter in every]
 
 
 def _check_place(plant: Plant, part: Entry) -> None:
     kind = effect(part.name).place_kind
-    known: Sequence[str] = (kind,)
-    if kind == "joint":
-        known = plant.joints
-    elif kind == "body":
-        known = [name for name in plant.bodies if name]
-    elif kind == "feet" and not has_ground_contact(plant):
+    places = {"joint": plant.joints, "body": [name for name in plant.bodies if name]}
+    if kind == "feet" and not has_ground_contact(plant):
         raise BadModelError(f"{part.name} needs a robot that stands on a ground")
+    known = places.get(kind, (kind,))
     if part.place not in known:
         raise UnknownNameError(f"{kind} of {plant.name}", part.place, known)

@@ -4,6 +4,7 @@ import ctypes
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,6 @@ from diagnosis.replay.friction import BatchFriction
 from diagnosis.replay.replay import STEP_S
 from diagnosis.replay.servos import BatchServos
 from diagnosis.residuals.predictor import Model, variants_of
-from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     import mujoco
@@ -95,17 +95,6 @@ def _comment(variants: Variants, native: Model, model: Model) -> str:
     return f"  <!--\n{told}\n  -->\n"
 
 
-class _OneModel:
-    """Lets code for a `mujoco.batch.Batch` write the fields of one compiled model."""
-
-    def __init__(self, model: "mujoco.MjModel") -> None:
-        self._model = model
-
-    def expand(self, name: str) -> FloatArray:
-        """View (1, ...) of a field of the model; writing to it changes the model."""
-        return np.asarray(getattr(self._model, name))[None]
-
-
 def _write_fields(
     compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
 ) -> None:
@@ -121,7 +110,9 @@ def _write_fields(
         else:
             setattr(target, last, type(value)(values[0]))
     mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
-    one, joints = _OneModel(compiled), vars(variants.joints)
+    # code for a batch writes to the fields of one model, as views (1, ...)
+    one = SimpleNamespace(expand=lambda name: np.asarray(getattr(compiled, name))[None])
+    joints = vars(variants.joints)
     servos = BatchServos(one, variants.plant, [servo], joints, step_s)
     damping = servos.damping_nm_s_rad
     rows, limits = variants.plant.actuators, servos.law["limit"][0]

@@ -52,12 +52,7 @@ class BatchFriction:
         np.asarray(batch.expand("dof_solref"))[:] = solref
 
     def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
-        """Set the friction that depends on speed and load, for one physics step.
-
-        Args:
-          velocity_rad_s: (rows, j) speeds of the joints.
-          driven_nm: (rows, j) torques that pass through the gears.
-        """
+        """Set the friction that depends on speed and on torque through the gears."""
         joints = self._joints
         speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
         more = joints["stribeck_nm"] * np.exp(-(speed**2))
@@ -71,16 +66,12 @@ def stops_in_a_step(
     """(..., 2) MuJoCo's `solref` for friction that can stop a joint within one step.
 
     MuJoCo's friction asks for the acceleration -rate * velocity as if there were no
-    damping. Its integrator, where damping is implicit, gives only the share
-    I / (I + step * damping) of that. With the usual rate, 1 / step, a light joint with
-    a strong servo creeps on for seconds. (MuJoCo documentation, "Computation": implicit
-    integrators, and "Modeling", solref: two negative numbers mean stiffness, which
-    friction does not have, and damping.)
-
-    Args:
-      damping_nm_s_rad: (...) all damping at the joints.
-      inertia_kg_m2: (...) inertia I at the joints with the links beyond them.
-      step_s: time step of the physics.
+    damping. Its integrator, where damping is implicit, gives only the share I / (I +
+    step * damping) of that, with I the inertia at the joint with the links beyond it.
+    With the usual rate, 1 / step, a light joint with a strong servo creeps on for
+    seconds. (MuJoCo documentation, "Computation": implicit integrators, and "Modeling",
+    solref: two negative numbers mean stiffness, which friction does not have, and
+    damping.)
     """
     rate_1_s = 1 / step_s + damping_nm_s_rad / inertia_kg_m2
     damping = -SOLIMP_FRICTION[1] * rate_1_s

@@ -28,13 +28,7 @@ class BatchGaps:
         law: Mapping[str, FloatArray],
         step_s: float,
     ) -> None:
-        """Prepare the gaps of all simulations.
-
-        Args:
-          joints: arrays of `Joints` by name, with a row for each simulation.
-          law: `BatchServos.law`, gains and limits, which change as servos fade.
-          step_s: time step of the physics.
-        """
+        """Prepare gaps of (rows, j) `joints` with servos of a `law`, which may fade."""
         self._half = joints["gap_rad"] / 2
         self._law, self._step_s = law, step_s
         self._motor_rad: FloatArray | None = None
@@ -50,10 +44,6 @@ class BatchGaps:
 
         With these targets (rows, j) [rad] a servo without gap gives the torque that
         gets through the gap. Flags (rows, j) are true where no torque does.
-
-        Args:
-          asked_rad: (rows, j) position targets.
-          position: (rows, j) angles of the joints [rad].
         """
         half = self._half
         low, high = position - half, position + half
@@ -66,10 +56,7 @@ class BatchGaps:
         return position + arrives, apart
 
     def drag_nm(self, velocity: FloatArray) -> FloatArray:
-        """Damping torque [N m] of servos on joints with (rows, j) speeds [rad/s].
-
-        Joints whose motors are free in the gap do not get this torque.
-        """
+        """Damping torque [N m] of servos whose motors are free, at (rows, j) speeds."""
         law = self._law
         servo_nm = np.clip(law["kd"] * velocity, -law["limit"], law["limit"])
         return np.asarray(servo_nm + law["emf"] * velocity)

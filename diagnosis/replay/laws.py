@@ -71,8 +71,8 @@ class BatchLaws:
     def begin(self, asked_rad: FloatArray | None = None) -> None:
         """Begin, or begin again, in the state that the simulations are in.
 
-        Args:
-          asked_rad: (n R, j) position targets so far; None for those of the first step.
+        `asked_rad` are the (n R, j) position targets so far; None for those of the
+        first step.
         """
         self._setpoint = None
         if asked_rad is not None:

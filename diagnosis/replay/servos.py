@@ -103,12 +103,7 @@ class BatchServos:
 
         A target that jumps within a physics step may saturate the servo for a part of
         the step only. With the mean target MuJoCo would saturate it for all of it.
-
-        Args:
-          mean_rad: (rows, j) mean target of the step.
-          ends: targets as the step begins and as it ends.
-          angle: (rows, j) angles that the servos control [rad].
-          velocity: (rows, j) rates of these angles [rad/s].
+        Angles [rad] are those that the servos control.
         """
         kp, kd, limit = (self.law[name] for name in ("kp", "kd", "limit"))
         share = first_share(mean_rad, ends)
@@ -130,12 +125,8 @@ class BatchServos:
         MuJoCo decides as a step begins, and leaves out the damping kd of servos that
         saturate. But a light joint may become so fast within the step that damping
         takes the torque below the limit: only I / (I + step * kd) of it is left, with I
-        the joint's inertia. Without this check, speeds would jump at the limit.
-
-        Args:
-          asked_rad: (rows, j) targets of the step.
-          angle: (rows, j) angles that the servos control [rad].
-          velocity: (rows, j) rates of these angles [rad/s].
+        the joint's inertia. Without this check, speeds would jump at the limit. Arrays
+        are (rows, j).
         """
         kp, kd = self.law["kp"], self.law["kd"]
         unlimited = np.asarray(np.inf)

@@ -131,13 +131,9 @@ def hermite(
 ) -> tuple[FloatArray, FloatArray]:
     """Positions by cubic Hermite interpolation, velocities by linear interpolation.
 
-    SciPy's `CubicHermiteSpline` is not used, since it needs the same times in all rows.
-
-    Args:
-      before: positions and velocities at one step, arrays of the same shape.
-      after: positions and velocities at the next step.
-      step_s: time between the two steps.
-      share: share of the step that has passed, 0 to 1.
+    `before` and `after` are positions and velocities at two steps `step_s` apart,
+    `share` is what has passed of the step, 0 to 1. SciPy's `CubicHermiteSpline` is not
+    used, since it needs the same times in all rows.
     """
     h, t = step_s, share
     (q0, v0), (q1, v1) = before, after

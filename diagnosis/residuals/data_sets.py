@@ -65,13 +65,7 @@ class DataSets:
     ) -> "DataSets":
         """Split recordings, shorten the parts and calibrate their predictors.
 
-        Args:
-          plant: nominal robot model.
-          traces: recordings of the robot.
-          channels: the quantities to compare, with their noise.
-          noise: model errors that recordings of the healthy robot show, or None.
-          threads: number of threads that simulate.
-          on_replay: called after each batch with its number of simulations.
+        Arguments are those of `Predictor`.
 
         Raises:
           BadRecordingError: the traces are too short.

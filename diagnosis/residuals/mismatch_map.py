@@ -28,9 +28,7 @@ def mismatch_map(
 ) -> tuple[MismatchCell, ...]:
     """The nominal sim's error, one cell for each channel, the largest share first.
 
-    Args:
-      predictor: the predictor that computed `residual`.
-      residual: (N,) residual of the nominal sim, in units of noise.
+    `residual` (N,) is that of the nominal sim, in units of noise.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)

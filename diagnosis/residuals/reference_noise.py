@@ -50,9 +50,7 @@ class Block:
 def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
     """Windows of recordings, cut into blocks of 0.3 s.
 
-    Args:
-      runs: the windows, in the order of their rows.
-      scored: (rows of all windows,) whether errors in the row count in any channel.
+    `scored` (rows of all windows,) says whether errors in a row count in any channel.
     """
     blocks, first = [], 0
     for run in runs:
@@ -142,12 +140,7 @@ class ReferenceNoise:
         return cls(model, scale, *_covariance(smooth), rows)
 
     def without(self, residual: FloatArray, blocks: Sequence[Block]) -> FloatArray:
-        """(n, rows, c) residuals, whitened by the covariance of the errors.
-
-        Args:
-          residual: (n, rows, c) residuals in units of sensor noise.
-          blocks: the rows in blocks.
-        """
+        """(n, rows, c) residuals in units of noise, whitened by the covariance."""
         white = residual / self.scale
         factors: dict[int, FloatArray] = {}
         for block in blocks:

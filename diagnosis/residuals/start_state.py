@@ -28,11 +28,8 @@ which simulations start."""
 def nudged(runs: Sequence[Run]) -> list[Run]:
     """The windows unchanged, with other start positions, and with other velocities.
 
-    All joints' starts are changed at once: servos are stiff, so that each joint hardly
-    moves the others.
-
-    Returns:
-      Three times as many windows as `runs`, in this order.
+    Three times as many windows, in this order. All joints' starts are changed at once:
+    servos are stiff, so that each joint hardly moves the others.
     """
     positions = [
         replace(run, position_rad=run.position_rad + POSITION_STEP_RAD) for run in runs

@@ -75,17 +75,13 @@ def _explained(curve: tuple[str, str, *Curve]) -> float:
 def _orders(predictor: Predictor, joint: int) -> list[tuple[str, str, FloatArray]]:
     """Name, unit and (rows,) values of what a joint's error may depend on."""
     name = predictor.plant.joints[joint]
-    position, velocity, time_s, command = [], [], [], []
+    parts = []
     for trace in predictor.traces:
         q = np.nan_to_num(trace.position_rad[:, joint])
-        position.append(q)
-        velocity.append(np.gradient(moving_mean(q, 5), trace.time_s))
-        time_s.append(trace.time_s - trace.time_s[0])
+        velocity = np.gradient(moving_mean(q, 5), trace.time_s)
         asked = q if trace.command_rad is None else trace.command_rad[:, joint]
-        command.append(np.nan_to_num(asked))
-    return [
-        (f"position.{name}", "rad", np.concatenate(position)),
-        (f"velocity.{name}", "rad/s", np.concatenate(velocity)),
-        (f"command.{name}", "rad", np.concatenate(command)),
-        ("time", "s", np.concatenate(time_s)),
-    ]
+        since_s = trace.time_s - trace.time_s[0]
+        parts.append(np.stack([q, velocity, np.nan_to_num(asked), since_s]))
+    names = f"position.{name}", f"velocity.{name}", f"command.{name}", "time"
+    units = "rad", "rad/s", "rad", "s"
+    return list(zip(names, units, np.concatenate(parts, axis=1), strict=True))

@@ -29,12 +29,10 @@ class Candidates:
     def __init__(
         self, fit: Predictor, found: Sequence[Signature], rules: Rules
     ) -> None:
-        """Prepare the guesses.
+        """Prepare guesses from the signatures of all effects at all places.
 
-        Args:
-          fit: predictor of the fitting data.
-          found: the signatures of all effects at all places.
-          rules: settings of the search: how many models of each sort are proposed.
+        `fit` is the predictor of the fitting data; `rules` say how many models of each
+        sort are proposed.
         """
         self._fit, self._found, self._rules = fit, found, rules
         self._screen = Screen(fit, found)
@@ -42,8 +40,7 @@ class Candidates:
     def alone(self, residual: FloatArray) -> list[Model]:
         """Models of one effect: the best guesses, and the best of some other kinds.
 
-        Args:
-          residual: (N,) residual of the nominal sim [noise].
+        `residual` (N,) is that of the nominal sim [noise].
         """
         rules, ranked = self._rules, self._screen.singles(residual)
         few = len(self._fit.plant.joints) <= FEW_JOINTS

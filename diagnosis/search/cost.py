@@ -27,15 +27,9 @@ def expected_seconds(
 ) -> float:
     """Estimated duration of a diagnosis [s], right within a factor of two or three.
 
-    One batch is simulated and timed: every kind of effect once, at its first place.
-
-    Args:
-      plant: nominal robot model.
-      traces: recordings of the robot.
-      reference: recordings of the healthy robot. On a fixed base a search in them
-        precedes that in `traces` and takes as long.
-      channels: the channels that the recordings measured.
-      threads: number of threads that simulate.
+    One batch is simulated and timed: every kind of effect once, at its first place. On
+    a fixed base a search in the recordings of the healthy robot (`reference`) precedes
+    that in `traces` and takes as long.
     """
     fit = affordable(plant, split(traces)).fit
     predictor = Predictor(plant, fit, channels, threads=threads)

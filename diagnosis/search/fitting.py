@@ -144,7 +144,7 @@ def fit_all(
     jacobians: Sequence[FloatArray | None] | None = None,
     exactly: bool = False,
 ) -> list[FittedModel]:
-    """Fit the values of several models, each from its own start.
+    """Fit the values of several models, each from its own start, in this order.
 
     Args:
       predictor: predictor of the data to fit.
@@ -157,11 +157,8 @@ def fit_all(
         compare models, but not for intervals.
       jacobians: (N, p) Jacobians at the starts from an earlier fit, None if unknown;
         only used with `followed`.
-      exactly: correct each model's own integration error, which takes six times as
-        long as a common correction.
-
-    Returns:
-      The fitted models, in the order of their starts.
+      exactly: correct each model's own integration error, which takes six times as long
+        as a common correction.
     """
 
     def answer(questions: list[list[Model]]) -> list[FloatArray]:

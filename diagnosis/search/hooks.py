@@ -75,13 +75,10 @@ class Hooks:
         checkpoint: Checkpoint | None = None,
         part: str = "",
     ) -> None:
-        """Connect a diagnosis with a progress display and a checkpoint.
+        """Connect a diagnosis with a progress display and a checkpoint, if any.
 
-        Args:
-          progress: receives reports; None for no reports.
-          checkpoint: stores results; None to store nothing.
-          part: name of a part of the diagnosis, put before the names of its stages and
-            the keys of its results.
+        `part` names a part of the diagnosis; it is put before the names of its stages
+        and the keys of its results.
         """
         self.progress, self._checkpoint, self._part = progress, checkpoint, part
         self._saved = 0
@@ -109,12 +106,8 @@ class Hooks:
         """The result of some work, from the checkpoint if an earlier run stored it.
 
         Results are numbered in the order of the calls. A diagnosis is deterministic, so
-        a resumed one makes the same calls in the same order.
-
-        Args:
-          work: computes the result.
-          pack: makes a result storable.
-          unpack: restores a result that `pack` made storable.
+        a resumed one makes the same calls in the same order. `pack` makes a result
+        storable, `unpack` restores it.
         """
         if self._checkpoint is None:
             return work()

@@ -101,11 +101,8 @@ class Screen:
     def pairs(self, residual: FloatArray, count: int) -> list[Guess]:
         """The pairs of effects that explain most together, largest gain first.
 
-        Each of two effects that nearly cancel may explain nothing alone.
-
-        Args:
-          residual: (N,) residual to explain [noise].
-          count: largest number of pairs.
+        Each of two effects that nearly cancel may explain nothing alone. At most
+        `count` pairs for a residual (N,) [noise].
         """
         view = self._view(residual)
         best: dict[frozenset[str], Guess] = {}
@@ -141,8 +138,8 @@ class Screen:
     def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
         """(K, K) gains of pairs of K signatures by least squares, above the diagonal.
 
-        The gain is 0 if an effect would need an impossible sign, and if both signatures
-        are the same up to a factor.
+        0 if an effect would need an impossible sign, or both signatures are
+        proportional.
         """
         products, wanted = view.products[np.ix_(rows, rows)], view.wanted[rows]
         power = np.diag(products)

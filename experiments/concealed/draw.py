@@ -91,9 +91,7 @@ class Concealed:
 def drawn_sensors(kind: str, rng: np.random.Generator) -> tuple[HiddenSensors, float]:
     """Draw the sensors of a case, and the largest error of its time stamps [s].
 
-    Args:
-      kind: kind of the case; for "none" the noise is up to three times as strong.
-      rng: source of random numbers.
+    For cases of the kind "none" the noise is up to three times as strong.
     """
     stronger = float(rng.uniform(1.0, 3.0)) if kind == "none" else 1.0
     sensors = HiddenSensors(

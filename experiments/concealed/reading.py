@@ -20,11 +20,9 @@ FORMAT = 1
 
 
 def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
-    """Read robot model, recordings and reference recordings of a case; not its truth.
+    """Robot model, recordings and reference recordings of a case, not its truth.
 
-    Args:
-      folder: folder of the case; without the reference recordings, which only robots
-        that stand or walk have, the third result is empty.
+    Only robots that stand or walk have reference recordings.
 
     Raises:
       RunFolderError: the folder holds no case.

@@ -99,8 +99,7 @@ def answer_all(
     Args:
       folder: folder of the set of cases.
       kind: subfolder for the answers, such as "answers" or "baselines/bic".
-      answer: returns the verdict on a case; a function defined at the top of a module,
-        so that it can be pickled for the processes.
+      answer: returns the verdict on a case; at the top of a module, to be pickled.
       seed: given to `answer` for every case.
       threads: number of processes; 0 for one per core.
 

@@ -67,12 +67,7 @@ def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) ->
 
     It is the median over the recordings, because an effect that only one of them shows
     can be neither learned from the others nor confirmed there. It is infinite if a
-    simulation diverged.
-
-    Args:
-      nominal: motions without hidden effects, one for each recording.
-      runs: the same motions with the hidden effects.
-      sensors: their encoder noise is the unit of differences.
+    simulation diverged. The encoder noise of `sensors` is the unit of differences.
     """
     if not all(run.ok for run in runs):
         return math.inf
@@ -118,11 +113,8 @@ def _next(tried: dict[float, float], nothing: float) -> float:
     """The next ease to try: the zero of the line through the two best trials.
 
     It is the middle of the bracket instead if that zero is not well inside the bracket,
-    or if the trial at its lower end gave no nats at all.
-
-    Args:
-      tried: log(nats / wanted nats) of the trials so far, by ease.
-      nothing: value of that logarithm for a trial without any nats.
+    or if the trial at its lower end gave no nats at all (the value `nothing`). `tried`
+    holds log(nats / wanted nats) by ease.
     """
 
     def off(one: float) -> tuple[float, float]:

@@ -57,8 +57,7 @@ def inline_svg(figure: "Figure", name: str, alternative: str) -> str:
 
     Args:
       figure: a figure made without pyplot.
-      name: a name that no other figure of the page has; the element's ids begin with
-        it.
+      name: begins the element's ids; no other figure of the page has it.
       alternative: description of the figure for people who cannot see it.
     """
     import matplotlib as mpl

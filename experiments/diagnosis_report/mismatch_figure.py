@@ -48,10 +48,8 @@ def mismatch_figure(rows: Sequence[MismatchCell]) -> "Figure":
     """Draw for each channel its share of the mismatch, its errors and its bursts.
 
     Errors are given for each part of the data (regime), such as "reversals"; a burst is
-    a short time with large errors. Panels without content are left out.
-
-    Args:
-      rows: channels from top to bottom; at least one.
+    a short time with large errors. Panels without content are left out. The channels
+    `rows`, at least one, come from top to bottom.
     """
     regimes = list(dict.fromkeys(name for cell in rows for name in cell.regimes))
     has_bursts = any(cell.bursts for cell in rows)

@@ -57,12 +57,7 @@ def channel_words(channel: str) -> str:
 
 
 def listing(parts: list[str], word: str) -> str:
-    """Join texts to a list in a sentence: "a, b and c".
-
-    Args:
-      parts: the texts; at least one.
-      word: the word before the last text, such as "and".
-    """
+    """Join texts, at least one, with a last word such as "and": "a, b and c"."""
     *first, last = parts
     return f"{', '.join(first)} {word} {last}" if first else last
 

@@ -49,10 +49,8 @@ def question(robot: str, changed: bool) -> str:
 def answer(verdict: Verdict, changed: bool = False) -> list[str]:
     """The answer of a diagnosis in a few sentences, the most important first.
 
-    Args:
-      verdict: the verdict of the diagnosis.
-      changed: whether the question is what has changed since the reference recordings,
-        not what physics the sim lacks.
+    With `changed` the question is what has changed since the reference recordings, not
+    what physics the sim lacks.
     """
     pulses = [*map(sentence, pulse_sentences(verdict.pulses))]
     what = "has changed" if changed else "is missing"

@@ -11,7 +11,6 @@ from experiments.reports.figure_file import write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Colours of the methods, the diagnosis first: a palette (Okabe and Ito) that
@@ -19,15 +18,11 @@ colour-blind people can distinguish."""
 
 
 def draw_score(score: Mapping[str, Any], path: Path) -> None:
-    """Write the figure of a score (the contents of score.json) as a PNG file."""
-    write_figure(score_figure(score), path)
+    """Write the figure of a score (the contents of score.json) as a PNG file.
 
-
-def score_figure(score: Mapping[str, Any]) -> "Figure":
-    """Draw the accuracy of all methods, and the calibration of the diagnosis.
-
-    The left panel shows the share of single effects that were named correctly, by level
-    of difficulty; the right one the share of correct names over the stated probability.
+    The left panel shows for all methods the share of single effects that were named
+    correctly, by level of difficulty; the right one for the diagnosis the share of
+    correct names over the stated probability.
     """
     from matplotlib.figure import Figure
 
@@ -38,7 +33,7 @@ def score_figure(score: Mapping[str, Any]) -> "Figure":
     for axes in (left, right):
         axes.spines[["top", "right"]].set_visible(False)
         axes.set_axisbelow(True)
-    return figure
+    write_figure(figure, path)
 
 
 def _draw_levels(axes: "Axes", methods: Mapping[str, Mapping[str, Any]]) -> None:
@@ -48,15 +43,15 @@ def _draw_levels(axes: "Axes", methods: Mapping[str, Mapping[str, Any]]) -> None
         there = [i for i, one in enumerate(shares) if one["value"] is not None]
         middles = np.array(there) + (number - (len(methods) - 1) / 2) * width
         counted = [shares[i] for i in there]
-        axes.bar(
-            middles,
+        values, colour = (
             [one["value"] for one in counted],
-            0.9 * width,
-            color=COLOURS[number % len(COLOURS)],
-            yerr=_bars(counted),
-            error_kw={"elinewidth": 0.8},
-            label=name,
+            COLOURS[number % len(COLOURS)],
         )
+        errors: dict[str, Any] = {
+            "yerr": _bars(counted),
+            "error_kw": {"elinewidth": 0.8},
+        }
+        axes.bar(middles, values, 0.9 * width, color=colour, label=name, **errors)
     numbers = [methods["diagnosis"]["top1"][level]["n"] for level in LEVELS]
     labels = [f"{level}\nn {n}" for level, n in zip(LEVELS, numbers, strict=True)]
     axes.set_xticks(range(len(LEVELS)), labels)
@@ -72,16 +67,12 @@ def _draw_reliability(axes: "Axes", bins: Sequence[Mapping[str, Any]]) -> None:
     axes.plot([0, 1], [0, 1], color="0.6", linestyle="--", linewidth=1)
     if bins:
         rights = [row["right"] for row in bins]
-        stated = [row["stated"] for row in bins]
-        axes.errorbar(
-            stated,
+        stated, shares = (
+            [row["stated"] for row in bins],
             [one["value"] for one in rights],
-            yerr=_bars(rights),
-            color=COLOURS[0],
-            marker="o",
-            linestyle="-",
-            elinewidth=0.8,
         )
+        style: dict[str, Any] = {"color": COLOURS[0], "marker": "o", "linestyle": "-"}
+        axes.errorbar(stated, shares, yerr=_bars(rights), elinewidth=0.8, **style)
     axes.set(xlim=(0, 1.02), ylim=(0, 1.02))
     axes.set_xlabel("stated probability of the first effect")
     axes.set_ylabel("share of right names")

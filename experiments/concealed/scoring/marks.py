@@ -37,8 +37,7 @@ class Mark:
       extra: number of effects found that are not.
       missed: number of true effects that were not found.
       errors: relative error of each effect that is true in name and place.
-      covered: for each main parameter of these effects, whether its interval holds the
-        truth.
+      covered: for each main parameter of these, whether its interval holds the truth.
       closed: held-out error that the answer removes, as a share of the error that the
         fitted true effects remove; None if they remove nothing.
       wrong_place: the same share for the answer's control with the place changed.
@@ -66,12 +65,10 @@ class Mark:
 
     @property
     def right(self) -> bool:
-        """Whether the answer is right as a whole.
+        """Whether exactly the hidden effects are named, at their places.
 
-        It is right if exactly the hidden effects are named, at their places; nothing if
-        none is hidden. For an effect that the diagnosis does not know any verdict but
-        "effects" is right; if the joint never moves, also "none" and
-        "not_identifiable".
+        For an effect that the diagnosis does not know any verdict but "effects" is
+        right; if the joint never moves, also "none" and "not_identifiable".
         """
         exact = self.kind == "effects" and not self.extra and not self.missed
         match self.case.kind:

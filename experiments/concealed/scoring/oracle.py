@@ -105,14 +105,11 @@ def _placed(
     plant: Plant, name: str, place: str, values: Mapping[str, float]
 ) -> PlacedEffect:
     """An effect with values clipped to bounds; typical values for missing ones."""
-    return PlacedEffect(
-        name,
-        place,
-        tuple(
-            min(max(values.get(p.name, p.typical), p.low), p.high)
-            for p in effect(name).parameters(plant, place)
-        ),
+    clipped = (
+        min(max(values.get(p.name, p.typical), p.low), p.high)
+        for p in effect(name).parameters(plant, place)
     )
+    return PlacedEffect(name, place, tuple(clipped))
 
 
 def _neutral(plant: Plant, placed: PlacedEffect) -> dict[str, float | None]:
