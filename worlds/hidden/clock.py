@@ -43,8 +43,8 @@ class Clock:
           step_s: time step of the physics.
           rate_hz: ticks per second.
           spans_s: time before the recording begins, and length of the recording.
-          jitter_s: largest deviation of a tick from its even time.
-          rng: draws the deviations.
+          jitter_s: largest deviation of a tick from its even time, drawn with `rng`.
+          rng: a random generator.
 
         Raises:
           BadValueError: the jitter is so large that ticks change their order.

@@ -26,14 +26,7 @@ class HiddenDrive:
         step_s: float,
         start_rad: FloatArray,
     ) -> None:
-        """Begin with the robot at rest in its start pose.
-
-        Args:
-          plant: the nominal robot.
-          effects: the hidden effects.
-          world: the engine, already reset to the start pose.
-          step_s: time step of the physics.
-          start_rad: (j,) joint angles of the start pose.
+        """Begin with the robot at rest in the (j,) start pose of the engine `world`.
 
         Raises:
           GroundwalkError: an effect is at a joint that the robot lacks.
@@ -57,10 +50,7 @@ class HiddenDrive:
     def advance(self, steps: int, zero_step: int = 0) -> None:
         """Take physics steps; sensor values are averaged over the last of them.
 
-        Args:
-          steps: number of physics steps to take.
-          zero_step: physics step at which the recording begins: effects count their
-            time from it.
+        Effects count their time from the physics step number `zero_step`.
         """
         world, end = self._world, self._step + steps
         while self._step < end:

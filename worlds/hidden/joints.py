@@ -15,8 +15,7 @@ class HiddenJoints:
     """A robot's servos, transmissions and other joint torques, with hidden effects.
 
     The engine's leapfrog integration gives the speeds of half a step ago. They are
-    extrapolated to the present from the last two, so that damping, which is computed
-    explicitly, is accurate to second order.
+    extrapolated to the present, so that explicit damping is second-order accurate.
     """
 
     def __init__(
@@ -26,13 +25,9 @@ class HiddenJoints:
         step_s: float,
         inertia_kg_m2: FloatArray,
     ) -> None:
-        """Apply the effects to the nominal servos and joints.
+        """Apply those effects that are at joints to the nominal servos and joints.
 
-        Args:
-          plant: the nominal robot.
-          effects: hidden effects; those that are not at joints change nothing here.
-          step_s: time step of the physics.
-          inertia_kg_m2: (j,) inertia at each joint with all other joints free.
+        `inertia_kg_m2` (j,) is that at each joint with all other joints free.
 
         Raises:
           GroundwalkError: a joint is unknown, or has two transmissions.
@@ -68,10 +63,7 @@ class HiddenJoints:
         return self._servos.offset_rad
 
     def encoders(self, position_rad: FloatArray) -> FloatArray:
-        """(j,) true angles [rad] that the encoders measure, before any encoder offset.
-
-        These are joint angles, or a motor's angle where the encoder sits at the motor.
-        """
+        """(j,) true angles [rad] of the joints, or of motors that have the encoder."""
         angles = position_rad
         for joint, transmission in self._loose.items():
             if transmission.encoder_at_motor and transmission.motor_rad is not None:

@@ -22,11 +22,8 @@ def hidden_model(
 ) -> "mujoco.MjModel":
     """The robot's model, with joints, bodies, gravity and soles as the effects say.
 
-    Args:
-      plant: the nominal robot, without effects.
-      effects: physics to add; effects on servos and signals change nothing here.
-      step_s: time step of the physics.
-      ground: the ground under a floating robot; None for a fixed base.
+    Effects on servos and signals change nothing here; `ground` is None for a fixed
+    base.
 
     Raises:
       UnknownNameError: the robot has no such body or joint.

@@ -25,9 +25,8 @@ _SO101_HELD = "gripper"
 SO101_TORQUE_NM = 2.9
 """Largest torque of each servo of the SO-101 arm [N m], as its model file states it."""
 SO101_ROTOR_KG_M2 = 0.003
-"""Rotor inertia of each SO-101 servo seen through its gear [kg m^2], an assumed value
-that is added to the link. Without it the wrist's inertia is 4e-5 kg m^2: too little for
-inertia to show beside a servo of 17 N m/rad and 0.6 N m s/rad."""
+"""Rotor inertia of each SO-101 servo seen through its gear [kg m^2], assumed. The wrist
+alone has 4e-5 kg m^2, which would not show beside a servo of 17 N m/rad."""
 
 PENDULUM = """<mujoco model="pendulum">
   <compiler angle="radian"/>
@@ -90,22 +89,13 @@ class HiddenPlant:
         return dict(zip(self.joints, gains, strict=True))
 
     def joint(self, name: str) -> int:
-        """Index of a joint in `joints` and in all arrays (j,).
-
-        Raises:
-          UnknownNameError: the robot has no joint of that name.
-        """
+        """Index of a joint in all arrays (j,); UnknownNameError if it is none."""
         if name not in self.joints:
             raise UnknownNameError(f"joint of {self.name}", name, self.joints)
         return self.joints.index(name)
 
     def with_gains(self, stiffness: float, damping: float = 1.0) -> "HiddenPlant":
-        """The same robot with other nominal servo gains.
-
-        Args:
-          stiffness: factor on all kp.
-          damping: factor on all kd; back-EMF belongs to the motor and stays.
-        """
+        """The same robot with all kp and kd multiplied; the motor's back-EMF stays."""
         return replace(
             self,
             kp_nm_rad=self.kp_nm_rad * stiffness,
@@ -115,10 +105,6 @@ class HiddenPlant:
 
 def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
     """A nominal robot: "pendulum", "so101", or a name of `groundwalk list robots`.
-
-    Args:
-      name: name of the robot.
-      floating: whether its base is free.
 
     Raises:
       GroundwalkError: there is no such robot, or its base cannot float.

@@ -60,15 +60,8 @@ def hidden_recording(
 ) -> Recording:
     """The recording that noisy sensors make of a run; rows before its start are cut.
 
-    Velocities are differences of the encoders' readings, as cheap servos give them.
-
-    Args:
-      plant: the nominal robot.
-      run: the true motion.
-      effects: the hidden effects, of which only a gyroscope bias is used here.
-      sensors: noise and resolution of the sensors.
-      rng: draws the noise.
-      metadata: robot, base and servo gains to be stated in the recording.
+    Velocities are differences of the encoders' readings, as cheap servos give them. Of
+    the effects only a gyroscope bias is used. `metadata` are stated in the recording.
     """
     first = run.clock.first
     measured = run.encoder_rad + sensors.encoder_rad * rng.standard_normal(
@@ -136,10 +129,7 @@ def _base(
 def _turned(
     orientation: FloatArray, spread_rad: float, rng: np.random.Generator
 ) -> FloatArray:
-    """Quaternions (rows, 4), each turned by a random rotation vector.
-
-    Its components have the standard deviation `spread_rad`.
-    """
+    """Quaternions (rows, 4), turned about each axis with this standard deviation."""
     x, y, z = (spread_rad / 2 * rng.standard_normal((len(orientation), 3))).T
     a, b, c, d = orientation.T
     # orientation times the quaternion (1, x, y, z), which is a small rotation

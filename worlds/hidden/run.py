@@ -57,7 +57,7 @@ def run_hidden(
 
     Args:
       plant: the nominal robot.
-      effects: the hidden effects.
+      effects: the physics that it lacks.
       engine: "bullet" or "mujoco".
       clock: times at which commands are sent and sensors are read.
       feed: gives the command of each tick.
@@ -116,12 +116,8 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
 def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
     """Whether the pose of a floating base stays finite and the robot never falls.
 
-    A fall is a tilt of more than 60 degrees, or less than half the start height.
-
-    Args:
-      felt: "position_m" (rows, 3) and "orientation" (rows, 4) w, x, y, z of the base,
-        in the ground's frame.
-      ground: the ground under the robot.
+    `felt` holds "position_m" (rows, 3) and "orientation" (rows, 4) w, x, y, z of the
+    base in the ground's frame. For falls see `worlds.falls.fallen`.
     """
     place_m, turn = felt["position_m"], felt["orientation"]
     if not (np.isfinite(place_m).all() and np.isfinite(turn).all()):
@@ -132,12 +128,7 @@ def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
 
 
 def _upright(felt: dict[str, FloatArray], turn: FloatArray) -> dict[str, FloatArray]:
-    """Rotate the base's motion from tilted ground into a frame with vertical z axis.
-
-    Args:
-      felt: arrays (rows, ...) by attribute name of `BodySense`, in the ground's frame.
-      turn: (3, 3) rotation from the ground's frame to the upright one.
-    """
+    """Rotate the base's motion, as `Run.sense` has it, by a matrix `turn` (3, 3)."""
     import mujoco
 
     if np.array_equal(turn, np.eye(3)):

@@ -70,11 +70,8 @@ class Transmission:
     ) -> float:
         """Motor angle m [rad] at which the torques of motor and spring are equal.
 
-        Args:
-          before: the motor's angle one step ago [rad].
-          q: joint angle [rad].
-          v: joint speed [rad/s].
-          motor: (pull, drive, drag) of the motor's torque drive - pull m - drag dm/dt.
+        One step before it was `before`; the joint has the angle q and the speed v; the
+        motor's (pull, drive, drag) give its torque drive - pull m - drag dm/dt.
         """
         pull, drive, drag = motor
         half, h = self.gap_rad / 2, self.step_s

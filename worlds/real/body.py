@@ -169,12 +169,7 @@ class BulletBody:
             )
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
-        """Put the robot at rest, a floating base upright above the world's origin.
-
-        Args:
-          pose_rad: (joints,) joint positions.
-          height_m: height of the torso frame above the origin; unused on a fixed base.
-        """
+        """Put the robot at rest in a pose (joints,), a floating base at this height."""
         if self._floating:
             place = self._com_m + np.array([0, 0, height_m])
             self.bullet.resetBasePositionAndOrientation(
@@ -244,11 +239,8 @@ class BulletBody:
     ) -> FloatArray:
         """(3,) noiseless reading of the accelerometer in the torso frame [m/s^2].
 
-        Args:
-          pose: (7,) current pose of the torso, as `base_motion` gives it.
-          before: (6,) velocity of the torso, some steps ago.
-          now: (6,) current velocity of the torso.
-          seconds: time between both velocities.
+        It follows from the pose now, and the velocities of `base_motion` now and some
+        seconds before.
         """
         lever = np.zeros(3)
         if self._description is not None:

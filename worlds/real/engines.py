@@ -26,14 +26,9 @@ def hidden_engine(
     step_s: float,
     ground: Heightfield | None,
 ) -> HiddenEngine:
-    """Make a physics engine and load a robot with hidden effects into it.
+    """Make the engine "bullet" or "mujoco" and load a robot with effects into it.
 
-    Args:
-      name: "bullet" (PyBullet) or "mujoco".
-      plant: the robot without the effects.
-      effects: the physics to hide, with places and parameters.
-      step_s: physics step.
-      ground: the ground under a floating robot; None for a fixed base.
+    `ground` is that under a floating robot; None for a fixed base.
 
     Raises:
       GroundwalkError: the engine cannot compute an effect, or the robot does not have

@@ -30,9 +30,6 @@ class RealWorld(RolloutWorld):
 
     Attributes:
       processes: the worker processes; empty once the world is closed.
-
-    Example:
-      `worlds.make("real", ...)` makes one; see the beginning of `worlds`.
     """
 
     def __init__(
@@ -64,12 +61,8 @@ class RealWorld(RolloutWorld):
             self.processes.append(process)
         # Sent, because `start` would hang with large arguments if a process ended
         # before it had read them.
-        self._send(
-            [
-                (description, [self._grounds[i] for i in share], options)
-                for share in self._shares
-            ]
-        )
+        own = [[self._grounds[i] for i in share] for share in self._shares]
+        self._send([(description, part, options) for part in own])
         self._columns = state_columns(len(description.joints))
         self._start_height = StartHeight(description)
 
@@ -92,16 +85,11 @@ class RealWorld(RolloutWorld):
         )
 
     def _advance(self, schedule: Schedule) -> None:
-        self._exchange(
-            [
-                (
-                    "step",
-                    self.active[share],
-                    [(targets[share], steps) for targets, steps in schedule],
-                )
-                for share in self._shares
-            ]
-        )
+        messages: list[tuple[object, ...]] = []
+        for share in self._shares:
+            own = [(targets[share], steps) for targets, steps in schedule]
+            messages.append(("step", self.active[share], own))
+        self._exchange(messages)
 
     def _exchange(self, messages: list[tuple[object, ...]]) -> None:
         """Send each worker its message, and store the rows of states they answer."""

@@ -40,12 +40,7 @@ FIXED = (
 
 
 def joints_with(quantity: str, names: Iterable[str]) -> tuple[str, ...]:
-    """Names of the joints that have a column `<quantity>.<joint>`, in column order.
-
-    Args:
-      quantity: one of `JOINT_QUANTITIES`, such as "position".
-      names: column names of a recording.
-    """
+    """The joints that have a column `<quantity>.<joint>` in `names`, in their order."""
     prefix = f"{quantity}."
     return tuple(name[len(prefix) :] for name in names if name.startswith(prefix))
 

@@ -22,11 +22,7 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
 
     Raises:
       BadRecordingError: the file cannot be read or is no recording. The message names
-        the file and, where it applies, the column and row of the first fault; the
-        first row of values is row 0.
-
-    Example:
-      See docs/recordings.md.
+        the file, and the column and row of the first fault.
     """
     is_csv = _is_csv(path)
     with _naming(path):
@@ -46,12 +42,7 @@ def write_recording(recording: Recording, path: Path) -> None:
     """Write a recording into a file, atomically; equal recordings give equal bytes.
 
     Missing values (NaN) become nulls (Parquet) or empty cells (CSV); all other values
-    are read back bit by bit.
-
-    Args:
-      recording: the recording.
-      path: a `.parquet` file, or a `.csv` file, beside which a `.json` file of the
-        same name is written.
+    are read back bit by bit. Beside a `.csv` file, a `.json` file is written.
 
     Raises:
       BadRecordingError: the path ends with neither .parquet nor .csv.

@@ -23,11 +23,7 @@ def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
 def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray]:
     """Turn columns into read-only arrays of floats, all of the same length.
 
-    An array that can be written to is copied, so that later changes do not reach the
-    recording; a read-only array is used without a copy.
-
-    Args:
-      columns: sequences of numbers by column name.
+    An array that can be written to is copied.
 
     Raises:
       BadRecordingError: a column holds no numbers, is not one-dimensional, or its
@@ -49,8 +45,8 @@ def check_values(columns: Mapping[str, FloatArray]) -> None:
 
     Raises:
       BadRecordingError: there are no rows; a time is missing or not later than the
-        time before; a value is infinite; a quaternion is not of unit length; a value
-        of `support`, the supporting leg, is none of -1, 0, 1.
+        one before; a value is infinite, a quaternion not of unit length, or a value of
+        `support` none of -1, 0, 1.
     """
     if not columns[TIME].size:
         raise BadRecordingError("no rows")

@@ -6,9 +6,8 @@ Three points on the ground describe a walk's balance:
   by their forces. It is always on the soles.
 - the zero-moment point, *from the motion*: where the ground's force must act for links
   of these masses to have moved as they did (Vukobratovic and Borovac 2004). It needs
-  the base's pose and no force sensors. With both soles flat on level ground it is the
-  centre of pressure. If it is outside of the support polygon, where the ground cannot
-  push, the robot tips about the polygon's edge.
+  the base's pose. With both soles flat on level ground it is the centre of pressure.
+  If it is outside of the support polygon, the robot tips about the polygon's edge.
 - the centre of mass, projected along the vertical.
 
 All are in the world frame; a base that was not recorded is at the origin, upright.
@@ -106,12 +105,11 @@ def _polygons(
     polygons = []
     for tick in range(len(soles_m[SIDES[0]])):
         soles = [soles_m[side][tick] for side in SIDES if loaded[side][tick]]
-        corners = np.vstack(soles) if soles else np.empty((0, 3))
-        if len(corners) and np.isfinite(corners).all():
-            corners = corners[ConvexHull(corners[:, :2]).vertices]
+        corners = np.vstack([np.empty((0, 3)), *soles])
+        if soles and np.isfinite(corners).all():
+            polygons.append(corners[ConvexHull(corners[:, :2]).vertices])
         else:
-            corners = np.empty((0, 3))
-        polygons.append(corners)
+            polygons.append(np.empty((0, 3)))
     return polygons
 
 
@@ -128,8 +126,7 @@ def _on_foot(
     """(ticks, points, 3) world places of points (points, 3) in a foot's frame [m]."""
     robot = scene.description
     foot = robot.feet[SIDES.index(side)]
-    pose = poses[robot.links[foot.joint].link.name]
-    return pose.points(points_m)
+    return poses[robot.links[foot.joint].link.name].points(points_m)
 
 
 def _centres(
@@ -137,10 +134,9 @@ def _centres(
 ) -> tuple[FloatArray, FloatArray]:
     """(links,) masses [kg] and (links, ticks, 3) centres of mass in the world [m]."""
     links = [robot.root, *(joint.link for joint in robot.links)]
-    places_m = []
-    for link in links:
-        pose = poses[link.name]
-        places_m.append(pose.points(link.inertial.com_m[np.newaxis])[:, 0])
+    places_m = [
+        poses[link.name].points(link.inertial.com_m[np.newaxis])[:, 0] for link in links
+    ]
     return np.array([link.inertial.mass_kg for link in links]), np.array(places_m)
 
 

@@ -1,9 +1,8 @@
 """Draws round shapes on uneven ground by tracing rays in NumPy.
 
-A ray goes from the camera through each pixel. A quadratic equation gives the place
-where it meets a capsule, so that round shapes look round at any size; a fixed-point
-iteration, which suits nearly level ground, gives the place where it meets the ground.
-Light comes from one sun, with shadows, and from the sky.
+A quadratic equation gives the place where a ray meets a capsule, a fixed-point
+iteration that where it meets nearly level ground. Light comes from one sun, with
+shadows, and from the sky.
 
 The engines' own renderers are not good enough. PyBullet's ER_TINY_RENDERER (3.2.7) puts
 large parts of a heightfield into wrong shadow, gives all of the ground one colour and
@@ -53,7 +52,7 @@ class Camera:
 
     Attributes:
       eye_m: place of the camera in the world frame.
-      target_m: place in the world that is in the middle of the picture.
+      target_m: place that is in the middle of the picture.
       size_px: width and height of the picture.
       view_rad: angle of view from the lower to the upper edge of the picture.
     """

@@ -33,12 +33,9 @@ class Trace(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """Lines with times of their own, shown in a plot of their own.
+    """Lines with times (ticks,) of their own, in a plot of their own.
 
-    Attributes:
-      title: title of the plot, with the unit.
-      time_s: (ticks,) times of the values.
-      trace: the lines; their path is complete, without a scene's name before it.
+    The title has the unit; the trace's path has no scene's name before it.
     """
 
     title: str

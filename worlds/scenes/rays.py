@@ -32,15 +32,9 @@ class Rounds(NamedTuple):
 
 
 def axis_part(place: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """For each place, find the nearest point of the axis of its capsule.
+    """(n, 1) position, from 0 at start to 1 at end, of an axis' point nearest a place.
 
-    Args:
-      place: (n, 2) or (n, 3) places [m].
-      start: starts of the axes [m]; of the same shape, or one for all places.
-      end: ends of the axes [m], likewise.
-
-    Returns:
-      (n, 1) position along the axis, from 0 at its start to 1 at its end.
+    Places are (n, 2) or (n, 3) [m]; each has an axis of its own, or all have one.
     """
     axis = end - start
     square = np.sum(axis * axis, axis=-1, keepdims=True)
@@ -53,15 +47,9 @@ def distances(
 ) -> FloatArray:
     """(...) distance [m] at which each ray meets a capsule; infinity if it does not.
 
-    Args:
-      eye: (3,) start of all rays [m].
-      rays: (..., 3) directions of the rays, as unit vectors.
-      start: (3,) one end of the capsule's axis [m].
-      end: (3,) the other end [m].
-      radius: radius of the capsule [m].
-
     A ray meets the cylinder at the t where |(eye - start) + t ray|, without its part
-    along the axis, equals the radius. The ends of the capsule are two spheres.
+    along the axis, equals the radius. The ends of the capsule are two spheres. All rays
+    begin at `eye` (3,) and have unit directions (..., 3).
     """
     axis, to_eye = end - start, eye - start
     square = float(axis @ axis)
@@ -89,8 +77,8 @@ def _sphere(to_eye: FloatArray, rays: FloatArray, radius: float) -> FloatArray:
 def in_sun(rounds: Rounds, place_m: FloatArray) -> FloatArray:
     """(n,) share of sunlight at places (n, 3): 0 in a capsule's shadow, 1 in the sun.
 
-    Seen from the sun, every capsule is a flat stadium: places inside of the stadium
-    and behind the capsule are in its shadow. Capsules that glow cast none.
+    Seen from the sun, a capsule is a flat stadium; places inside of it and behind the
+    capsule are in its shadow.
     """
     known = np.isfinite(rounds.start_m + rounds.end_m).all(axis=1)
     shapes = np.flatnonzero(~rounds.glows & known)

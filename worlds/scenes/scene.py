@@ -24,7 +24,10 @@ _NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)*", re.ASCII)
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """One recording with its robot and its ground, ready to be drawn.
+    """A recording with its robot and its ground, ready to be drawn.
+
+    The constructor raises `BadValueError` if the name is no path of letters, digits,
+    `_`, `-` and `.`, and `BadRecordingError` if the robot lacks a recorded joint.
 
     Attributes:
       name: name in a viewer, such as "sim" or "start/real"; all paths begin with it.
@@ -42,12 +45,7 @@ class Scene:
     ground: Heightfield | None = None
 
     def __post_init__(self) -> None:
-        """Check the name, and that the robot has all recorded joints.
-
-        Raises:
-          BadValueError: the name is no path of letters, digits, `_`, `-` and `.`.
-          BadRecordingError: the recording has a joint that the robot does not have.
-        """
+        """Check the name, and that the robot has all recorded joints."""
         if not _NAME.fullmatch(self.name):
             raise BadValueError(
                 f"scene name {self.name!r}: it must be made of letters, digits, '_', "
@@ -92,10 +90,7 @@ class Scene:
         return None
 
     def sensor_forces_n(self, side: str) -> tuple[FloatArray, FloatArray] | None:
-        """Places of a foot's force sensors and their forces.
-
-        Args:
-          side: "left" or "right".
+        """Places and forces of the force sensors of the foot "left" or "right".
 
         Returns:
           (k, 3) points of the sole in the foot's frame [m] and (ticks, k) forces [N] of
@@ -160,11 +155,9 @@ class Scene:
 
 
 def check_beside(scenes: Sequence[Scene]) -> None:
-    """Check that there are scenes and that their names can be paths in one file.
+    """Raise BadValueError if there are no scenes, or names cannot be paths in one file.
 
-    Raises:
-      BadValueError: there are no scenes; or a scene has the name of another one, or a
-        name that is the first part of another one's path.
+    A scene's name may be neither that of another one nor the start of its path.
     """
     if not scenes:
         raise BadValueError("no scenes; at least one recording is needed")

@@ -16,10 +16,7 @@ SOLE_THICKNESS_M = 0.012
 
 
 class Capsules(NamedTuple):
-    """Capsules as Rerun takes them: from `translations` along the rotated z axis.
-
-    All lengths are in metres; `colors` is (n, 3).
-    """
+    """Capsules as Rerun takes them: from `translations` [m] along the rotated z."""
 
     lengths: FloatArray
     radii: FloatArray

@@ -44,12 +44,7 @@ class DryFriction:
 
     @classmethod
     def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
-        """Make friction with a bristle of 3000 N m/rad, or less for a long time step.
-
-        Args:
-          contact: inertia at the joint, and time step.
-          torques: values of `coulomb_nm`, `extra_nm`, `speed_rad_s`, `load_share`.
-        """
+        """Friction of these torques, its bristle as stiff as the time step allows."""
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden.effects.kind import HiddenKind
+from worlds.hidden.effects.kind import HiddenKind, Quantity
 from worlds.hidden.setting import Setting
 from worlds.hidden.surroundings import Surroundings
 
@@ -29,12 +29,7 @@ def _found() -> Iterator[HiddenKind]:
 KINDS: Mapping[str, HiddenKind] = {
     kind.name: kind for kind in sorted(_found(), key=lambda one: (one.rank, one.name))
 }
-"""All kinds of hidden physics by name, in the order from which test cases are drawn.
-
-Example:
-  >>> KINDS["backlash"].place
-  'joint'
-"""
+"""All kinds of hidden physics by name, in the order from which test cases are drawn."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +60,7 @@ class Hidden:
                 raise UnknownNameError(f"parameter of {self.name}", name, known)
         for name, quantity in known.items():
             if name in self.parameters:
-                self._check(name, float(self.parameters[name]))
+                self._check(quantity, float(self.parameters[name]))
             elif quantity.default is None:
                 raise BadValueError(f"{self.name} needs a value of {name}")
         own = self.kind.place
@@ -74,15 +69,13 @@ class Hidden:
                 f"{self.name} belongs to {own!r}, not to {self.place!r}"
             )
 
-    def _check(self, name: str, value: float) -> None:
+    def _check(self, quantity: Quantity, value: float) -> None:
+        about = f"{self.name}: {quantity.name} is"
         if not math.isfinite(value):
-            raise BadValueError(f"{self.name}: {name} is {value}")
-        quantity = self.kind.parameters[name]
+            raise BadValueError(f"{about} {value}")
         if not quantity.low <= value <= quantity.high:
-            raise BadValueError(
-                f"{self.name}: {name} is {value:g} {quantity.unit}; sensible values "
-                f"are {quantity.range_text}"
-            )
+            sensible = f"sensible values are {quantity.range_text}"
+            raise BadValueError(f"{about} {value:g} {quantity.unit}; {sensible}")
 
     @property
     def kind(self) -> HiddenKind:
@@ -118,28 +111,24 @@ class Hidden:
         if name not in KINDS:
             raise UnknownNameError("effect", name, KINDS)
         if not at and KINDS[name].place in ("joint", "body"):
-            raise BadValueError(
-                f"{text}: say where, as in {name}@PLACE:parameter=value"
-            )
+            where = f"{name}@PLACE:parameter=value"
+            raise BadValueError(f"{text}: say where, as in {where}")
         values = {}
         for item in filter(None, tail.split(",")):
             key, _, number = item.partition("=")
             try:
                 values[key] = float(number)
             except ValueError:
-                raise BadValueError(
-                    f"{text}: {item!r} must be parameter=number"
-                ) from None
+                wrong = f"{text}: {item!r} must be parameter=number"
+                raise BadValueError(wrong) from None
         return cls(name, place or KINDS[name].place, values)
 
     @classmethod
     def sized(cls, name: str, setting: Setting) -> "Hidden":
         """Draw an effect for a test case, at the setting's spot and of its ease."""
         kind = KINDS[name]
-        at = {
-            "joint": setting.plant.joints[setting.joint],
-            "body": setting.spot.body,
-        }.get(kind.place, kind.place)
+        joint, body = setting.plant.joints[setting.joint], setting.spot.body
+        at = {"joint": joint, "body": body}.get(kind.place, kind.place)
         return cls(name, at, kind.size(setting))
 
 
