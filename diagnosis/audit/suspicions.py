@@ -160,7 +160,9 @@ def torque_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
     """Find measured and commanded torques far above the servos' limits."""
     torques = {"torque": trace.torque_nm, "command_torque": trace.command_torque_nm}
     for quantity, values in torques.items():
-        for column, joint in enumerate(plant.joints if values is not None else ()):
+        if values is None:
+            continue
+        for column, joint in enumerate(plant.joints):
             limit = float(trace.servo.max_torque_nm[column])
             most = float(_sizes(values[:, column]).max(initial=0.0))
             name = f"{quantity}.{joint}"

@@ -57,15 +57,11 @@ def _findings(audit: TraceAudit) -> Iterator[tuple[Severity, str]]:
     """Severity and text of each finding on the clock of a trace."""
     name, rate = audit.name, audit.rate_hz
     if audit.duration_s < _LEAST_S:
-        yield (
-            "refuse",
-            f"{name} lasts {audit.duration_s:.3g} s; at least {_LEAST_S:g} s are needed",
-        )
+        lasts = f"{name} lasts {audit.duration_s:.3g} s"
+        yield "refuse", f"{lasts}; at least {_LEAST_S:g} s are needed"
     if audit.rows < _LEAST_ROWS:
-        yield (
-            "refuse",
-            f"{name} has {audit.rows} rows; at least {_LEAST_ROWS} are needed",
-        )
+        few = f"{name} has {audit.rows} rows"
+        yield "refuse", f"{few}; at least {_LEAST_ROWS} are needed"
     if rate < _SLOWEST_HZ:
         yield (
             "refuse",

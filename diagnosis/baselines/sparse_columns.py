@@ -74,7 +74,7 @@ class Torques:
 
 
 def _rows(trace: Trace, every: int) -> list[FloatArray]:
-    """Rows of a trace, away from its ends, of what `Torques.of` names, (rows, j) each."""
+    """Arrays (rows, j) that `Torques.of` names, at some rows of a trace."""
     q, v, a = smooth_columns(trace.time_s, trace.position_rad)
     command = trace.position_rad if trace.command_rad is None else trace.command_rad
     # around a row the one before it holds as long as its own

@@ -20,10 +20,6 @@ def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
     For a floating base, a model without a free joint gets one at its only body under
     the world, and a model without a ground gets a plane.
 
-    Args:
-      spec: the robot model, which is changed.
-      base: "fixed" or "floating".
-
     Raises:
       BadModelError: the base is to float, but several bodies are under the world, none
         is, or a joint other than a free one holds it.
@@ -62,7 +58,8 @@ def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
         if names & {equality.name1, equality.name2}:
             spec.delete(equality)
     for tendon in list(spec.tendons):
-        if any(name in names for name in _joints_of(tendon)):
+        wrapped = (wrap.target for wrap in tendon.path)
+        if any(target is not None and target.name in names for target in wrapped):
             spec.delete(tendon)
     for sensor in list(spec.sensors):
         if sensor.objtype == mujoco.mjtObj.mjOBJ_JOINT and sensor.objname in names:
@@ -133,7 +130,3 @@ def _add_ground(spec: "mujoco.MjSpec") -> None:
         contype=0,
         conaffinity=1,
     )
-
-
-def _joints_of(tendon: Any) -> list[str]:
-    return [wrap.target.name for wrap in tendon.path if wrap.target is not None]

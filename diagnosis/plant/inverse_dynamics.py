@@ -1,4 +1,4 @@
-"""Inverse dynamics: the joint torques that a motion of the robot model needs."""
+"""Computes joint torques by inverse dynamics of the robot model."""
 
 import copy
 from typing import TYPE_CHECKING
@@ -19,20 +19,11 @@ def inverse_dynamics(
     velocity_rad_s: FloatArray,
     acceleration_rad_s2: FloatArray,
 ) -> FloatArray:
-    """Compute the joint torques that motions of a fixed-base robot need.
+    """(R, j) torques [N m] that R rows of motion (R, j) of a fixed-base robot need.
 
-    MuJoCo's constraints, such as equalities between joints, are left out: they would
-    turn sensor noise into large torques.
-
-    Args:
-      plant: the robot model; it gives the joints' indices in MuJoCo's vectors.
-      model: the compiled model to use: the plant's, or a copy with other numbers.
-      position_rad: (R, j) positions of the j joints in R rows.
-      velocity_rad_s: (R, j) joint velocities.
-      acceleration_rad_s2: (R, j) joint accelerations.
-
-    Returns:
-      (R, j) torques [N m].
+    `model` is the plant's compiled model, or a copy of it with other numbers. MuJoCo's
+    constraints, such as equalities between joints, are left out: they would turn sensor
+    noise into large torques.
     """
     import mujoco
 

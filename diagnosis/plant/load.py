@@ -72,23 +72,18 @@ def load_plant(
     has_options = description is not None or Path(source).suffix == ".xml"
     options = ModelOptions.of(spec) if has_options else None
     _equip(spec, base, ours, own)
-    feet = _feet(_compiled(spec, name), base, description)
+    model = _compiled(spec, name)
+    if description is not None:
+        feet = _described_feet(description)
+    else:
+        feet = standing_bodies(model) if base == "floating" else ()
     return Plant(name, spec, ours, own, base, feet, options)
 
 
 def described_plant(
     description: Description, spec: "mujoco.MjSpec", base: Base
 ) -> Plant:
-    """Make the plant of a robot whose MuJoCo specification exists already.
-
-    Args:
-      description: the robot as data, as in `robots`.
-      spec: MuJoCo specification of the robot, with or without a ground; it is changed.
-      base: "fixed" to the world or "floating".
-
-    Example:
-      See `diagnosis.corrected.sim.sim_plant`.
-    """
+    """Make the plant of a robot whose MuJoCo specification, changed here, exists."""
     servo = described_servo(description, description.joints)
     _equip(spec, base, description.joints, servo)
     feet = _described_feet(description)
@@ -172,14 +167,6 @@ def _chosen(
                 f"the recordings have a joint {joint!r} that {name} lacks{hint}"
             )
     return tuple(joint for joint in there if joints is None or joint in joints)
-
-
-def _feet(
-    model: "mujoco.MjModel", base: Base, description: Description | None
-) -> tuple[str, ...]:
-    if description is not None:
-        return _described_feet(description)
-    return standing_bodies(model) if base == "floating" else ()
 
 
 def _described_feet(description: Description) -> tuple[str, ...]:

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     import mujoco
 
 _COMPILER = {"balanceinertia": "true", "boundmass": "1e-6", "boundinertia": "1e-9"}
-_INERTIA_AXES = ("xx", "yy", "zz", "xy", "xz", "yz")
 _NO_DYNAMICS = ("transmission", "gazebo", "material", "mujoco")
 
 
@@ -21,12 +20,8 @@ def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
 
     Meshes are never read: they do not matter to the dynamics, and their paths are
     often wrong. Impossible inertias are replaced as MuJoCo's `balanceinertia` does;
-    moving links without mass or inertia get a tiny one.
-
-    Args:
-      path: the file.
-      contacts: keep collision shapes that are boxes, cylinders and spheres; they
-        touch only the ground.
+    moving links without mass or inertia get a tiny one. With `contacts`, collision
+    shapes that are boxes, cylinders and spheres stay; they touch only the ground.
 
     Raises:
       BadModelError: the file cannot be read or is no URDF.
@@ -70,10 +65,7 @@ def mjcf_spec(path: Path) -> "mujoco.MjSpec":
 
 
 def _strip(link: ElementTree.Element, contacts: bool) -> None:
-    """Remove a link's shapes that are not simulated, and inertials without mass.
-
-    An inertia that is not positive definite is replaced by a tiny one.
-    """
+    """Remove shapes and massless inertials of a link; replace impossible inertias."""
     for shape in [*link.findall("visual"), *link.findall("collision")]:
         is_mesh = shape.find("geometry/mesh") is not None
         if shape.tag == "visual" or is_mesh or not contacts:
@@ -90,10 +82,8 @@ def _strip(link: ElementTree.Element, contacts: bool) -> None:
 
 def _is_positive(inertia: ElementTree.Element) -> bool:
     """Whether all eigenvalues of a URDF inertia are positive, as MuJoCo demands."""
-    xx, yy, zz, xy, xz, yz = (
-        float(inertia.get(f"i{axes}", "0")) for axes in _INERTIA_AXES
-    )
-    matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    rows = (("xx", "xy", "xz"), ("xy", "yy", "yz"), ("xz", "yz", "zz"))
+    matrix = [[float(inertia.get(f"i{axes}", "0")) for axes in row] for row in rows]
     return bool(np.linalg.eigvalsh(matrix).min() > 0)
 
 

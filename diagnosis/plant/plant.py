@@ -27,10 +27,7 @@ _SLIDING = (("kg m^2", "kg"), ("N m", "N"), ("rad", "m"))
 class ModelOptions:
     """MuJoCo options of a model file that a diagnosis replaces by its own.
 
-    Attributes:
-      timestep_s: time step of the physics.
-      integrator: number of the integrator in MuJoCo's `mjtIntegrator`.
-      disableflags: bits of `mjtDisableBit`: parts of the physics switched off.
+    The integrator is a number in `mjtIntegrator`, flags are bits of `mjtDisableBit`.
     """
 
     timestep_s: float
@@ -39,7 +36,7 @@ class ModelOptions:
 
     @classmethod
     def of(cls, spec: "mujoco.MjSpec") -> "ModelOptions":
-        """The three options of a MuJoCo specification."""
+        """The options of a MuJoCo specification."""
         option = spec.option
         return cls(option.timestep, int(option.integrator), int(option.disableflags))
 
@@ -102,12 +99,7 @@ class Plant:
         return frozenset(name for name, kind in kinds.items() if kind == slide)
 
     def unit(self, unit: str, place: str) -> str:
-        """The unit of a quantity at a joint: "N/m" for "N m/rad" if the joint slides.
-
-        Args:
-          unit: the unit for a joint that turns, such as "N m/rad".
-          place: name of a joint; for other names the unit stays as it is.
-        """
+        """The unit of a quantity at a place: "N/m" for "N m/rad" at a sliding joint."""
         if place in self.slides:
             for turning, sliding in _SLIDING:
                 unit = unit.replace(turning, sliding)
@@ -127,9 +119,11 @@ class Plant:
         """Names of a body's ancestors and descendants in the kinematic tree."""
         model = self.model
         own = int(model.body(body).id)
-        carried = [i for i in range(1, model.nbody) if _carries(model, own, i)]
-        carrying = [i for i in range(1, model.nbody) if _carries(model, i, own)]
-        return frozenset(model.body(i).name for i in (*carried, *carrying))
+        return frozenset(
+            model.body(i).name
+            for i in range(1, model.nbody)
+            if _carries(model, own, i) or _carries(model, i, own)
+        )
 
     def at_rest(self, still: Collection[str]) -> frozenset[str]:
         """Names of the bodies that only the `still` joints, or none, could move."""

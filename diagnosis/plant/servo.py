@@ -18,18 +18,8 @@ def servo_torque(
 ) -> FloatArray:
     """The torque that servos ask for: clip(kp error - kd velocity, +-max_torque).
 
-    All arguments have shapes that broadcast against each other. Sliding joints have
-    N for N m and m for rad.
-
-    Args:
-      kp_nm_rad: stiffness kp.
-      kd_nm_s_rad: damping kd.
-      max_torque_nm: torque limit; infinite where there is none.
-      error_rad: position command less measured position.
-      velocity_rad_s: velocity of the joints.
-
-    Returns:
-      Torques [N m], without the back-EMF of the motors, in the broadcast shape.
+    The motors' back-EMF is not included. The error is the position command less the
+    measured position; all arguments have shapes that broadcast against each other.
     """
     asked = kp_nm_rad * error_rad - kd_nm_s_rad * velocity_rad_s
     return np.asarray(np.clip(asked, -max_torque_nm, max_torque_nm))
@@ -51,13 +41,6 @@ class Servo:
 
     Raises:
       BadValueError: a value is negative or NaN, or the arrays differ in length.
-
-    Example:
-      >>> import numpy as np
-      >>> one = np.ones(1)
-      >>> servo = Servo(20 * one, one, 3 * one, 0 * one)
-      >>> servo.torque(0.1 * one, 0.5 * one)
-      array([1.5])
     """
 
     kp_nm_rad: FloatArray
@@ -74,19 +57,9 @@ class Servo:
                 raise BadValueError(f"{name} must not be negative: {values}")
 
     def torque(self, error_rad: FloatArray, velocity_rad_s: FloatArray) -> FloatArray:
-        """(..., j) torques [N m] that the servos ask for, without back-EMF.
-
-        Args:
-          error_rad: (..., j) position commands less positions.
-          velocity_rad_s: (..., j) velocities of the joints.
-        """
-        return servo_torque(
-            self.kp_nm_rad,
-            self.kd_nm_s_rad,
-            self.max_torque_nm,
-            error_rad,
-            velocity_rad_s,
-        )
+        """(..., j) torques [N m] that the servos ask for, see `servo_torque`."""
+        gains = self.kp_nm_rad, self.kd_nm_s_rad, self.max_torque_nm
+        return servo_torque(*gains, error_rad, velocity_rad_s)
 
     def of(self, columns: Sequence[int]) -> "Servo":
         """The servos of the joints with these indices."""

@@ -63,13 +63,8 @@ def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Serv
     """Replace the servo gains of some or all joints.
 
     New gains have only one damping. At a joint whose servo has back-EMF it replaces the
-    back-EMF, at others the damping inside the torque limit.
-
-    Args:
-      servo: the servos of `joints`.
-      joints: names of all joints.
-      gains: new gains by joint, or the same for all joints; the largest float as
-        `max_torque` stands for no limit. None changes nothing.
+    back-EMF, at others the damping inside the torque limit. The largest float as
+    `max_torque` stands for no limit. None changes nothing.
 
     Raises:
       UnknownNameError: there are gains for a joint that does not exist.
@@ -95,13 +90,11 @@ def remove_actuators(spec: "mujoco.MjSpec") -> None:
     """Remove all actuators, sensors of actuators and keyframes from a model."""
     import mujoco
 
-    kinds = (mujoco.mjtObj.mjOBJ_ACTUATOR,)
-    for sensor in [sensor for sensor in spec.sensors if sensor.objtype in kinds]:
-        spec.delete(sensor)
-    for key in list(spec.keys):  # their controls would be of the wrong number
-        spec.delete(key)
-    for actuator in list(spec.actuators):
-        spec.delete(actuator)
+    kind = mujoco.mjtObj.mjOBJ_ACTUATOR
+    sensors = [sensor for sensor in spec.sensors if sensor.objtype == kind]
+    # the keyframes' controls would be of the wrong number
+    for part in (*sensors, *list(spec.keys), *list(spec.actuators)):
+        spec.delete(part)
 
 
 def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> None:

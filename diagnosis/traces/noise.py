@@ -32,9 +32,8 @@ _GAP = 2.5
 class Noise:
     """Sensor noise of a channel, in the channel's unit.
 
-    Attributes:
-      std: standard deviation of the white noise, rounding not included.
-      quantum: step to which values are rounded; None if they are continuous.
+    `std` is the standard deviation of the white noise, rounding not included, `quantum`
+    the step to which values are rounded; None if they are continuous.
     """
 
     std: float
@@ -62,9 +61,6 @@ def noise_of(time_s: FloatArray, values: FloatArray) -> Noise:
     Args:
       time_s: (T,) increasing, may be uneven.
       values: (T,) NaN where missing.
-
-    Returns:
-      White noise and quantum in the channel's unit.
     """
     quantum = quantum_of(values)
     there = np.isfinite(values)
@@ -73,17 +69,10 @@ def noise_of(time_s: FloatArray, values: FloatArray) -> Noise:
 
 
 def quantum_of(values: FloatArray) -> float | None:
-    """Find the step to which values are rounded, such as that of an encoder.
+    """Find the step to which values (T,) are rounded, such as that of an encoder.
 
-    It is the largest step such that nearly all values differ by multiples of it;
-    fractions of that step would fit, too.
-
-    Args:
-      values: (T,) NaN where missing.
-
-    Returns:
-      The step in the unit of the values; None if they are continuous, or if too few of
-      them differ to know.
+    It is the largest step such that nearly all values differ by multiples of it. None
+    if they are continuous, or if too few of them differ to know.
     """
     there = values[np.isfinite(values)]
     levels = np.unique(there)
@@ -119,13 +108,9 @@ def _refined(levels: FloatArray, gaps: FloatArray, step: float) -> float:
 def _differences(
     time_s: FloatArray, values: FloatArray, order: int
 ) -> tuple[FloatArray, BoolArray]:
-    """Divided differences of a channel whose weights have unit length.
+    """(T - order,) divided differences, and whether their rows have no gap between.
 
-    Their variance on white noise is therefore the noise's.
-
-    Returns:
-      (T - order,) differences over order + 1 rows each, and whether these rows have no
-      gap between them.
+    The weights have unit length, so the variance on white noise is the noise's.
     """
     count, points = max(len(values) - order, 0), range(order + 1)
     if count == 0:
@@ -133,13 +118,8 @@ def _differences(
     tick = np.median(np.diff(time_s))
     times = np.stack([time_s[i : count + i] for i in points])
     windows = np.stack([values[i : count + i] for i in points])
-    weights = np.stack(
-        [
-            1
-            / np.prod([(times[i] - times[j]) / tick for j in points if j != i], axis=0)
-            for i in points
-        ]
-    )
+    apart = [[(times[i] - times[j]) / tick for j in points if j != i] for i in points]
+    weights = 1 / np.prod(apart, axis=1)
     weights /= np.linalg.norm(weights, axis=0)
     close = (np.diff(times, axis=0) < _GAP * tick).all(axis=0)
     return np.sum(weights * windows, axis=0), np.asarray(close, bool)

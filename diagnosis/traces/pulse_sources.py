@@ -53,8 +53,8 @@ def source_of(
 
     Returns:
       The source, or None if neither torque nor position jumps with the pulses; the mean
-      jump of each signal at their edges, as a share of their size; and the share of
-      their torque that moved the joint.
+      jump of each signal at their edges, and the torque that moved the joint, both as
+      shares of the pulses' size.
     """
     assert trace.torque_nm is not None
     assert trace.command_rad is not None
@@ -86,13 +86,9 @@ def _jump(values: FloatArray, where: Sequence[Stretch], sizes: FloatArray) -> fl
 
 
 def step_at(values: FloatArray, row: int) -> tuple[float, int]:
-    """Largest jump of a signal within 3 rows of a given row, and the row after it.
+    """Largest jump of a signal (T,) within 3 rows of a row, and the row after it.
 
     The jump is that of a line with a step, fitted to 4 rows on each side.
-
-    Args:
-      values: (T,) the signal.
-      row: row at which a jump is expected.
     """
     time = np.arange(-EDGE_ROWS, EDGE_ROWS) + 0.5
     design = np.stack([np.ones_like(time), time, (time > 0).astype(float)], axis=1)

@@ -1,9 +1,9 @@
 """Finds pulses: torques that a joint's servo did not ask for, constant for a while.
 
-On a healthy joint the measured torque is the one that the servo's law asks for. A pulse
-is a time span in which the two differ by a constant, between sharp edges. The signal
-that jumps at the edges, and the motion, tell the fault of an actuator from that of a
-sensor (Isermann 2005, "Model-based fault-detection and diagnosis").
+A pulse is a time span in which the measured torque differs by a constant, between sharp
+edges, from the one that the servo's law asks for. The signal that jumps at the edges,
+and the motion, tell the fault of an actuator from that of a sensor (Isermann 2005,
+"Model-based fault-detection and diagnosis").
 """
 
 from collections.abc import Sequence
@@ -55,11 +55,9 @@ _QUARTILES = 1.349
 
 
 def pulses_of(plant: Plant, trace: Trace) -> tuple[Pulse, ...]:
-    """Find the torques, constant for a while, that no servo of a recording asked for.
+    """Find the pulses of a recording, in the order of time.
 
-    Returns:
-      The pulses in the order of time; none without servos or measured torques, or with
-      a floating base.
+    There are none without servos or measured torques, or with a floating base.
     """
     if trace.torque_nm is None or trace.unheld or plant.base == "floating":
         return ()
@@ -135,8 +133,8 @@ def _of_joint(
 def _flat_stretches(time_s: FloatArray, added: FloatArray) -> list[Stretch]:
     """Rows of each pulse, from (T,) measured less asked torques [N m].
 
-    The difference is constant in a pulse and small outside of all. A wrong gain or a
-    late command changes the torque in proportion to the servo's own, which is neither.
+    A wrong gain or a late command causes no difference that is constant for a while,
+    and small outside of that.
     """
     tick_s = float(np.median(np.diff(time_s)))
     width = 2 * round(FILTER_S / tick_s / 2) + 1
@@ -171,13 +169,7 @@ def _spread(values: FloatArray) -> float:
 
 
 def _asked_nm(trace: Trace, late: float) -> FloatArray:
-    """(T, j) torques that the nominal servos ask for, without back-EMF.
-
-    Args:
-      trace: a recording with position commands.
-      late: delay of the command [ticks]: at 0 a row's own command acts in its torque,
-        at 1 that of the row before, at 0.5 the mean of both.
-    """
+    """(T, j) torques that the servos ask for if commands are `late` by up to 1 tick."""
     assert trace.command_rad is not None
     command = filled(trace.command_rad)
     before = np.vstack([command[:1], command[:-1]])

@@ -25,8 +25,7 @@ def read_traces(
     """Read recordings of one robot and make its nominal model.
 
     Args:
-      paths: recordings, or folders of them; all must have the same joints and the same
-        kind of base.
+      paths: recordings, or folders of them, with the same joints and kind of base.
       source: a robot's name, or a path to its MJCF (.xml) or URDF (.urdf).
       servo: servo gains for recordings that state none.
 
@@ -127,11 +126,6 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
 
     A quantity that only some joints have is NaN at the others. Foot forces are left
     out unless the robot model has two feet.
-
-    Args:
-      recording: a recording with the same kind of base as the plant.
-      plant: a robot model with the joints of the recording.
-      name: name of the trace.
 
     Raises:
       BadRecordingError: the recording's joints or base are not the plant's.

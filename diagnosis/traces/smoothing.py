@@ -38,7 +38,7 @@ class Smoothed(NamedTuple):
 def smooth(
     time_s: FloatArray, values: FloatArray, noise_std: float | None = None
 ) -> Smoothed:
-    """Smooth one channel as much as its noise requires.
+    """Smooth one channel as much as its noise requires; all NaN from under 8 values.
 
     A quintic P-spline with a knot each tick and a third-difference penalty (Eilers
     and Marx 1996). The penalty's weight minimises Mallows' Cp: squared residual plus
@@ -49,9 +49,6 @@ def smooth(
       time_s: (T,) increasing, may be uneven.
       values: (T,) NaN where missing.
       noise_std: standard deviation of the noise of one value; None to estimate it.
-
-    Returns:
-      The smoothed channel; all NaN if there are fewer than 8 values.
     """
     valid = np.isfinite(values)
     if valid.sum() < _LEAST_ROWS:
@@ -148,14 +145,10 @@ def _upper_bands(diagonals: list[FloatArray], count: int) -> FloatArray:
 
 
 def moving_mean(values: FloatArray, width: int) -> FloatArray:
-    """(T,) means over `width` neighbours; beyond the ends the end values hold.
+    """(T,) means over `width` rows of (T,) values; beyond the ends the end values hold.
 
     SciPy's `uniform_filter1d` is no substitute: its running sum leaves rounding errors
     behind, so that a joint that rests would seem to turn back and forth.
-
-    Args:
-      values: (T,) without missing values.
-      width: number of neighbours, the row itself included.
     """
     before = width // 2
     padded = np.pad(values, (before, width - 1 - before), mode="edge")

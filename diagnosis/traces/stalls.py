@@ -4,7 +4,7 @@ A bus that loses ticks, or a clock that is set, shifts the measured positions ag
 the commands, by the same time at all joints. A fit would mistake that for physics.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,17 +34,13 @@ FEWEST_JOINTS = 3
 single joints, too."""
 
 
-@dataclass(frozen=True)
-class LagJump:
-    """A moment after which all joints of a recording follow their commands later.
-
-    Attributes:
-      time_s: middle of the change in the recording's time [s].
-      later_s: change of the lag behind the commands [s]; negative for earlier.
-    """
+class LagJump(NamedTuple):
+    """A moment after which all joints of a recording follow their commands later."""
 
     time_s: float
+    """Middle of the change in the recording's time."""
     later_s: float
+    """Change of the lag behind the commands; negative for earlier."""
 
 
 def lag_jumps(trace: Trace) -> list[LagJump]:
@@ -67,11 +63,10 @@ def lag_jumps(trace: Trace) -> list[LagJump]:
         middle = float(np.median(seen))
         if abs(middle) < least:
             continue
-        if found and row - found[-1][0] <= APART:
-            if abs(middle) > abs(found[-1][1]):
-                found[-1] = row, middle
-            continue
-        found.append((row, middle))
+        if not found or row - found[-1][0] > APART:
+            found.append((row, middle))
+        elif abs(middle) > abs(found[-1][1]):
+            found[-1] = row, middle
     half = APART // 2
     return [
         LagJump(float(time_s[row + half]), middle * trace.tick_s)
@@ -103,11 +98,9 @@ def steady(trace: Trace) -> Trace:
 
 
 def _lags(trace: Trace) -> tuple[FloatArray, FloatArray]:
-    """Lags of the joints behind their commands in W windows of 1 s.
+    """(W,) middles [s] of windows, and (W, j) lags [ticks] behind commands in them.
 
-    Returns:
-      (W,) middles of the windows [s], and (W, j) lags [ticks], NaN where a joint hardly
-      moves or does not follow its command.
+    A lag is NaN where a joint hardly moves or does not follow its command.
     """
     assert trace.command_rad is not None
     width = round(WINDOW_S / trace.tick_s)

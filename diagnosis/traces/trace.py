@@ -130,9 +130,8 @@ class Trace:
 def driven_by_torques(trace: Trace) -> Trace:
     """The same trace without servos, so that measured torques drive the joints.
 
-    A servo hides much of what its joint lacks, and anything unknown about the servo,
-    such as when it computes, is mistaken for physics of the joint. Replaying the
-    torques depends on neither.
+    A servo hides much of what its joint lacks, and anything unknown about it is
+    mistaken for physics of the joint.
 
     Raises:
       BadRecordingError: the recording has no measured torques.
@@ -149,11 +148,9 @@ def driven_by_torques(trace: Trace) -> Trace:
 
 
 def filled(values: FloatArray) -> FloatArray:
-    """Replace each missing value by the last one before it in its column.
+    """Replace each missing value (NaN) in (T, j) by the last one in its column.
 
-    Args:
-      values: (T, j) NaN where missing. Missing values at the start become the first
-        value of their column; a column without any value becomes 0.
+    Those at the start become the column's first value; an empty column becomes 0.
     """
     rows = np.arange(len(values))[:, None]
     last = np.maximum.accumulate(np.where(np.isnan(values), -1, rows), axis=0)

@@ -39,9 +39,8 @@ class Usage:
         position = np.concatenate([trace.position_rad for trace in traces])
         speeds, torques = [], []
         for trace in traces:
-            command = trace.command_rad
-            if command is None:
-                command = trace.position_rad
+            q, command = trace.position_rad, trace.command_rad
+            command = q if command is None else command
             rate = np.abs(np.diff(command, axis=0) / np.diff(trace.time_s)[:, None])
             speeds.append(rate)
             torques.append(_servo_nm(trace, command))

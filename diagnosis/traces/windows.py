@@ -80,8 +80,7 @@ def runs_of(plant: Plant, trace: Trace) -> list[Run]:
     if plant.base == "floating":
         since_s = np.maximum(since_s - EDGE_S + longest_s, 0.0)
     number = (since_s / longest_s).astype(int)
-    starts = np.searchsorted(number, np.arange(number[-1] + 1))
-    starts = np.unique(starts)
+    starts = np.unique(np.searchsorted(number, np.arange(number[-1] + 1)))
     ends = [*starts[1:], trace.ticks]
     return [
         Run(
