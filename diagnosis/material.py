@@ -50,14 +50,7 @@ class Material:
         reference: Sequence[Trace],
         drive: DriveBy,
     ) -> "Material":
-        """Audit and prepare recordings.
-
-        Args:
-          plant: nominal robot model.
-          traces: recordings of the robot.
-          reference: recordings of the healthy robot; may be empty.
-          drive: "servos": simulated servos follow the recorded commands; "torques":
-            the measured torques act on the joints.
+        """Audit and prepare recordings of a robot, and of the healthy robot if any.
 
         Raises:
           BadRecordingError: the audit refuses a recording in `traces`, or a recording

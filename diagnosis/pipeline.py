@@ -146,13 +146,7 @@ def diagnose(
 
 @dataclass(frozen=True, eq=False)
 class _Learned:
-    """A search that is ready to run, and its data.
-
-    Attributes:
-      data: what simulates the data for fitting, for selection and for the final test.
-      noise: model errors that recordings of the healthy robot show; None without such.
-      search: the search on `data`.
-    """
+    """A search that is ready to run, its data, and the healthy robot's model errors."""
 
     data: DataSets
     noise: ReferenceNoise | None
@@ -191,8 +185,7 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
 def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind]:
     """Search for effects that the sim lacks, and decide the kind of the verdict.
 
-    The search adds up to three effects. If the verdict on a robot with a fixed base
-    would be `unknown`, it goes on with one kind of effect at all joints at once.
+    Where it would be `unknown`, the search goes on with one effect at all joints.
     """
     judge, plant = search.judge, search.judge.fit.plant
     result = without_unsure(accepted(judge, search.run()), judge.least_gain)
@@ -208,14 +201,9 @@ def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind
 class _Tested:
     """The effects that a search found, fitted again and tested on held-out data.
 
-    Attributes:
-      result: the result of the search.
-      kind: kind of the verdict before the test.
-      refitted: the effects fitted to all data but the held-out ones; None if there
-        are no effects.
-      both: simulates the data of `refitted`, less the integration error at its effects.
-      test: simulates the held-out data, less the same integration error.
-      fit: errors on the held-out data.
+    The effects, None if there are none, were refitted to all data but the held-out
+    ones. `both` simulates these data, `test` the held-out ones, both less the
+    integration error at the effects; `fit` has the errors on held-out data.
     """
 
     result: SearchResult
@@ -254,10 +242,7 @@ def _verdict(
     tested: _Tested,
     others: tuple[tuple[PlacedEffect, ...], ...],
 ) -> Verdict:
-    """The verdict; its kind becomes "unknown" where held-out data contradict it.
-
-    `others` are sets of effects that explain the recordings about as well.
-    """
+    """The verdict; its kind becomes "unknown" where held-out data contradict it."""
     data, result, kind = learned.data, tested.result, tested.kind
     both, judge = tested.both, learned.search.judge
     nominal = data.learned.residuals([()])[0]

@@ -48,13 +48,7 @@ def channels_of(trace: Trace, plant: Plant) -> dict[str, FloatArray]:
 
 
 def audit_channel(trace: Trace, name: str, values: FloatArray) -> ChannelAudit:
-    """Measure noise, clipping and missing values of one channel.
-
-    Args:
-      trace: the recording.
-      name: name of the channel's column in the recording.
-      values: (T,) values of the channel, NaN where missing.
-    """
+    """Measure noise, clipping and missing values of a channel (T,), NaN if missing."""
     there = values[np.isfinite(values)]
     noise = noise_of(trace.time_s, values)
     constant = len(there) > 0 and bool(np.ptp(there) == 0)
@@ -96,9 +90,7 @@ def channel_findings(trace: Trace, channel: ChannelAudit) -> Iterator[Finding]:
 def repeated_share(trace: Trace, steps: FloatArray) -> float:
     """Share of the rows in motion that repeat all positions of the row before.
 
-    Args:
-      trace: a recording with j joints.
-      steps: (j,) steps to which positions are rounded; 0 for continuous ones.
+    `steps` (j,) are those to which positions are rounded; 0 for continuous ones.
     """
     position = trace.position_rad
     if len(position) < 4:
@@ -121,11 +113,10 @@ def repeated_findings(trace: Trace, share: float) -> Iterator[Finding]:
 
 
 def _clipped_share(name: str, values: FloatArray, step: float) -> float:
-    """Share of rows in which a channel is clipped: stays at an extreme value.
+    """Share of rows in which a channel stays at an extreme value, reached at speed.
 
-    It must have reached that value at speed (noise alone can make a `step`): a signal
-    that slows down has come to rest. The smallest foot force does not count, since a
-    foot without load rests at zero.
+    A signal that slows down has come to rest; noise alone can make a `step`. A foot
+    without load rests at zero, which does not count.
     """
     stays = []
     ends = (np.nanmax(values), np.nanmin(values))

@@ -43,8 +43,8 @@ class Following:
 def following(trace: Trace) -> Following:
     """Compare the commands with the positions of all joints, at lags of up to 0.25 s.
 
-    Rows in which a value is missing are left out. Without commands or motion the
-    comparison has no joints.
+    Rows with missing values are left out. Without commands or motion there are no
+    joints to compare.
     """
     command, position = trace.command_rad, trace.position_rad
     nothing = Following((), *(np.zeros(shape) for shape in ((0, 0), (0, 0), 0, 0)))
@@ -78,12 +78,7 @@ def following(trace: Trace) -> Following:
 def _compare(
     command: FloatArray, position: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Compare (rows, m) commands with (rows, m) positions at one lag.
-
-    Returns:
-      `misfit` (m, m), `flipped` (m,), `correlation` (m, m) and `slope` (m,) of
-      `Following`.
-    """
+    """Misfit, flipped, correlation and slope of `Following` at one lag."""
     there = np.isfinite(command).all(axis=1) & np.isfinite(position).all(axis=1)
     count = max(int(there.sum()), 1)
     c = command[there] - command[there].mean(axis=0) if there.any() else command[:0]

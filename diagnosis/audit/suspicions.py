@@ -129,11 +129,7 @@ def velocity_findings(
 ) -> Iterator[Finding]:
     """Find measured velocities that contradict the rate of the positions.
 
-    Args:
-      trace: a recording of the plant.
-      plant: the robot model.
-      smoothed: the trace's smoothed positions, joint by joint.
-      moves: whether each joint moves.
+    `smoothed` are the positions, joint by joint; `moves` says whether each joint moves.
     """
     if trace.velocity_rad_s is None:
         return

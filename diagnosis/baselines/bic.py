@@ -31,10 +31,6 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     Here energy is half the sum of squared residuals in units of noise, p the number of
     parameters and n the number of samples. Source: Schwarz 1978, "Estimating the
     dimension of a model".
-
-    Args:
-      plant: the nominal robot model.
-      traces: recordings; all of them are fitted.
     """
     begun_s = time.monotonic()
     predictor = Predictor(plant, traces)

@@ -26,31 +26,21 @@ def found_effect(
     probability: float,
     confusable_with: Sequence[PlacedEffect] = (),
 ) -> Found:
-    """Make an effect of a verdict, with values and intervals within their bounds.
+    """Make an effect of a verdict from its values and their 80 % intervals (low, high).
 
-    Args:
-      plant: the nominal robot model.
-      placed: the effect found, with its values.
-      spans: 80 % interval (low, high) of each value; clipped to the parameter's bounds.
-      probability: probability that the effect is right.
-      confusable_with: effects that would explain the recordings about as well.
+    Values and intervals are clipped to the parameters' bounds.
     """
     kind = effect(placed.name)
-    estimates = {}
-    for parameter, value, span in zip(
-        kind.parameters(plant, placed.place), placed.values, spans, strict=True
-    ):
+    estimates, parameters = {}, kind.parameters(plant, placed.place)
+    for parameter, value, span in zip(parameters, placed.values, spans, strict=True):
         least, most = max(parameter.low, -_LARGEST), min(parameter.high, _LARGEST)
         value, low, high = (
             float(np.clip(np.nan_to_num(each, nan=value), least, most))
             for each in (value, *span)
         )
-        estimates[parameter.name] = Estimate(
-            value,
-            min(low, value),
-            max(high, value),
-            plant.unit(parameter.unit, placed.place),
-        )
+        unit = plant.unit(parameter.unit, placed.place)
+        ends = min(low, value), max(high, value)
+        estimates[parameter.name] = Estimate(value, *ends, unit)
     return Found(
         placed.name,
         placed.place,
@@ -67,13 +57,9 @@ def verdict_of(
     effects: Sequence[Found] = (),
     limits: Sequence[str] = (),
 ) -> Verdict:
-    """The verdict with these effects, or none; or with what keeps it from an answer.
+    """The verdict with these effects or none, or with limits that keep it from one.
 
-    Args:
-      traces: recordings, all of which were fitted.
-      begun_s: when the work began, by `time.monotonic`.
-      effects: the effects found.
-      limits: why nothing can be concluded.
+    All traces count as fitted; the work began at `begun_s` of `time.monotonic`.
     """
     return Verdict(
         "not_identifiable" if limits else "effects" if effects else "none",

@@ -33,13 +33,10 @@ sum of columns."""
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     """Name the effects whose columns remain after sequential thresholding, or none.
 
+    Contact forces of a floating base are not known, so there is no answer for one.
+
     Source: Brunton, Proctor and Kutz 2016, "Discovering governing equations from data
     by sparse identification of nonlinear dynamical systems".
-
-    Args:
-      plant: the nominal robot model, with a fixed base: contact forces of a floating
-        one are not known.
-      traces: recordings; all of them are fitted.
     """
     begun_s = time.monotonic()
     if plant.base == "floating" or any(t.command_rad is None for t in traces):
@@ -64,11 +61,8 @@ def sequential_threshold(
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Repeat least squares, each time without the columns that contribute little.
 
-    Args:
-      columns: (N, k) candidate terms.
-      target: (N,) values to be explained.
-      threshold: columns are dropped if the norm of column times coefficient is below
-        this share of the target's norm.
+    Of (N, k) columns that explain a target (N,) those are dropped whose norm times
+    coefficient is below a share of the target's norm.
 
     Returns:
       Indices of the columns that remain, their coefficients, and the coefficients'
@@ -105,8 +99,7 @@ def _placed(
 ) -> list[tuple[PlacedEffect, list[tuple[float, float]], float]]:
     """Effects with values, 80 % intervals and norms of their torques, largest first.
 
-    Each column is one parameter of an effect. Coefficients out of a parameter's bounds
-    belong to no effect, except negative viscous friction: a weaker servo damping.
+    Coefficients out of a parameter's bounds belong to no effect.
     """
     groups: dict[tuple[str, str], dict[int, tuple[float, float, float]]] = {}
     for index, value, spread in zip(kept, size, error, strict=True):

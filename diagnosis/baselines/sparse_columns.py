@@ -104,12 +104,8 @@ def _rows(trace: Trace, every: int) -> list[FloatArray]:
 class Column:
     """One column of the regression: torque of an effect for a parameter value of 1.
 
-    Attributes:
-      effect: name of the effect; empty for a constant torque, which is no effect alone.
-      place: place of the effect.
-      parameter: index of the effect's parameter.
-      values: (N,) weighted torque for a coefficient of 1.
-      damping_nm_s_rad: damping of the servo plus back-EMF at the joint.
+    The name is empty for a constant torque, which is no effect alone; the parameter is
+    given by its index, the torque (N,) is weighted.
     """
 
     effect: str
@@ -117,6 +113,7 @@ class Column:
     parameter: int
     values: FloatArray
     damping_nm_s_rad: float = 1.0
+    """Damping of the servo plus back-EMF at the joint."""
 
     def named(self, size: float, error: float) -> tuple[str, float, float]:
         """Effect name, parameter value and standard error for a fitted coefficient."""
@@ -128,13 +125,7 @@ class Column:
 def torque_columns(
     plant: Plant, traces: Sequence[Trace], torques: Torques
 ) -> list[Column]:
-    """Columns of all effects that are linear, or nearly so, in a parameter.
-
-    Args:
-      plant: the nominal robot model.
-      traces: recordings that the torques were computed from.
-      torques: motion, and the missing torque that is to be explained.
-    """
+    """Columns of all effects that are linear, or nearly so, in a parameter."""
     columns = [
         column
         for joint in range(len(plant.joints))
@@ -188,10 +179,7 @@ def _motion_of(torques: Torques, joint: int) -> JointMotion:
 def _changed_columns(
     plant: Plant, torques: Torques, kind: Effect, place: str
 ) -> Iterator[Column]:
-    """Columns of an effect that changes model or pose, by finite differences.
-
-    Each is the change of inverse dynamics' torque for a small value of one parameter.
-    """
+    """Columns of an effect that changes model or pose, by finite differences."""
     motion = torques.motion
     parameters = kind.parameters(plant, place)
     for number, parameter in enumerate(parameters):

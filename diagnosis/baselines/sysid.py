@@ -67,11 +67,8 @@ those of simulations that diverge."""
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     """Fit all parameters and name the one that changed most, or no effect.
 
-    Parameters do not count if their 95 % interval contains the nominal value.
-
-    Args:
-      plant: the nominal robot model.
-      traces: recordings, whose first seconds are fitted.
+    Only the first seconds of recordings are fitted. Parameters do not count if their
+    95 % interval contains the nominal value.
 
     Raises:
       GroundwalkError: mujoco.sysid is not installed.
@@ -97,12 +94,7 @@ def fitted(
 ) -> tuple[FloatArray, FloatArray]:
     """Changes (p,) of p fitted parameters, and half widths (p,) of 95 % intervals.
 
-    Both are in units of the parameters' typical sizes.
-
-    Args:
-      plant: the nominal robot model.
-      traces: recordings, fitted in full length.
-      free: the p parameters.
+    Both are in units of the parameters' typical sizes. The whole traces are fitted.
     """
     sysid = _package()
     models = SysidModels(plant, traces, free)

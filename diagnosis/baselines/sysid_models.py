@@ -55,19 +55,12 @@ def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter
     They belong to effects that MuJoCo can simulate, with one parameter of a joint or
     body, and without threshold: inertia, friction, stiffness, damping and mass.
     Typical sizes are those for the servos of the first recording.
-
-    Args:
-      plant: the nominal robot model.
-      traces: recordings to be fitted.
     """
     plant = replace(plant, servo=traces[0].servo)
     free = []
     for name, kind in all_effects().items():
-        if (
-            not kind.native
-            or kind.threshold
-            or kind.place_kind not in ("joint", "body")
-        ):
+        is_fixed_part = kind.place_kind in ("joint", "body")
+        if not kind.native or kind.threshold or not is_fixed_part:
             continue
         for place in kind.places(plant, traces):
             parameter, *others = kind.parameters(plant, place)
@@ -97,12 +90,7 @@ class SysidModels:
         }
 
     def build(self, parameters: Any, spec: "mujoco.MjSpec") -> "mujoco.MjModel":
-        """Make the model of one recording with parameters from mujoco.sysid.
-
-        Args:
-          parameters: mujoco.sysid's `ParameterDict`.
-          spec: one made by `sequence_of`; its name says which recording it belongs to.
-        """
+        """Make the model of the recording whose number the specification's name has."""
         import mujoco
 
         nominal, servo = self._nominal[spec.modelname]
@@ -155,12 +143,6 @@ def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> A
 
     The name of its `MjSpec` is made from `number`. Positions are compared as part of
     the state, since position sensors in MuJoCo's rollout are one step late.
-
-    Args:
-      sysid: the package mujoco.sysid.
-      plant: the nominal robot model.
-      trace: the recording.
-      number: index of the recording.
     """
     import mujoco
 
