@@ -13,7 +13,7 @@ from diagnosis.effects.bases import (
     TorqueEffect,
 )
 from diagnosis.effects.effect import Effect
-from diagnosis.effects.library import all_effects, also_known, effect, grown_from
+from diagnosis.effects.library import all_effects, also_known, effect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, PlacedEffect
 from diagnosis.effects.variants import Push, Variants
 
@@ -33,5 +33,4 @@ __all__ = [
     "all_effects",
     "also_known",
     "effect",
-    "grown_from",
 ]

@@ -84,9 +84,7 @@ class NumberEffect(Effect):
 
 
 class TorqueEffect(JointEffect):
-    """A torque at a joint by a law of your own, which `torque_nm` states.
-
-    Replays call it at every step. Use it for physics that MuJoCo does not have.
+    """A torque at a joint by a law that MuJoCo lacks: `torque_nm`, for every step.
 
     Example:
       See docs/python.md, "An effect of your own".

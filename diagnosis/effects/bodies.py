@@ -71,9 +71,8 @@ class ComOffset(NumberEffect, BodyEffect):
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of bodies, except those that MuJoCo's compiler has made simple.
 
-        A simple body rotates about its centre of mass, so MuJoCo's mass matrix has no
-        entries for the coupling that an offset causes. `simple="false"` in the model
-        avoids this.
+        MuJoCo's mass matrix has no entries for the coupling that an offset of a simple
+        body causes. `simple="false"` in the model avoids this.
         """
         return tuple(
             name

@@ -126,23 +126,16 @@ class Effect(ABC):
     def apply(
         self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
-        """Put the effect into one variant of the robot model.
+        """Put the effect into one variant (row) of the robot model, in place.
 
-        Several effects may be applied to one variant; each adds to those before.
-
-        Args:
-          variants: copies of the robot model, changed in place.
-          row: index of the variant to be changed.
-          place: one of `places`.
-          values: (p,) values of the parameters.
+        Several effects may be applied to one variant; each adds to those before. The
+        values (p,) are in the order of `parameters`.
         """
 
     def apply_to_sim(
         self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
-        """Put the effect into a sim world, whose ground is a heightfield of its own.
-
-        Arguments are those of `apply`.
+        """Do as `apply`, for a sim world, whose ground is a heightfield of its own.
 
         Raises:
           BadModelError: a sim world cannot have this effect.
@@ -150,12 +143,7 @@ class Effect(ABC):
         self.apply(variants, row, place, values)
 
     def obstacle(self, recorded: Base, base: Base) -> str:
-        """Why a sim cannot have the effect found in recordings; "" if it can.
-
-        Args:
-          recorded: base of the robot in the recordings, "fixed" or "floating".
-          base: base of the robot in the sim that is to get the effect.
-        """
+        """Why a sim with a `base` cannot have the effect; "" if it can."""
         return ""
 
     def first_tries(
@@ -163,11 +151,7 @@ class Effect(ABC):
     ) -> list[Values]:
         """Values to try first; one set is enough where the effect is nearly linear.
 
-        Args:
-          plant: the nominal robot model.
-          place: one of `places`.
-          usage: range and speed of each joint in the recordings.
-          intervals: times at which the recordings show a short error.
+        `intervals` are times at which the recordings show a short error.
         """
         typical = tuple(one.typical for one in self.parameters(plant, place))
         size = self.components
@@ -183,13 +167,7 @@ class Effect(ABC):
     def sizes_to_scan(
         self, plant: Plant, placed: PlacedEffect, traces: Sequence[Trace]
     ) -> list[PlacedEffect]:
-        """The effect in several sizes around a guess; the fit starts from the best.
-
-        Args:
-          plant: the nominal robot model.
-          placed: the effect with guessed values.
-          traces: recordings that the fit uses.
-        """
+        """The effect in several sizes around a guess; the fit starts from the best."""
         if not (self.threshold or self.stiff):
             return [self.stretched(plant, placed, factor) for factor in STRETCHES]
         first, *rest = placed.values
@@ -220,11 +198,7 @@ class Effect(ABC):
         return tuple(one.neutral for one in self.parameters(plant, placed.place))
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """This effect with start values taken from a simpler effect at the same place.
-
-        `other` is an effect found to help. If this effect contains it, a fit from its
-        values may succeed where fits from other values fail; if not, () is returned.
-        """
+        """This effect, started from a simpler one that it contains; () from others."""
         return ()
 
     def simpler(self, placed: PlacedEffect) -> PlacedEffect:
@@ -236,12 +210,9 @@ class Effect(ABC):
         return ()
 
     def acted(self, placed: PlacedEffect, first_s: float, last_s: float) -> When:
-        """The time in which the effect acted: always, during a burst, or as a drift.
+        """Whether the effect acted always, during a burst or as a drift.
 
-        Args:
-          placed: the effect with its values.
-          first_s: time of the first row of all recordings.
-          last_s: time of the last row.
+        The recordings last from `first_s` to `last_s`.
         """
         if self.timed:
             start_s, duration_s = placed.values[-2:]
@@ -250,9 +221,8 @@ class Effect(ABC):
         return When()
 
     def torque_column(self, motion: JointMotion) -> FloatArray | None:
-        """(rows,) joint torque [N m] of the effect for a parameter value of 1.
+        """(rows,) joint torque [N m] for a value of 1 of the `column_parameter`.
 
-        Sparse regression uses it. The parameter is that with index `column_parameter`;
         None for effects that are not even nearly linear in it.
         """
         return None
@@ -260,11 +230,8 @@ class Effect(ABC):
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """Effect name, parameter value and standard error from a regression result.
+        """Effect name, value and standard error from a coefficient of `torque_column`.
 
-        Args:
-          size: coefficient that regression found for `torque_column`.
-          error: standard error of the coefficient.
-          damping_nm_s_rad: damping of the servo plus back-EMF at the joint.
+        The damping is that of the servo at the joint, plus its motor's back-EMF.
         """
         return self.name, size, error

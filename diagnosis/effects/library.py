@@ -9,7 +9,7 @@ from diagnosis.effects import (
     bodies,
     contact,
     friction,
-    ground_shape,
+    ground,
     joints,
     servos,
     signals,
@@ -44,8 +44,8 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             servos.ServoFade(),
             contact.ContactFriction(),
             contact.ContactCompliance(),
-            ground_shape.GroundSlope(),
-            ground_shape.UnevenGround(),
+            ground.GroundSlope(),
+            ground.UnevenGround(),
             bodies.ExternalForce(),
             bodies.Drag(),
         )
@@ -84,12 +84,7 @@ def effect(name: str) -> Effect:
 
 
 def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """More general effects that contain this one, at its place, with start values.
-
-    Example:
-      >>> grown_from(PlacedEffect("coulomb_friction", "LKneePitch", (0.1,)))[0].name
-      'stribeck_friction'
-    """
+    """More general effects that contain this one, at its place, with start values."""
     return tuple(
         grown for one in all_effects().values() for grown in one.grown_from(placed)
     )
@@ -99,17 +94,13 @@ def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
 def also_known(*effects: Effect) -> Iterator[None]:
     """Let diagnoses in this `with` block find effects of your own, as if built in.
 
-    Reports on such an effect must be written in the block, too, as they take words from
-    it. Other threads and processes do not see the effects: start a thread's function by
-    `contextvars.copy_context().run`, and open a block in the other process.
+    Write reports on them in the block, too. Other threads and processes do not see the
+    effects: start a thread's function by `contextvars.copy_context().run`, and open a
+    block in the other process.
 
     Example:
       >>> with also_known(WaterDrag()):
       ...     found = diagnose(plant, traces, seed)
-
-    Args:
-      *effects: objects of your subclasses of `Effect` or of its base classes, such as
-        `JointEffect`.
 
     Raises:
       BadValueError: two effects, given or built in, have the same name.

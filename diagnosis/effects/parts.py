@@ -79,15 +79,8 @@ class EffectWords(NamedTuple):
 class JointMotion:
     """Recorded motion of one joint, smoothed; arrays (rows,).
 
-    Attributes:
-      since_s: time since the start of the recording.
-      position_rad: joint angle.
-      velocity_rad_s: first derivative of the angle.
-      acceleration_rad_s2: second derivative of the angle.
-      command_rad: position target.
-      command_rate_rad_s: derivative of the position target.
-      kp_nm_rad: stiffness of the servo.
-      torque_nm: torque for this motion by inverse dynamics of the nominal model.
+    Commands are position targets, `kp_nm_rad` is the servo's stiffness, and `torque_nm`
+    the torque for this motion by inverse dynamics of the nominal model.
 
     Example:
       See docs/python.md, "An effect of your own".

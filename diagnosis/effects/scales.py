@@ -21,9 +21,8 @@ _ACCELERATION_RAD_S2 = 5.0
 def torque_nm(plant: Plant, joint: str) -> float:
     """A large torque [N m] for a joint, always above 0.
 
-    With a servo it is the servo's limit, or without a limit the torque at an error of
-    0.1 rad. Without a servo it is the larger of gravity's torque and the torque for
-    5 rad/s^2.
+    It is the servo's limit, or its torque at an error of 0.1 rad; without a servo the
+    larger of gravity's torque and that for 5 rad/s^2.
     """
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
@@ -37,10 +36,7 @@ def torque_nm(plant: Plant, joint: str) -> float:
 
 
 def inertia_kg_m2(plant: Plant, joint: str) -> float:
-    """Inertia at a joint with the links beyond it, in the reference pose.
-
-    It is the joint's entry in the diagonal of the mass matrix.
-    """
+    """A joint's entry in the mass matrix's diagonal, in the reference pose."""
     import mujoco
 
     model, data = plant.model, _reference(plant)
@@ -51,10 +47,7 @@ def inertia_kg_m2(plant: Plant, joint: str) -> float:
 
 
 def speed_rad_s(plant: Plant, joint: str) -> float:
-    """No-load speed of a joint's motor [rad/s]; 5 rad/s if not known.
-
-    For sliding joints in m/s, and 0.5 m/s if not known.
-    """
+    """No-load speed of a joint's motor; `brisk_rad_s` if it is not known."""
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
     back_emf = float(plant.servo.back_emf_nm_s_rad[column])

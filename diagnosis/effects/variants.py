@@ -19,11 +19,8 @@ class Push:
     Example:
       >>> Push("torso", (5.0, 0.0, 0.0), start_s=2.0, duration_s=0.2)
 
-    Attributes:
-      body: name of the body.
-      force_n: (x, y, z) in the world frame, at the body's centre of mass.
-      start_s: start in the recording's time.
-      duration_s: how long the force acts.
+    The force is in the world frame, at the body's centre of mass; the start is in the
+    recording's time.
     """
 
     body: str
@@ -82,13 +79,7 @@ class Joints:
 
 @dataclass(eq=False)
 class Signals:
-    """Delays and errors of signals in n model variants, arrays (n, ...).
-
-    Attributes:
-      command_delay_s: (n,) time until a command takes effect.
-      sensor_delay_s: (n,) age of measured positions and velocities.
-      gyro_bias_rad_s: (n, 3) constant error of the gyroscope, sensor frame.
-    """
+    """Delays of commands and encoders (n,), and gyroscope bias (n, 3) of n variants."""
 
     command_delay_s: FloatArray
     sensor_delay_s: FloatArray
@@ -123,14 +114,8 @@ class Variants:
       >>> variants.joints.gap_rad[1, variants.column("LKneePitch")] += 0.02
       >>> variants.field("dof_damping")[1, variants.dof("LKneePitch")] += 0.1
 
-    Attributes:
-      plant: the robot model that is varied.
-      n: number of variants.
-      joints: changes at servos and joints.
-      signals: delays and errors of signals.
-      outside: forces and ground bumps.
-      fields: fields of `MjModel` that some variant changes, by name, arrays (n, ...).
-      torques: for each `TorqueEffect` used, its p parameter values (n, j, p).
+    `fields` has, by name, those fields of `MjModel` that some variant changes, arrays
+    (n, ...); `torques` has for each `TorqueEffect` used its p values (n, j, p).
     """
 
     def __init__(self, plant: Plant, n: int) -> None:
@@ -146,11 +131,7 @@ class Variants:
         self.torques: dict[TorqueEffect, FloatArray] = {}
 
     def field(self, name: str) -> FloatArray:
-        """(n, ...) values of a field of `MjModel`, to be changed in place.
-
-        Args:
-          name: one of `mujoco.batch.MODEL_FIELDS`, for example "opt.gravity".
-        """
+        """(n, ...) values of a field in `mujoco.batch.MODEL_FIELDS`, to be changed."""
         if name not in self.fields:
             value = self.plant.model
             for part in name.split("."):
@@ -164,11 +145,8 @@ class Variants:
     ) -> tuple[FloatArray, tuple[int, ...]]:
         """Array of a quantity, to be changed in place, and index of one value in it.
 
-        Args:
-          quantity: attribute of `Joints`, `Signals` or `Outside`, or field of `MjModel`
-            with a row for each body or degree of freedom, such as "dof_damping".
-          row: index of the variant.
-          place: the joint or body; not used where a robot has the quantity once.
+        The quantity is an attribute of `Joints`, `Signals` or `Outside`, or a field of
+        `MjModel` with a row for each body or degree of freedom, such as "dof_damping".
         """
         if quantity in vars(self.joints):
             return vars(self.joints)[quantity], (row, self.column(place))
@@ -181,12 +159,7 @@ class Variants:
         return self.field(quantity), (row, index)
 
     def torque_values(self, effect: "TorqueEffect", parameters: int) -> FloatArray:
-        """(n, j, parameters) values of a `TorqueEffect`, to be changed in place.
-
-        Args:
-          effect: effect that computes its torque itself.
-          parameters: number of its parameters.
-        """
+        """(n, j, parameters) values of a `TorqueEffect`, to be changed in place."""
         shape = self.n, len(self.plant.joints), parameters
         return self.torques.setdefault(effect, np.zeros(shape))
 

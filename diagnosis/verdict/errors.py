@@ -54,12 +54,8 @@ class Errors:
     def closed(self, error: float | None) -> float | None:
         """Share of the nominal sim's error above the noise floor that is removed.
 
-        Args:
-          error: the error that remains, in the unit of `nominal`; None if unknown.
-
-        Returns:
-          1 if `error` is down to the noise floor, 0 if it equals the nominal sim's;
-          None if the nominal sim is no worse than the noise, or `error` is None.
+        It is 1 if the error that remains is down to the floor, 0 if it is the nominal
+        sim's; None if that is no worse than the noise, or `error` is None.
         """
         if error is None or self.nominal <= self.floor:
             return None
@@ -68,14 +64,7 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelFit(Errors):
-    """Rms errors of simulations in one channel of held-out recordings.
-
-    Attributes:
-      unit: unit of the channel and of its errors, such as "rad".
-
-    Example:
-      See docs/diagnosis_json.md.
-    """
+    """Rms errors of simulations in one channel of held-out recordings."""
 
     unit: str
 
@@ -85,12 +74,6 @@ class Fit(Errors):
     """Errors of simulations over all channels together, as multiples of noise floors.
 
     An error is the root of the mean over channels of (rms error / noise floor) squared.
-
-    Attributes:
-      channels: the errors of each channel by its name.
-
-    Example:
-      See docs/diagnosis_json.md.
     """
 
     channels: Mapping[str, ChannelFit]

@@ -14,15 +14,9 @@ PulseSource = Literal["actuator input", "torque sensor", "position sensor"]
 
 @dataclass(frozen=True)
 class Estimate:
-    """An estimated number with its 80 % interval.
+    """An estimate with the ends of its 80 % interval.
 
     In 80 of 100 diagnoses the interval holds the true value.
-
-    Attributes:
-      value: the best estimate, in `unit`.
-      low: lower end of the interval.
-      high: upper end of the interval.
-      unit: such as "N m".
 
     Example:
       >>> Estimate(0.03, 0.027, 0.034, "rad").value
@@ -47,11 +41,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Amount:
-    """A size with its unit, such as the smallest effect that the data could show.
-
-    Attributes:
-      value: the size, 0 or more.
-      unit: such as "N m".
+    """A size, 0 or more, such as the smallest effect that the data could show.
 
     Example:
       >>> Amount(0.5, "N s/m").unit
@@ -101,12 +91,9 @@ class PlacedEffect:
 
 @dataclass(frozen=True)
 class When:
-    """When an effect acted.
+    """When an effect acted: always, in a burst (for a while) or as a drift (growing).
 
-    Attributes:
-      kind: "always", "burst" (for a while) or "drift" (growing).
-      start_s: start of a burst or a drift in the recording's time; None for "always".
-      end_s: end of the burst or drift; None for "always".
+    Bursts and drifts have a start and an end in the recording's time.
 
     Example:
       >>> When("burst", 1.0, 2.5).end_s
@@ -134,7 +121,6 @@ class Found:
     """An effect (physics that the sim lacks) that the recordings show.
 
     Attributes:
-      name: name of the effect, such as "backlash".
       place: where it is: a joint, a body, "feet", "commands" or "world".
       parameters: the estimates by the parameters' names.
       probability: probability from 0 to 1 that this is the right effect at the right
@@ -143,9 +129,6 @@ class Found:
         the recordings about as well.
       when: whether it acts always, for a while, or growing.
       native: whether MuJoCo can simulate it, so that the corrected MJCF contains it.
-
-    Example:
-      See docs/python.md.
     """
 
     name: str
@@ -167,7 +150,6 @@ class MismatchCell:
 
     Attributes:
       channel: name of the channel, such as "position.LKneePitch".
-      unit: unit of the two errors.
       share: this channel's share, 0 to 1, of the squared error of all channels that
         noise does not explain, with each channel in units of its noise.
       error_rms: rms difference of recording and sim.
@@ -175,9 +157,6 @@ class MismatchCell:
       regimes: rms error as a multiple of the noise in rows of one kind of motion, by
         its name, such as "reversals" or "fast".
       bursts: times (start, end) [s] during which the error stands out.
-
-    Example:
-      See docs/diagnosis_json.md.
     """
 
     channel: str
@@ -204,13 +183,10 @@ class MismatchCell:
 class Pulse:
     """A constant torque, for a while, that a joint's servo did not ask for.
 
+    Start and end are in the recording's time.
+
     Attributes:
-      recording: name of the recording.
-      joint: the joint.
-      start_s: start of the pulse in the recording's time.
-      end_s: end of the pulse in the recording's time.
       torque: measured torque less the torque that the servo asked for.
-      unit: unit of the torque.
       source: origin of the pulse. "actuator input": a real torque, which moves the
         joint. "torque sensor": only the sensor showed it. "position sensor": the
         measured position jumped, and the servo's expected torque with it.
@@ -218,9 +194,6 @@ class Pulse:
         signal ("torque", "position", "command").
       felt: share of the pulse's torque that, by inverse dynamics, moved the joint;
         0 if the measured torque has no pulse.
-
-    Example:
-      See docs/diagnosis_json.md.
     """
 
     recording: str
@@ -252,15 +225,10 @@ class Unexplained:
     Attributes:
       share: share of the squared error above the noise that remains, 0 to 1.
       channel: the channel in which the remaining error is largest.
-      unit: unit of that channel.
       against: the other quantity, such as "position.LKneePitch".
-      against_unit: unit of the other quantity.
       at: middle of each bin.
       mean: mean of measured less simulated values in each bin, in `unit`.
       spread: standard error of each mean, in `unit`.
-
-    Example:
-      See docs/diagnosis_json.md.
     """
 
     share: float
@@ -286,12 +254,7 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class NextExperiment:
-    """The recording that would best decide what is still open.
-
-    Attributes:
-      motion: what to record, such as "slow ramps".
-      joint: the joint that moves; None for all joints.
-      why: what the recording would decide.
+    """The recording that would best decide what is still open: a joint's, or all's.
 
     Example:
       >>> NextExperiment("slow ramps", "elbow", "friction or play").motion
@@ -307,10 +270,8 @@ class NextExperiment:
 class Recordings:
     """Names of the recordings, or of parts of them, by their use.
 
-    Attributes:
-      fit: used to fit parameters.
-      select: used to choose between fitted models.
-      test: held out for the final errors.
+    `fit` is used to fit parameters, `select` to choose between fitted models, `test`
+    for the final errors.
 
     Example:
       >>> Recordings(fit=("a",), select=("b",), test=("c",)).test
