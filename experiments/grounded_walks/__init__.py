@@ -4,23 +4,7 @@ The folder belongs to `experiments` and not to `sgat`, because it combines packa
 trials of gaits, grounding, and sims that a diagnosis has corrected.
 """
 
-from experiments.grounded_walks.courses import (
-    Places,
-    RealCourse,
-    SimPlace,
-    noisy_sim,
-)
-from experiments.grounded_walks.data import GroundedSim, walk, walk_in_sim
-from experiments.grounded_walks.models import GroundingStep, WalkModels
+from experiments.grounded_walks.courses import noisy_sim
+from experiments.grounded_walks.models import GroundingStep
 
-__all__ = [
-    "GroundedSim",
-    "GroundingStep",
-    "Places",
-    "RealCourse",
-    "SimPlace",
-    "WalkModels",
-    "noisy_sim",
-    "walk",
-    "walk_in_sim",
-]
+__all__ = ["GroundingStep", "noisy_sim"]

@@ -95,12 +95,9 @@ half of the true latency of the roll joints."""
 
 
 class RealWalks(NamedTuple):
-    """Walks of the real world.
+    """Transitions of the real world, without those on the flat ground around the start.
 
-    Attributes:
-      noted: transitions, without those on the flat ground around the start.
-      vectors: (n, 16) gaits that walked without noise on their commands.
-      fell: (n,) whether each of these fell.
+    `vectors` (n, 16) are the gaits without noise on commands, and `fell` their falls.
     """
 
     noted: Transitions

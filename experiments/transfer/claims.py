@@ -1,6 +1,5 @@
 """Claims that a study checks, most of them the SGAT paper's, and what it writes."""
 
-import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -26,10 +25,6 @@ class Claim:
     text: str
     holds: bool
     found: str
-
-    def to_json(self) -> dict[str, Any]:
-        """The attributes by name."""
-        return dataclasses.asdict(self)
 
 
 def write_picture(

@@ -22,7 +22,7 @@ def main(config: TransferCliff) -> None:
     folder, config = open_run(VERB, config)
     rows = _compare_all(config, folder)
     claims = check_claims(rows)
-    result = {"rows": rows, "claims": [claim.to_json() for claim in claims]}
+    result = {"rows": rows, "claims": [vars(claim) for claim in claims]}
     folder.write_json(RESULT, result)
     write_picture(folder, FIGURE, cliff_figure, rows, (config.rows, config.columns))
     write_cliff_page(folder, config, rows, claims)

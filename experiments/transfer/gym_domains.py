@@ -88,7 +88,7 @@ def main(config: TransferGym) -> None:
     result: dict[str, Any] = {
         "size": config.size,
         "rows": rows,
-        "claims": [claim.to_json() for claim in claims],
+        "claims": [vars(claim) for claim in claims],
         "cells": cells,
     }
     folder.write_json(RESULT, result)

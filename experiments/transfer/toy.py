@@ -140,7 +140,7 @@ def _solve_all(config: TransferToy) -> dict[str, Any]:
                 found == toy.best,
                 ", ".join(f"{action} in {world}" for world, action in found.items()),
             )
-            claims.append(claim.to_json())
+            claims.append(vars(claim))
             bar.advance()
     return {"toys": solved, "claims": claims}
 

@@ -58,8 +58,7 @@ class Study:
       trials: number of trials of each gait.
       rules: how a trial begins, and when it is over.
       threads: threads of the sim, or processes of the real world; 0 for one per core.
-      correction: run folder or `corrected.json` of a diagnosis, whose effects are added
-        to the sim; None for the plain sim.
+      correction: diagnosis whose effects are added to the sim; see `make_sim`.
       hidden: effects that the real world has and the sim does not.
     """
 

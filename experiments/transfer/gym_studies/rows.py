@@ -115,12 +115,8 @@ def measures_table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
         for name, method in row["methods"].items():
             numbers = [f"{method[key]:.4g}" if key in method else "" for key in NUMBERS]
             texts.append([row["setting"], f"{row['noise']:g}", name, *numbers])
-    return [
-        "setting",
-        "noise",
-        "method",
-        *(k.replace("_", " ") for k in NUMBERS),
-    ], texts
+    headings = [name.replace("_", " ") for name in NUMBERS]
+    return ["setting", "noise", "method", *headings], texts
 
 
 def _text(returns: dict[str, float]) -> str:
