@@ -190,11 +190,7 @@ def described_hidden_plant(description: Description, floating: bool) -> HiddenPl
     """The nominal robot that a description describes.
 
     Its servos have the stiffness, back-EMF and stall torque of the motors; commands
-    may reach 70 % of a motor's no-load speed.
-
-    Args:
-      description: the robot as data: links, joints, motors, feet and sensors.
-      floating: whether its base is free.
+    may reach 70 % of a motor's no-load speed. The base is free if `floating`.
     """
 
     def make() -> "mujoco.MjSpec":

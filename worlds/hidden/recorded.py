@@ -97,9 +97,9 @@ def _inertial(
     """Noisy gyroscope [rad/s] and accelerometer [m/s^2] columns of a recording."""
     rate, felt = run.sense["gyroscope_rad_s"], run.sense["accelerometer_m_s2"]
     noise = rng.standard_normal((2, *rate.shape))
-    return _vector(
-        "gyroscope", rate + bias + sensors.gyroscope_rad_s * noise[0]
-    ) | _vector("accelerometer", felt + sensors.accelerometer_m_s2 * noise[1])
+    rate = rate + bias + sensors.gyroscope_rad_s * noise[0]
+    felt = felt + sensors.accelerometer_m_s2 * noise[1]
+    return _vector("gyroscope", rate) | _vector("accelerometer", felt)
 
 
 def _base(
@@ -113,17 +113,13 @@ def _base(
 
     feet = sense["foot_force_n"].reshape(rows, 2, 4).sum(axis=2)
     feet = np.maximum(feet + sensors.foot_force_n * rng.standard_normal((rows, 2)), 0)
-    place = noisy("position_m", sensors.place_m)
-    turn = _turned(sense["orientation"], sensors.turn_rad, rng)
-    linear = noisy("linear_m_s", sensors.linear_m_s)
+    columns = _vector("foot_force", feet)
+    columns |= _vector("base.position", noisy("position_m", sensors.place_m))
+    turned = _turned(sense["orientation"], sensors.turn_rad, rng)
+    columns |= _vector("base.orientation", turned)
+    columns |= _vector("base.linear_velocity", noisy("linear_m_s", sensors.linear_m_s))
     angular = noisy("angular_rad_s", sensors.angular_rad_s)
-    return (
-        _vector("foot_force", feet)
-        | _vector("base.position", place)
-        | _vector("base.orientation", turn)
-        | _vector("base.linear_velocity", linear)
-        | _vector("base.angular_velocity", angular)
-    )
+    return columns | _vector("base.angular_velocity", angular)
 
 
 def _turned(

@@ -53,7 +53,9 @@ def check_values(columns: Mapping[str, FloatArray]) -> None:
     _refuse(TIME, np.isnan(columns[TIME]), "a time is missing")
     for name, values in columns.items():
         _refuse(name, np.isinf(values), "{} is not finite", values)
-    _check_increasing(columns[TIME])
+    time_s = columns[TIME]
+    not_later = np.concatenate([[False], time_s[1:] <= time_s[:-1]])
+    _refuse(TIME, not_later, "{} s is not later than the row before", time_s)
     if ORIENTATION + ".w" in columns:
         _check_unit(np.stack([columns[name] for name in vector_columns(ORIENTATION)]))
     if SUPPORT in columns:
@@ -86,11 +88,6 @@ def _refuse(
         row = int(np.argmax(bad))
         value = None if values is None else float(values[row])
         raise bad_value(column, row, problem.format(value))
-
-
-def _check_increasing(time_s: FloatArray) -> None:
-    not_later = np.concatenate([[False], time_s[1:] <= time_s[:-1]])
-    _refuse(TIME, not_later, "{} s is not later than the row before", time_s)
 
 
 def _check_unit(quaternion: FloatArray) -> None:

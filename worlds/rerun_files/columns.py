@@ -27,12 +27,9 @@ class ColumnLog:
         at: str,
         timelines: Mapping[str, npt.NDArray[Any]],
     ) -> None:
-        """Write into a Rerun stream.
+        """Write into a Rerun stream, at paths that begin with `at`.
 
-        Args:
-          stream: the stream of the file.
-          at: first part of all paths, with a "/" at its end; may be empty.
-          timelines: by name, (ticks,) times of the values: durations or whole numbers.
+        Of each timeline, there are (ticks,) times: durations or whole numbers.
         """
         self._stream, self._at, self._timelines = stream, at, timelines
         self._all = np.arange(len(next(iter(timelines.values()))))
@@ -58,13 +55,7 @@ class ColumnLog:
             self.send_rows(path, kind.columns(**known), rows)
 
     def send_rows(self, path: str, columns: Any, rows: IntArray | None = None) -> None:
-        """Write columns of a Rerun archetype, with a value for each of some times.
-
-        Args:
-          path: the entity.
-          columns: the values.
-          rows: indices of their times; None for all times.
-        """
+        """Write columns of a Rerun archetype at the times numbered `rows`, or at all."""
         rows = self._all if rows is None else rows
         indexes = [
             rr.TimeColumn(name, duration=times[rows])

@@ -27,10 +27,8 @@ def blueprint(
 ) -> rrb.Blueprint:
     """Lay out a file: scenes from left to right, each above its curves.
 
-    Args:
-      scenes: the scenes of the file.
-      pages: further curves, by the name of their tab. If there are any, they are below
-        the robots instead of the scenes' own curves.
+    `pages` are further curves by the name of their tab. If there are any, they are
+    below the robots instead of the scenes' own curves.
     """
     tabs: list[rrb.Grid | rrb.Vertical] = [_page(*page) for page in pages.items()]
     if not pages and len(scenes) > MOST_ABREAST:

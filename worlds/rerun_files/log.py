@@ -47,8 +47,8 @@ def write_rrd(
         a row, instead of the scenes' own curves.
 
     Raises:
-      BadValueError: there are neither scenes nor pages, or a scene has the name of
-        another one or a name that is the first part of another one's path.
+      BadValueError: there are neither scenes nor pages, or a scene's name is another
+        one's or the start of its path.
 
     Example:
       >>> write_rrd(Path("walk.rrd"), [Scene("sim", recording, robots.get("nao"))])

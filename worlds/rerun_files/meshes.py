@@ -30,24 +30,25 @@ _CAPSULE_SECTIONS = (6, 16)
 
 
 class LinkMesh(NamedTuple):
-    """Triangles of one colour in the frame of a link's joint, as Rerun takes them."""
+    """Triangles of one colour in the frame of a link's joint, as Rerun takes them.
+
+    Attributes:
+      vertex_positions: (points, 3) places [m].
+      triangle_indices: (triangles, 3) indices of the triangles' points.
+      vertex_normals: (points, 3) unit normals; without them Rerun draws no shading.
+      albedo_factor: the colour.
+    """
 
     vertex_positions: FloatArray
-    """(points, 3) places [m]."""
     triangle_indices: IntArray
-    """(triangles, 3) indices of the triangles' points."""
     vertex_normals: FloatArray
-    """(points, 3) unit normals; without them Rerun draws no shading."""
     albedo_factor: Colour
 
 
 def link_mesh(link: Link, colour: Colour) -> LinkMesh | None:
-    """Join all mesh files of a link into one mesh, without details below `CELL_M`.
+    """Join all readable mesh files of a link, without details below `CELL_M`.
 
-    Files that cannot be read are left out.
-
-    Returns:
-      The mesh; None if it has no triangles, so that the link's capsules must be drawn.
+    None if there are no triangles, so that the link's capsules must be drawn.
     """
     found = [mesh for mesh in map(_placed, link.meshes) if mesh is not None]
     whole = coarse(joined(found))
@@ -62,11 +63,7 @@ def coarse(mesh: "Trimesh", cell_m: float = CELL_M) -> "Trimesh":
     Triangles that shrink to a line or a point are dropped, and so are duplicates
     (vertex clustering: J. Rossignac and P. Borrel, Multi-resolution 3D approximations
     for rendering complex scenes, 1993). trimesh's own simplification needs one more
-    library and a closed surface.
-
-    Args:
-      mesh: any triangles; not changed.
-      cell_m: length of a cell's edge.
+    library and a closed surface. `cell_m` is the length of a cell's edge.
     """
     import trimesh
 
@@ -82,11 +79,9 @@ def coarse(mesh: "Trimesh", cell_m: float = CELL_M) -> "Trimesh":
 
 
 def capsule_mesh(shapes: Sequence[Capsule], accent: Colour) -> Mesh:
-    """Join a link's capsules into one mesh in the frame of the link's joint.
+    """Join a link's capsules, at least one, into a mesh in the frame of its joint.
 
-    Args:
-      shapes: at least one capsule.
-      accent: the colour that marks the robot, for capsules of the colour "accent".
+    `accent` is the colour that marks the robot.
     """
     import trimesh
 
@@ -113,8 +108,7 @@ def _shaded(mesh: "Trimesh") -> tuple[FloatArray, IntArray, FloatArray]:
     """Points (points, 3) [m], triangles (triangles, 3) and normals (points, 3).
 
     A point is split if its triangles face different sides of a cube, so that edges stay
-    sharp and round surfaces smooth. trimesh's own `smooth_shade` looks no better and
-    takes three times as long for a whole robot.
+    sharp and round surfaces smooth; trimesh's own `smooth_shade` is slower.
     """
     area = np.cross(*np.diff(mesh.triangles, axis=1).swapaxes(0, 1))
     axis = np.abs(area).argmax(axis=1)

@@ -42,12 +42,9 @@ _MEAN, _BEST, _TRIED = colours.accent(0), colours.accent(1), colours.NEITHER_SID
 
 
 def write_search(path: Path, history: SearchHistory, identity: str) -> None:
-    """Write a search for gaits into one Rerun file, atomically.
+    """Write a search of at least one generation into one Rerun file, atomically.
 
-    Args:
-      path: the `.rrd` file.
-      history: the search, with at least one generation.
-      identity: recording id; the viewer shows files with equal ids as one recording.
+    `identity` is the recording id; the viewer shows files with equal ids as one.
     """
     stream = rr.RecordingStream(_APPLICATION, recording_id=identity)
     file = stream.memory_recording()

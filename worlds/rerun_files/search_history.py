@@ -9,16 +9,19 @@ from worlds.world import FALLS
 
 
 class SearchWalk(NamedTuple):
-    """A walk of one generation's best gait, repeated in order to be shown."""
+    """A walk of one generation's best gait, repeated in order to be shown.
+
+    Attributes:
+      scene: robot, ground and recording of the walk.
+      distance_m: distance walked forward.
+      time_s: duration of the walk.
+      reward: in the unit of the search's rewards.
+    """
 
     scene: Scene
-    """Robot, ground and recording of the walk."""
     distance_m: float
-    """Distance walked forward [m]."""
     time_s: float
-    """Duration of the walk [s]."""
     reward: float
-    """Reward of this walk, in the unit of the search's rewards."""
 
     @property
     def fell(self) -> bool:
@@ -30,23 +33,24 @@ class SearchHistory(NamedTuple):
     """History of a search for gaits; all arrays have one row for each generation.
 
     Each generation draws gaits from a normal distribution, tries and rewards them.
+
+    Attributes:
+      rewards: for each generation, the rewards (gaits,) of all gaits that it tried.
+      falls: number of tried gaits that fell.
+      mean_reward: reward of the mean gait of the distribution.
+      mean, spread, best: by parameter name, its value in the mean gait, its standard
+        deviation, and its value in the best gait ({} if unknown), in its unit.
+      units: unit of each parameter by its name, and of the rewards under "reward".
+      walks: walk of the best gait of each generation; empty if there are none.
+      no_walks: reason, shown in the viewer, why the known best gaits have no walks.
     """
 
     rewards: Sequence[FloatArray]
-    """For each generation, the rewards (gaits,) of all gaits that it tried."""
     falls: FloatArray
-    """(generations,) number of tried gaits that fell."""
     mean_reward: FloatArray
-    """(generations,) reward of the mean gait of the distribution."""
     mean: Mapping[str, FloatArray]
-    """By parameter name, (generations,) its value in the mean gait, in its unit."""
     spread: Mapping[str, FloatArray]
-    """By parameter name, (generations,) its standard deviation, in its unit."""
     best: Mapping[str, FloatArray]
-    """By parameter name, (generations,) its value in the best gait; {} if unknown."""
     units: Mapping[str, str]
-    """Unit of each parameter by its name, and of the rewards under "reward"."""
     walks: Sequence[SearchWalk] = ()
-    """Walk of the best gait of each generation; empty if there are none."""
     no_walks: str = ""
-    """Reason, shown in the viewer, why the known best gaits have no walks."""

@@ -45,11 +45,8 @@ def write_walks(
 ) -> None:
     """Write walks of one robot: its poses, paths and ground.
 
-    Args:
-      stream: Rerun stream of the file.
-      walks: at least one; all with grounds on the same grid, or all without.
-      timeline: name of the timeline on which the walks are numbered from 0.
-      colour: the colour that marks the robot.
+    The walks, at least one, are numbered from 0 on the timeline; their grounds are on
+    the same grid, or none has one. `colour` marks the robot.
     """
     stream.log(AT, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True, strict=True)
     log = ColumnLog(stream, f"{AT}/", {timeline: np.arange(len(walks))})

@@ -38,19 +38,22 @@ computed; its formula divides by that force."""
 
 
 class Balance(NamedTuple):
-    """Centre of mass and other balance points at each tick; NaN where unknown."""
+    """Centre of mass and other balance points at each tick; NaN where unknown.
+
+    Attributes:
+      centre_of_mass_m: (ticks, 3) in the world frame.
+      below_m: (ticks, 3) centre of mass, moved down to the height of the lowest sole.
+      pressure_m: (ticks, 3) measured centre of pressure; None without force sensors.
+      zmp_m: (ticks, 3) zero-moment point; None without a recorded base position.
+      polygons_m: support polygon (corners, 3) of each tick, without corners while no
+        foot is loaded; None without force sensors.
+    """
 
     centre_of_mass_m: FloatArray
-    """(ticks, 3) centre of mass in the world frame [m]."""
     below_m: FloatArray
-    """(ticks, 3) centre of mass, moved down to the height of the lowest sole [m]."""
     pressure_m: FloatArray | None
-    """(ticks, 3) measured centre of pressure [m]; None without force sensors."""
     zmp_m: FloatArray | None
-    """(ticks, 3) zero-moment point [m]; None without a recorded base position."""
     polygons_m: list[FloatArray] | None
-    """Support polygon (corners, 3) [m] of each tick, with 0 corners while no foot is
-    loaded; None without force sensors."""
 
 
 def balance(scene: Scene) -> Balance:

@@ -20,16 +20,19 @@ _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
 
 
 class Trace(NamedTuple):
-    """Lines over the times of a recording, at one path of a viewer's file."""
+    """Lines over the times of a recording, at one path of a viewer's file.
+
+    Attributes:
+      path: below the scene's name, such as "imu/gyroscope".
+      names: of each line, for the legend.
+      values: (ticks,) or (ticks, lines); NaN where one is missing.
+      lines: colour of each line; None lets the viewer choose.
+    """
 
     path: str
-    """Path below the scene's name, such as "imu/gyroscope"."""
     names: Sequence[str]
-    """Name of each line, for the legend."""
     values: FloatArray
-    """(ticks,) or (ticks, lines) values of the lines; NaN where one is missing."""
     lines: Sequence[colours.Colour] | None
-    """Colour of each line; None lets the viewer choose."""
 
 
 class Curve(NamedTuple):

@@ -16,7 +16,7 @@ class _UnderFeet(HiddenKind):
     """Hidden physics that only a robot standing on its feet can have."""
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the base is free, so that the robot stands on its feet."""
+        """Whether the base is free."""
         return plant.floating
 
 
