@@ -52,14 +52,14 @@ def fit_structure(
     """Fit the values of a known structure (the true effects); compare other models.
 
     The values are fitted to the same recordings that a diagnosis fits. The other
-    models keep the values they are given.
+    models, such as the answers of a diagnosis, keep the values they are given.
 
     Args:
       plant: nominal robot model.
       traces: recordings of the robot.
       reference: recordings of the healthy robot; may be empty.
       structure: the true effects at their true places, with values to start from.
-      others: models to compare with, such as the answers of a diagnosis.
+      others: models to compare with.
     """
     parts = split(traces)
     channels = shared_channels(plant, [*traces, *reference])

@@ -37,13 +37,9 @@ def conform(
 ) -> None:
     """Raise or lower the ground under loaded soles to where the soles are.
 
-    The ground stays a plane: the geoms of the soles are moved instead.
-
-    Args:
-      batch: N simulations, in the states that their runs start from.
-      plant: robot model with a plane as ground.
-      runs: the run of each simulation.
-      height_m: (N,) largest height of bumps above or below the plane.
+    The ground stays a plane: the geoms of the soles are moved instead, by `height_m`
+    (N,) at most. The `batch` of N simulations is in the states that their `runs` start
+    from.
     """
     import mujoco
 

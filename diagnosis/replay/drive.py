@@ -85,10 +85,7 @@ class Drive:
         return None if before is None or after is None else (before, after)
 
     def added(self, now_s: FloatArray) -> FloatArray | None:
-        """(B, n R, j) recorded torques [N m] to be added to the servos', or None.
-
-        `now_s` are (B, R) times at which steps begin.
-        """
+        """(B, n R, j) recorded torques [N m] to be added to the servos', or None."""
         if not any(self._added):
             return None
         nothing = np.zeros((len(now_s), self._joints))

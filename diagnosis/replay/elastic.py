@@ -54,13 +54,8 @@ class ElasticJoints:
         The servo sees the motor's angle before the step, as MuJoCo's servos do. The
         spring sees the speeds of both ends after it; the link's is extrapolated from
         the last two steps. So a stiff spring has a rigid joint's integration error.
-
-        Args:
-          asked_rad: (rows, j) position targets of the servos.
-          position_rad: (rows, j) angles of the links.
-          velocity_rad_s: (rows, j) speeds of the links.
-          step_s: time step of the physics.
-          torque_nm: (rows, j) further torque on the motors.
+        Positions and velocities (rows, j) are those of the links; `torque_nm` is
+        further torque on the motors.
         """
         h, link_before = step_s, velocity_rad_s.copy()
         if self._angle is None:

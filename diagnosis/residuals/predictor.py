@@ -225,11 +225,8 @@ class Predictor:
 
         Entries that do not count are 0, those of a simulation that diverges `WORST`.
         The influence of wrong start states, and model errors that recordings of the
-        healthy robot show, are taken out.
-
-        Args:
-          models: n models.
-          exactly: correct each model's own integration error; takes six times as long.
+        healthy robot show, are taken out. `exactly` predicts by `exact` instead of
+        `predict`.
         """
         predicted = self.exact(models) if exactly else self.predict(models)
         wrong = (self._measured - predicted) / self.channels.noise

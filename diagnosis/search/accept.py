@@ -66,10 +66,8 @@ def fitted_exactly(
 ) -> list[Judged]:
     """Fit and judge models, each corrected by its own integration error.
 
-    Args:
-      judge: the judge of the search that has run.
-      models: models with values that are already close to the best ones.
-      jacobians: (N, p) Jacobian of each model at these values; None if unknown.
+    The values of the models are already close to the best ones. `jacobians` (N, p) are
+    those at these values; None if unknown.
     """
     if not models:
         return []

@@ -52,11 +52,13 @@ removes this share of the energy above the noise that the latter leaves."""
 def all_joints(judge: Judge, result: SearchResult) -> SearchResult:
     """The model with effects at all joints if it fits much better, else `result`."""
     best = _grown(judge, result)
-    if best is not None:
-        best = _without_idle(judge, best)
+    if best is None:
+        return result
+    best = _without_idle(judge, best)
     left = result.winner.selected if result.winner else result.nothing
-    needed = max(MUCH_BETTER * (left - result.floor), judge.least_gain)
-    if best is None or left - best.selected < needed:
+    if left - best.selected < max(
+        MUCH_BETTER * (left - result.floor), judge.least_gain
+    ):
         return result
     smaller = without_each(best.model)
     residuals = judge.fit.residuals(smaller)

@@ -162,14 +162,12 @@ class Candidates:
 
     def _near(self, place: str) -> set[str]:
         """A joint and the body that it moves, if `place` is one of the two."""
-        model = self._fit.plant.model
-        bodies = {
-            joint: model.body(int(model.joint(joint).bodyid[0])).name
-            for joint in self._fit.plant.joints
-        }
-        return {place} | {
-            name for pair in bodies.items() if place in pair for name in pair
-        }
+        model, near = self._fit.plant.model, {place}
+        for joint in self._fit.plant.joints:
+            pair = joint, model.body(int(model.joint(joint).bodyid[0])).name
+            if place in pair:
+                near.update(pair)
+        return near
 
     def _moved(self, judged: Judged) -> list[Model]:
         """Variants of a model with an effect moved along the chain of bodies."""

@@ -100,8 +100,8 @@ class Search:
     def _refined(self, best: list[Judged]) -> list[Judged]:
         """Fit the best models again with the integration error of the best one.
 
-        Dry friction and end stops change the integration error. More general forms of
-        the best model's effects are fitted as well.
+        Dry friction and end stops change it. More general forms of the best model's
+        effects are fitted as well.
         """
         judge = self.judge
         for _ in range(self._rules.refinements):

@@ -100,14 +100,10 @@ def _make_all(config: ConcealedMake, parts: Path) -> None:
 
 def _seal(config: ConcealedMake) -> None:
     """Write the truths of all cases into one file, and its SHA-256 into another."""
-    sealed = config.folder / SEALED
-    names = [case_name(i) for i in range(config.cases)]
-    parts = {name: sealed / _PARTS / f"{name}.json" for name in names}
-    truth = {
-        "format": FORMAT,
-        "seed": config.seed,
-        "cases": {name: json.loads(path.read_text()) for name, path in parts.items()},
-    }
+    sealed, cases = config.folder / SEALED, {}
+    for name in map(case_name, range(config.cases)):
+        cases[name] = json.loads((sealed / _PARTS / f"{name}.json").read_text())
+    truth = {"format": FORMAT, "seed": config.seed, "cases": cases}
     content = json.dumps(truth, indent=1) + "\n"
     write_text(sealed / TRUTH, content)
     digest = hashlib.sha256(content.encode()).hexdigest()

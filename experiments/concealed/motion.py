@@ -78,11 +78,8 @@ class CaseMotion:
     ) -> "CaseMotion":
         """Draw tick rate, duration, gains, pose, and the joint that is held still.
 
-        Args:
-          plant_name: a key of `experiments.concealed.draw.PLANTS`.
-          held: whether the joint with the hidden effect is held still.
-          jitter_s: largest error of a time stamp [s].
-          rng: source of random numbers.
+        `plant_name` is a key of `draw.PLANTS`; `held` says whether the joint with the
+        hidden effect is held still; `jitter_s` is the largest error of a time stamp.
         """
         plant, names = _plant(plant_name)
         coupled = plant.description.coupled if plant.description else ()

@@ -89,11 +89,9 @@ def score_of(
 ) -> dict[str, Any]:
     """The scores of all methods, in the form of score.json.
 
-    Args:
-      truth: the truth of the set of cases.
-      answers: verdicts by method and case; "diagnosis" is one of the methods.
-      oracles: fits of the true effects, by the names of the cases in which an effect
-        that the diagnosis knows is hidden.
+    `answers` are verdicts by method and case, "diagnosis" is one of the methods;
+    `oracles` are fits of the true effects, by the names of the cases in which an effect
+    that the diagnosis knows is hidden.
     """
     figures = {}
     for method, verdicts in answers.items():
@@ -128,12 +126,7 @@ def consult_all(
     """The oracles (fits of the true effects) of all cases with a known hidden effect.
 
     Each is stored in the set's folder, and only computed again if an answer changed.
-
-    Args:
-      folder: folder of the set of cases.
-      cases: the true effects of each case.
-      answers: verdicts whose effects are replayed on the held-out recordings.
-      threads: number of processes; 0 for one per core.
+    The effects of all `answers` are replayed on the held-out recordings.
     """
     named = {name: case for name, case in cases.items() if case.kind in NAMED_KINDS}
     found = {

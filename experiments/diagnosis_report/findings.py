@@ -65,10 +65,8 @@ def at_many(alike: Sequence[Found]) -> str:
         alone = estimate_text(replace(one, low=one.value, high=one.value))
         return f"about {alone} at {place_words(effect.place)}"
 
-    return (
-        f"{kind_of(alike[0].name).words.label} at {len(alike)} places, "
-        f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
-    )
+    span = f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
+    return f"{kind_of(alike[0].name).words.label} at {len(alike)} places, {span}"
 
 
 def finding(effect: Found, changed: bool = False) -> str:

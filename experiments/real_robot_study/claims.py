@@ -16,10 +16,6 @@ TWICE = 2.0
 def claims_of(robot: RealRobot, verdict: Verdict) -> list[Claim]:
     """All claims about a robot's diagnosis, each with whether it holds.
 
-    Args:
-      robot: the robot, with the values and bounds to compare with.
-      verdict: the verdict of its diagnosis.
-
     Example:
       >>> claims_of(ROBOTS["emps"], verdict)[0].holds
       True

@@ -73,11 +73,8 @@ def consult(
 ) -> Oracle:
     """Fit the true effects of a case, and replay the answers on held-out recordings.
 
-    Args:
-      folder: folder of the case.
-      case: the truth.
-      answers: the effects found by each method. An effect that the diagnosis does not
-        know, or not at that place, is left out.
+    `answers` are the effects found by each method. An effect that the diagnosis does
+    not know, or not at that place, is left out.
     """
     plant, traces, reference = read_case(folder)
     true = tuple(_placed(plant, e.name, e.place, e.parameters) for e in case.effects)
