@@ -61,9 +61,7 @@ class Diagnosis:
     """A verdict and the models and predictors behind it.
 
     Attributes:
-      verdict: the answer: effects with places and intervals, `none` or `unknown`.
       model: the effects that the search accepted, with their fitted values.
-      plant: the nominal robot model.
       test: simulates the held-out recordings, less the integration error at `model`.
       nominal: the same, less the integration error of the nominal model.
       audit: what the audit of the recordings found.
@@ -158,8 +156,7 @@ def _learned(
 ) -> _Learned:
     """Learn model errors of the healthy robot, divide the data, and make the search."""
     plant, reference, channels = material.plant, material.reference, material.channels
-    noise: ReferenceNoise | None = None
-    healthy: list[Predictor] = []
+    noise, healthy = None, list[Predictor]()
     if reference:
         noise = learn_reference(plant, reference, channels, rules, threads, hooks)
     hooks.stage("fit", FIT_REPLAYS)

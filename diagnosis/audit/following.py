@@ -25,7 +25,6 @@ class Following:
     joint and the column the position's.
 
     Attributes:
-      columns: indices of these joints in the trace.
       misfit: (m, m) rms of position less command [rad], at the lag that fits best.
       correlation: (m, m) correlation, at the lag at which it is largest in size.
       slope: (m,) slope of each position over its own command.

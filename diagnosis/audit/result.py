@@ -37,9 +37,7 @@ class ChannelAudit:
       name: name of the column in the recording, such as "position.LKneePitch".
       noise_std: standard deviation of white noise, rounding not included.
       quantum: step to which values are rounded; None if they are continuous.
-      constant: whether all values are the same.
       clipped_share: share of rows in which the channel is stuck at an extreme.
-      missing_share: share of rows without a value.
       longest_missing_s: longest time without values [s].
     """
 

@@ -28,14 +28,9 @@ STEP_S = 0.002
 
 @dataclass(frozen=True)
 class FreeParameter:
-    """A parameter to be fitted: that of an effect at a place, in typical sizes.
+    """A parameter to be fitted: that of an effect at a place.
 
-    Attributes:
-      placed: effect and place, without values.
-      neutral: parameter value at which the effect is absent.
-      size: typical change of the value, the unit of counts.
-      low: smallest count: change from neutral in typical sizes.
-      high: largest count.
+    Its value is `neutral` plus a count, from `low` to `high`, of typical sizes.
     """
 
     placed: PlacedEffect

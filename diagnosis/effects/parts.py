@@ -33,7 +33,6 @@ class Parameter:
       >>> Parameter("gap", "rad", low=0.0, high=0.15, neutral=0.0, typical=0.02)
 
     Attributes:
-      name: for example "gap".
       unit: SI unit for a hinge joint; `Plant.unit` converts it for a sliding joint.
       low: smallest possible value.
       high: largest possible value.

@@ -53,7 +53,6 @@ class Plant:
       joints: hinges and slides that recordings have, in the model's order; all other
         joints are held still.
       servo: servos of these joints, for recordings that state no gains.
-      base: "fixed" or "floating".
       feet: names of the bodies that touch the ground, left before right.
       options: MuJoCo options of the model's file; None for a file without, as a URDF.
 

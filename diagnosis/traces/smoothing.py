@@ -115,8 +115,8 @@ def _freedom(stiffness: float, rows: int) -> float:
     """Degrees of freedom of a smoothing spline on evenly spaced rows, a knot each.
 
     Far from the ends a signal of w radians per row is multiplied by
-    1 / (1 + stiffness w^6). The degrees of freedom are the mean of that factor over w,
-    times the rows, plus three for the parabola that the penalty does not see.
+    1 / (1 + stiffness w^6). Its mean over w, times the rows, counts, plus three for the
+    parabola that the penalty does not see.
     """
     frequency = (np.arange(512) + 0.5) * np.pi / 512
     # the difference operator's own response, exact for all frequencies
