@@ -55,7 +55,7 @@ class ColumnLog:
             self.send_rows(path, kind.columns(**known), rows)
 
     def send_rows(self, path: str, columns: Any, rows: IntArray | None = None) -> None:
-        """Write columns of a Rerun archetype at the times numbered `rows`, or at all."""
+        """Write columns of a Rerun archetype at the times numbered `rows`, or all."""
         rows = self._all if rows is None else rows
         indexes = [
             rr.TimeColumn(name, duration=times[rows])
