@@ -17,6 +17,7 @@ from experiments.runs.options import RunOptions
 from experiments.seeing.run_pictures import picture_run
 from experiments.seeing.score_page import write_page
 from experiments.walking.evaluation import Study, evaluate, keep
+from experiments.walking.trials import course
 from groundwalk.errors import BadValueError
 
 VERB = "evaluate"
@@ -24,7 +25,7 @@ VERB = "evaluate"
 
 @dataclass(frozen=True)
 class Evaluate(RunOptions):
-    """Let gaits walk a course of 3 m: speed with its spread, and falls.
+    """Let gaits walk straight ahead: speed with its spread, and falls.
 
     Attributes:
       gaits: names (`groundwalk list gaits`), .json files with a gait, or run folders of
@@ -42,6 +43,7 @@ class Evaluate(RunOptions):
     terrain: str | None = None
     robot: str = "nao"
     trials: int = 10
+    course_m: float = 3.0
     threads: int = 0
 
     def __post_init__(self) -> None:
@@ -57,7 +59,8 @@ class Evaluate(RunOptions):
     def study(self, world: str) -> Study:
         """Ground, trials and threads of the evaluation in a world, "sim" or "real"."""
         terrain = self.terrain or worlds.kind(world).terrain
-        return Study(world, terrain, self.trials, threads=self.threads)
+        rules = course(self.course_m)
+        return Study(world, terrain, self.trials, rules, threads=self.threads)
 
 
 def main(config: Evaluate) -> None:
@@ -74,7 +77,8 @@ def main(config: Evaluate) -> None:
         folder.write_json(RESULT, result)
     with extra("a picture of the walks"):
         picture_run(folder)
-    write_page(folder, "How fast and how surely do these gaits walk 3 m?", result)
+    title = f"How fast and how surely do these gaits walk {config.course_m:g} m?"
+    write_page(folder, title, result)
     rows = score_rows(result)
     print_result(config.json, result, SCORE_HEADINGS, rows, folder.path)
 

@@ -16,6 +16,7 @@ from experiments.seeing.run_pictures import picture_run
 from experiments.seeing.score_page import write_page
 from experiments.walking.evaluation import Study, evaluate, keep
 from experiments.walking.gait_search import SEARCH_VERB, SearchPlan, search_gait
+from experiments.walking.trials import course
 from walk_engine import Gait
 
 WORLDS = ("sim", "real")
@@ -39,7 +40,8 @@ class OptimizeGait(RunOptions):
       population: number of gaits tried in each generation.
       generations: number of generations of the search.
       sigma: spread of the first generation, as a share of each parameter's range.
-      trials: number of trials of each gait in each world, on a course of 3 m.
+      trials: number of trials of each gait in each world.
+      course_m: length of the trials' course [m].
       threads: processor threads; 0 for all.
 
     Example:
@@ -55,6 +57,7 @@ class OptimizeGait(RunOptions):
     generations: int = DefaultInt(15)
     sigma: float = 0.15
     trials: int = 10
+    course_m: float = 3.0
     threads: int = 0
 
     def __post_init__(self) -> None:
@@ -77,6 +80,7 @@ class OptimizeGait(RunOptions):
             world,
             ground[world],
             self.trials,
+            course(self.course_m),
             threads=self.threads,
             correction=correction,
         )
@@ -116,7 +120,7 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
 
 
 def _evaluate(config: OptimizeGait, folder: RunFolder, tuned: Gait) -> dict[str, Any]:
-    """Evaluate start gait and tuned gait in both worlds, on a course of 3 m."""
+    """Evaluate start gait and tuned gait in both worlds."""
     description = robots.get(config.robot)
     both = {"start": load_gait(config.start), "tuned": tuned}
     *_, of_trials = config.plan().seeds()

@@ -18,7 +18,7 @@ from experiments.walking.sims import make_sim
 from experiments.walking.trials import COURSE_TRIAL, TrialRules, Trials, walk_trials
 from groundwalk.errors import BadValueError
 from robots import Description
-from terrain import Heightfield, TerrainSpec, parse
+from terrain import Heightfield, TerrainSpec, configuration, parse
 from walk_engine import Gait
 from worlds import (
     Recording,
@@ -71,9 +71,15 @@ class Study:
     hidden: tuple[Hidden, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse an unknown world or terrain, or fewer than one trial."""
+        """Refuse an unknown world, ground that the course leaves, or no trials."""
         worlds.kind(self.world)
-        parse(self.terrain)
+        name, parameters = parse(self.terrain)
+        end_m = configuration(name, **parameters).x_range_m[1]
+        if self.rules.course_m is not None and self.rules.course_m >= end_m:
+            raise BadValueError(
+                f"course_m is {self.rules.course_m:g}, but the ground ends at "
+                f"{end_m:g} m; for a longer one put x_range_m=-1:9 behind its name"
+            )
         check_at_least(self, trials=1, threads=0)
         if self.correction is not None and self.world != "sim":
             raise BadValueError(f"only the sim can be corrected, not {self.world!r}")

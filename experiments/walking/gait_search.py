@@ -140,7 +140,8 @@ def _generation(
 ) -> dict[str, Any]:
     """Run a generation of CMA-ES: rate its samples and its mean; return its record."""
     tried = np.vstack([strategy.ask(), strategy.mean.to_vector()])
-    trials, rewards = rate(plan, tried, [ground] * len(tried))
+    under = [ground] * len(tried)
+    trials, rewards = rate(plan, tried, under, rules=SEARCH_TRIAL)
     strategy.tell(rewards[:-1])
     return {
         "rewards": rewards[:-1].tolist(),
@@ -153,12 +154,11 @@ def _generation(
     }
 
 
-def _ratings(plan: SearchPlan, means: FloatArray) -> list[FloatArray]:
-    """`RATINGS` arrays (n,) of rewards [cm/s] of n gaits, each on another ground."""
+def _ratings(plan: SearchPlan, means: FloatArray) -> FloatArray:
+    """(RATINGS, n) rewards [cm/s] of n gaits, each time on another ground."""
     _, _, of_ratings, _ = plan.seeds()
     grounds = plan.grounds(plan.generations + RATINGS)[plan.generations :]
-    ratings = []
-    for ground, pose in zip(grounds, of_ratings.spawn(RATINGS), strict=True):
-        alike = [ground.make()] * len(means), [pose] * len(means)
-        ratings.append(rate(plan, means, *alike, rules=RATED)[1])
-    return ratings
+    under = [ground for spec in grounds for ground in [spec.make()] * len(means)]
+    poses = [pose for pose in of_ratings.spawn(RATINGS) for _ in means]
+    _, rewards = rate(plan, np.tile(means, (RATINGS, 1)), under, poses, RATED)
+    return rewards.reshape(RATINGS, len(means))

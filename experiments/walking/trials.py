@@ -51,9 +51,27 @@ Example:
   >>> trials = walk_trials(world, gaits, SEARCH_TRIAL)
 """
 
-COURSE_TRIAL = TrialRules(limit_s=40.0, course_m=3.0, start_spread_rad=0.01)
-"""Rules of a trial in an evaluation: a course of 3 m, as in the SGAT paper. Start poses
-have a standard deviation of 0.01 rad, so that no two trials are alike.
+
+def course(length_m: float) -> TrialRules:
+    """Rules of a trial on a course of this length [m].
+
+    There is time to walk it at 7.5 cm/s. Start poses vary by 0.01 rad (standard
+    deviation), so that no two trials are alike.
+
+    Raises:
+      BadValueError: the length is not positive.
+
+    Example:
+      >>> course(3.0)
+      TrialRules(limit_s=40.0, course_m=3.0, start_spread_rad=0.01)
+    """
+    if not length_m > 0:
+        raise BadValueError(f"course_m is {length_m:g}; it must be positive")
+    return TrialRules(length_m / 0.075, length_m, start_spread_rad=0.01)
+
+
+COURSE_TRIAL = course(3.0)
+"""Rules of a trial on a course of 3 m, as in the SGAT paper.
 
 Example:
   >>> trials = walk_trials(world, gaits, COURSE_TRIAL)

@@ -12,6 +12,8 @@ SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
 TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
 """What is learned of real begins after 3 s: see `grounded_walks.data.FLAT_TICKS`."""
 
+SEARCHED = TrialRules(limit_s=3.0)
+
 
 @pytest.fixture
 def in_this_process(monkeypatch):
@@ -19,6 +21,13 @@ def in_this_process(monkeypatch):
     monkeypatch.setattr(
         processes, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
     )
+
+
+@pytest.fixture
+def short_searches(monkeypatch):
+    """Searches of optimize-gait whose walks end soon after the flat start area."""
+    for name in ("SEARCH_TRIAL", "RATED"):
+        monkeypatch.setattr(f"experiments.walking.gait_search.{name}", SEARCHED)
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
-SMALL = ["--population", "6", "--generations", "4", "--trials", "1"]
+SMALL = "--population 4 --generations 4 --trials 1 --course-m 0.3".split()
 PATIENCE_S = 300
 
 
@@ -84,6 +84,7 @@ def check_run_folder(folder: Path, result):
     assert kept <= {path.name for path in folder.iterdir()}
 
 
+@pytest.mark.usefixtures("short_searches")
 def test_an_extended_search_has_the_bits_of_a_long_one(tmp_path):
     folder = RunFolder(tmp_path / "extended")
     search_gait(SearchPlan(population=6, generations=1), folder)
@@ -94,12 +95,14 @@ def test_an_extended_search_has_the_bits_of_a_long_one(tmp_path):
     assert (folder.path / name).read_bytes() == (whole.path / name).read_bytes()
 
 
+@pytest.mark.usefixtures("short_searches")
 def test_the_same_seed_gives_the_same_history_on_any_number_of_threads(tmp_path):
     one = history_of(tmp_path, "one", threads=1)
     assert one == history_of(tmp_path, "two", threads=2)
     assert one != history_of(tmp_path, "other", threads=1, seed=2)
 
 
+@pytest.mark.usefixtures("short_searches")
 def test_on_uneven_ground_every_generation_walks_on_new_ground(tmp_path):
     uneven = history_of(tmp_path, "uneven", terrain="lumps:amplitude_m=0.004")
     assert uneven == history_of(tmp_path, "again", terrain="lumps:amplitude_m=0.004")
@@ -120,6 +123,7 @@ def corrected(folder, **changes):
     return folder
 
 
+@pytest.mark.usefixtures("short_searches")
 def test_the_search_walks_in_the_corrected_sim(tmp_path):
     late = history_of(tmp_path, "late", sim=corrected(tmp_path / "found"))
     nominal = history_of(tmp_path, "nominal")
@@ -164,6 +168,7 @@ def test_a_folder_that_is_no_diagnosis_is_refused_before_anything(tmp_path):
         assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.usefixtures("short_searches")
 def test_the_history_says_what_the_search_did(tmp_path):
     entry = json.loads(history_of(tmp_path, "run"))["generations"][0]
     assert len(entry["rewards"]) == 6
@@ -174,7 +179,7 @@ def test_the_history_says_what_the_search_did(tmp_path):
 
 def test_a_damaged_checkpoint_is_named(tmp_path):
     folder = RunFolder(tmp_path)
-    folder.write_bytes("checkpoint.pkl", b"\x80\x04 cut off")
+    (tmp_path / "checkpoint.pkl").write_bytes(b"\x80\x04 cut off")
     with pytest.raises(RunFolderError, match=r"checkpoint\.pkl is damaged"):
         search_gait(SearchPlan(population=6, generations=2), folder)
 
@@ -191,6 +196,8 @@ def test_a_damaged_checkpoint_is_named(tmp_path):
         ({"population": 3}, "population is 3; it must be at least 4"),
         ({"sigma": 0.0}, "sigma is 0.0"),
         ({"trials": 0}, "trials is 0"),
+        ({"course_m": 0.0}, "course_m is 0; it must be positive"),
+        ({"course_m": 6.0}, "course_m is 6, but the ground ends at 5 m"),
         ({"threads": -1}, "threads is -1"),
     ],
 )

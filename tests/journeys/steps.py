@@ -45,7 +45,8 @@ class NotRun:
 
 Step = Run | NotRun
 
-SEARCH = "--population 4 --generations 1 --trials 1"
+SHORT = "--trials 1 --course-m 0.3"
+SEARCH = f"--population 4 --generations 1 {SHORT}"
 FILM = "--duration 0.3 --width 64 --height 64"
 SMALL_STUDY = (
     "--trials 2 --population 4 --generations 1 --repeats 1 --real-walks 4 "
@@ -86,11 +87,11 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "--out runs/mine": Run(SEARCH, writes=below("runs/mine", TUNED), says="sim"),
         "groundwalk optimize-gait --resume runs/mine": Run(says="tuned"),
         "groundwalk evaluate start runs/mine/result.json --trials 30": Run(
-            "--trials 1 --out runs/evaluated",
+            f"{SHORT} --out runs/evaluated",
             writes=below("runs/evaluated", ("report.html", "result.json", "walk.png")),
         ),
         "groundwalk evaluate start --worlds real --terrain lumps:amplitude_m=0.006": (
-            Run("--trials 1", says="real")
+            Run(SHORT, says="real")
         ),
         "groundwalk optimize-gait --robot talos": Run(
             f"{SEARCH} --out runs/talos", writes=below("runs/talos", TUNED)
@@ -206,13 +207,13 @@ JOURNEYS: dict[str, dict[str, Step]] = {
     },
     "uneven_ground.md": {
         "groundwalk evaluate start docs/results/walk/result.json --worlds real "
-        "--trials 10": Run("--trials 1", says="real"),
+        "--trials 10": Run(SHORT, says="real"),
         "groundwalk optimize-gait --terrain lumps:amplitude_m=0.008 --population 30 "
         "--generations 5 --out runs/lumps": Run(
             SEARCH, writes=below("runs/lumps", TUNED)
         ),
         "groundwalk evaluate runs/lumps/result.json --worlds real --trials 10": Run(
-            "--trials 1", says="real"
+            SHORT, says="real"
         ),
         'groundwalk transfer nao --methods "SGAT, uneven sim" --real-walks 24 '
         "--more-real-walks 12 --sim-walks 48 --population 30 --generations 3 "
@@ -229,7 +230,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "groundwalk optimize-gait --robot my_robot.urdf": Run(
             f"{SEARCH} --out runs/own", writes=below("runs/own", TUNED)
         ),
-        "groundwalk evaluate runs/g1/result.json --robot g1": Run("--trials 1"),
+        "groundwalk evaluate runs/g1/result.json --robot g1": Run(SHORT),
         "groundwalk visualize runs/g1 --open": Run(
             without=("--open",), writes=("runs/g1/walk.rrd",)
         ),
@@ -249,7 +250,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
     },
     "seeing.md": {
         "groundwalk evaluate start walk2014 --trials 3 --out runs/mine": Run(
-            "--trials 1", writes=("runs/mine/report.html", "runs/mine/walk.rrd")
+            SHORT, writes=("runs/mine/report.html", "runs/mine/walk.rrd")
         ),
         "groundwalk visualize runs/mine --open": Run(
             without=("--open",), writes=("runs/mine/walk.rrd",)

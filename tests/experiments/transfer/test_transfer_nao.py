@@ -48,6 +48,7 @@ def cell(method, step, speed, falls, trials=40):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("short_walks")
 def test_a_small_study_runs_and_resumes_to_the_same_numbers(tmp_path):
     whole = RunFolder(tmp_path / "whole")
     main(TransferNao(**SMOKE, out=whole.path, json=True))
@@ -171,6 +172,7 @@ def test_groundings_of_one_gait_share_their_real_walks():
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("short_walks")
 def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
     config = TransferNao(
         **SMOKE | {"methods": (NONE, DIAGNOSED_SIM)},
