@@ -17,7 +17,7 @@ from experiments.command_line import VERBS, main
 
 IMPORTED = [
     "mujoco",
-    "worlds.real.worker",
+    "worlds.real.world",
     "matplotlib.backends.backend_agg",
     "matplotlib.figure",
     "rerun",

@@ -1,7 +1,8 @@
 """Base class of the sim and real worlds: latency, noise and ends, but no physics."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -10,10 +11,35 @@ from groundwalk.errors import BadValueError
 from robots.description import Description
 from terrain import Heightfield
 from worlds.falls import EndRule
-from worlds.latency import DelayLine
 from worlds.observation import Observation, Truth
 from worlds.sensor_noise import NoisySensors
 from worlds.world import TICK_S, End, WorldOptions
+
+
+class DelayLine:
+    """Delays commands by a number of physics steps, not necessarily whole ticks."""
+
+    def __init__(self, latency_steps: int, steps_per_tick: int) -> None:
+        """Delay by a number of physics steps; call `reset` before the first tick."""
+        self._steps_per_tick = steps_per_tick
+        self._ticks, self._late_steps = divmod(latency_steps, steps_per_tick)
+        self._commands: deque[FloatArray] = deque(maxlen=self._ticks + 2)
+
+    def reset(self, command: FloatArray) -> None:
+        """Start as if `command` (n, joints) [rad] had been given at all past ticks."""
+        self._commands.extend([command] * (self._ticks + 2))
+
+    def tick(self, command: FloatArray) -> Iterator[tuple[FloatArray, int]]:
+        """Take the command of one tick, and give the delayed ones that act in it.
+
+        Each of the one or two comes with the number of physics steps for which it acts.
+        """
+        self._commands.append(command)
+        older, newer = self._commands[0], self._commands[1]
+        if self._late_steps:
+            yield older, self._late_steps
+        yield newer, self._steps_per_tick - self._late_steps
+
 
 Schedule = list[tuple[FloatArray, int]]
 """Joint position targets (n, joints) [rad] that act one after the other during a tick,

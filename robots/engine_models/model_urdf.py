@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.engine_models.urdf_elements import (
+from robots.engine_models.urdf import (
     add_hinge,
     add_link,
     add_sphere,

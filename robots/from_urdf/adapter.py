@@ -25,11 +25,10 @@ from robots.from_urdf.balance import (
     find_shoulders,
     hanging_rad,
 )
-from robots.from_urdf.foot_shapes import foot
 from robots.from_urdf.leg_roles import Legs, find_legs
+from robots.from_urdf.link_shapes import foot, round_shapes
 from robots.from_urdf.package_paths import mesh_path
 from robots.from_urdf.posed_tree import PosedTree
-from robots.from_urdf.round_shapes import round_shapes
 from robots.from_urdf.servo_size import servo
 from robots.from_urdf.urdf_tree import UrdfTree, read_urdf
 from robots.leg_geometry import ANKLE, KNEE, ROLES, roles

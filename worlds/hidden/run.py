@@ -14,8 +14,8 @@ from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.engine import BodySense, HiddenEngine
 from worlds.hidden.plant import HiddenPlant
 from worlds.observation import up_z
-from worlds.real.engines import hidden_engine
-from worlds.sim.start_height import StartHeight
+from worlds.real.hidden_robot import hidden_engine
+from worlds.sim.model import StartHeight
 
 Feed = Callable[[int, BodySense], FloatArray]
 """Function of a control tick's number and the sensors' readings at that tick, which

@@ -42,12 +42,13 @@ from worlds.recordings.columns import (
     TIME,
     VECTORS,
     check_names,
+    check_values,
+    frozen_columns,
     joints_with,
     nearest,
     vector_columns,
 )
 from worlds.recordings.metadata import RecordingMetadata
-from worlds.recordings.values import check_values, frozen_columns
 
 
 @dataclass(frozen=True, eq=False)

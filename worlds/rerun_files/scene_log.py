@@ -3,16 +3,23 @@
 import numpy as np
 import rerun as rr
 
+from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Link
 from worlds.recordings.columns import SUPPORT
-from worlds.rerun_files.balance import support_look, write_balance
 from worlds.rerun_files.columns import ColumnLog, tick_times
 from worlds.rerun_files.meshes import link_mesh
 from worlds.scenes import colours
-from worlds.scenes.curves import support_changes, traces
+from worlds.scenes.balance import Balance, balance, loaded_feet
+from worlds.scenes.curves import (
+    MEASURED_SUPPORT,
+    SIDEWAYS,
+    Trace,
+    support_changes,
+    traces,
+)
 from worlds.scenes.scene import SIDES, Scene
-from worlds.scenes.shapes import capsules, ground_mesh, sole_mesh, sole_rim
-from worlds.world import End
+from worlds.scenes.shapes import capsules, fall_ring, ground_mesh, sole_mesh, sole_rim
+from worlds.world import FALLS, End
 
 _ARROW_RADIUS_M, _RIM_RADIUS_M = 0.006, 0.0015
 
@@ -86,3 +93,96 @@ def _write_states(log: ColumnLog, scene: Scene) -> None:
         level = "WARN" if end in tuple(End) else "INFO"
         text = rr.TextLog.columns(text=[end], level=[level])
         log.send_rows("events", text, np.array([scene.recording.ticks - 1]))
+
+
+_LIFT_M = 0.002
+"""Height of marks above the ground [m], so that the ground does not hide them."""
+_POINT_M, _LINE_M = 0.008, 0.003
+
+
+def write_balance(log: ColumnLog, scene: Scene) -> None:
+    """Write the balance of a scene's robot, and where it fell if it did."""
+    found = balance(scene)
+    _write_points(log, found, scene.recording.has("base.position"))
+    if found.polygons_m is not None:
+        _write_polygons(log, found.polygons_m)
+    _write_support(log, scene)
+    _write_fall(log, scene, found)
+
+
+def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
+    points = {
+        "centre_of_mass": (found.centre_of_mass_m, colours.MASS),
+        "below": (found.below_m, colours.MASS),
+        "pressure": (found.pressure_m, colours.FORCE),
+        "zmp": (found.zmp_m, colours.ZMP),
+    }
+    for name, (place_m, colour) in points.items():
+        if place_m is not None:
+            look = rr.Points3D.from_fields(
+                radii=_POINT_M, colors=colour, labels=[name], show_labels=False
+            )
+            log.log(f"balance/{name}", look)
+            lift_m = np.array([0.0, 0.0, 0.0 if name == "centre_of_mass" else _LIFT_M])
+            # At a tick without the point show nothing, not the last known point.
+            known = np.isfinite(place_m[:, 0])
+            columns = rr.Points3D.columns(positions=(place_m + lift_m)[known])
+            log.send_rows(f"balance/{name}", columns.partition(known.astype(int)))
+            if is_placed and name != "below":
+                trace = [name.replace("_", " ")], place_m[:, 1], [colour]
+                log.trace(Trace(f"{SIDEWAYS}/{name}", *trace))
+    _write_track(log, found)
+
+
+def _write_track(log: ColumnLog, found: Balance) -> None:
+    """Write the whole path of the centre of mass as a line."""
+    is_known = np.isfinite(found.centre_of_mass_m).all(axis=1)
+    track = rr.LineStrips3D(
+        [found.centre_of_mass_m[is_known]], radii=_LINE_M / 2, colors=colours.MASS
+    )
+    log.log("balance/centre_of_mass/track", track)
+
+
+def _write_polygons(log: ColumnLog, polygons_m: list[FloatArray]) -> None:
+    look = rr.LineStrips3D.from_fields(radii=_LINE_M, colors=colours.SUPPORT_POLYGON)
+    log.log("balance/polygon", look)
+    lift_m = np.array([0.0, 0.0, _LIFT_M])
+    strips = [np.vstack([corners, corners[:1]]) + lift_m for corners in polygons_m]
+    log.send_rows("balance/polygon", rr.LineStrips3D.columns(strips=strips))
+
+
+def _write_support(log: ColumnLog, scene: Scene) -> None:
+    rows, legs = measured_support(scene)
+    if legs:
+        log.log(MEASURED_SUPPORT, support_look())
+        log.send_rows(MEASURED_SUPPORT, rr.StateChange.columns(state=legs), rows)
+
+
+def support_look() -> rr.StateConfiguration:
+    """Colours of the supporting legs ("left", "right", "both", "none") in Rerun."""
+    lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE, "none": colours.FALL}
+    return rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
+
+
+def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
+    """Rows where the loaded feet change, and the new: left, right, both or none."""
+    loaded = loaded_feet(scene)
+    if loaded is None:
+        return np.empty(0, np.intp), []
+    code = loaded["left"] + 2 * loaded["right"]
+    rows = np.flatnonzero(np.diff(code, prepend=-1) != 0)
+    return rows, [("none", "left", "right", "both")[k] for k in code[rows]]
+
+
+def _write_fall(log: ColumnLog, scene: Scene, found: Balance) -> None:
+    """Write a ring where the robot fell, shown from the start of the recording."""
+    end = scene.recording.metadata.end
+    place_m = found.below_m[-1]
+    if end not in FALLS or not np.isfinite(place_m).all():
+        return
+    strip_m = fall_ring(place_m, scene.ground)
+    text = f"{end} at {scene.recording.time_s[-1]:.2f} s"
+    look = rr.LineStrips3D(
+        [strip_m], radii=1.5 * _LINE_M, colors=colours.FALL, labels=[text]
+    )
+    log.log("fall", look)

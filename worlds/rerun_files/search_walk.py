@@ -24,8 +24,7 @@ from worlds.rerun_files.meshes import LinkMesh, capsule_mesh, link_mesh
 from worlds.rerun_files.search_history import SearchWalk
 from worlds.scenes import colours
 from worlds.scenes.balance import balance
-from worlds.scenes.fall_ring import fall_ring
-from worlds.scenes.shapes import Mesh, ground_mesh, sole_mesh
+from worlds.scenes.shapes import Mesh, fall_ring, ground_mesh, sole_mesh
 
 AT = "search/walk"
 POSES = 7

@@ -11,8 +11,13 @@ from robots.description import Description
 from terrain import Heightfield
 from worlds.observation import Observation, Truth
 from worlds.rollouts import RolloutWorld, Schedule
-from worlds.sim.model import ROOT_QPOS, ROOT_QVEL, mujoco_model, touch_shares
-from worlds.sim.start_height import StartHeight
+from worlds.sim.model import (
+    ROOT_QPOS,
+    ROOT_QVEL,
+    StartHeight,
+    mujoco_model,
+    touch_shares,
+)
 from worlds.world import TICK_S, WorldOptions
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ import gymnasium as gym
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.engine_models.heavier_bodies import scale_mass
-from robots.engine_models.mjcf import quiet_mujoco
+from robots.engine_models.mjcf import quiet_mujoco, scale_mass
 from sgat.gym.grounded_env import GroundedEnv
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.transformer import Transformer

@@ -3,8 +3,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.engine_models.heavier_bodies import scale_mass
-from robots.engine_models.mjcf import quiet_mujoco
+from robots.engine_models.mjcf import quiet_mujoco, scale_mass
 
 ARM = """
 <mujoco>

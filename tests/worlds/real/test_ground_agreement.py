@@ -8,7 +8,7 @@ from pybullet_utils.bullet_client import BulletClient
 
 import terrain
 from terrain import Heightfield
-from worlds.real.ground import load_ground
+from worlds.real.body import load_ground
 from worlds.sim.model import add_ground
 
 POINTS = 1000

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from worlds import WorldOptions
-from worlds.latency import DelayLine
 from worlds.real.robot import BulletRobot
+from worlds.rollouts import DelayLine
 from worlds.sim.model import mujoco_model
 
 TICKS = 12

@@ -10,8 +10,7 @@ from terrain import Heightfield, make
 from worlds.recordings.metadata import RecordingMetadata
 from worlds.recordings.recording import Recording
 from worlds.rerun_files.search import write_search
-from worlds.rerun_files.search_history import SearchHistory, SearchWalk
-from worlds.rerun_files.search_page import search_page
+from worlds.rerun_files.search_history import SearchHistory, SearchWalk, search_page
 from worlds.rerun_files.search_walk import stills
 from worlds.scenes.scene import Scene
 
