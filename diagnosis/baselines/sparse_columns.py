@@ -3,8 +3,8 @@
 import copy
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from diagnosis.effects.effect import Effect
@@ -17,9 +17,6 @@ from diagnosis.residuals.predictor import variants_of
 from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
-
-if TYPE_CHECKING:
-    import mujoco
 
 MOST_ROWS = 1500
 """Largest number of rows, of all recordings together, that regression uses."""
@@ -195,10 +192,8 @@ def _changed_columns(
         yield Column(kind.name, place, number, torques.weighted(change))
 
 
-def _model_of(plant: Plant, variants: Variants) -> "mujoco.MjModel":
+def _model_of(plant: Plant, variants: Variants) -> mujoco.MjModel:
     """A compiled model of the robot with the changes of the first variant."""
-    import mujoco
-
     if not variants.fields:
         return plant.model
     model = copy.copy(plant.model)

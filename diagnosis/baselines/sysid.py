@@ -10,7 +10,8 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 from scipy.stats import norm
@@ -29,9 +30,6 @@ from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
-
-if TYPE_CHECKING:
-    from types import ModuleType
 
 SECONDS, FLOATING_SECONDS = 8.0, 2.0
 """Length of motion that is fitted, all recordings together, for a fixed and a floating
@@ -169,7 +167,7 @@ def _beginnings(plant: Plant, traces: Sequence[Trace]) -> list[Trace]:
     return parts
 
 
-def _package() -> "ModuleType":
+def _package() -> ModuleType:
     sysid = import_module("mujoco.sysid")
     if not hasattr(sysid, "optimize"):
         raise GroundwalkError(

@@ -4,8 +4,9 @@ import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import mujoco
 import numpy as np
 
 from diagnosis.effects.library import all_effects, effect
@@ -18,9 +19,6 @@ from diagnosis.replay.friction import SOLIMP_FRICTION, stops_in_a_step
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
-
-if TYPE_CHECKING:
-    import mujoco
 
 STEP_S = 0.002
 """Time step of the physics in simulations by mujoco.sysid."""
@@ -84,10 +82,8 @@ class SysidModels:
             for number, trace in enumerate(traces)
         }
 
-    def build(self, parameters: Any, spec: "mujoco.MjSpec") -> "mujoco.MjModel":
+    def build(self, parameters: Any, spec: mujoco.MjSpec) -> mujoco.MjModel:
         """Make the model of the recording whose number the specification's name has."""
-        import mujoco
-
         nominal, servo = self._nominal[spec.modelname]
         variants = Variants(self._plant, 1)
         for one, count in zip(self._free, parameters.as_vector(), strict=True):
@@ -98,7 +94,7 @@ class SysidModels:
         mujoco.mj_setConst(model, mujoco.MjData(model))
         return model
 
-    def _with_servo(self, servo: Servo) -> "mujoco.MjModel":
+    def _with_servo(self, servo: Servo) -> mujoco.MjModel:
         plant = self._plant
         model = copy.copy(plant.model)
         model.opt.timestep = STEP_S
@@ -117,9 +113,7 @@ class SysidModels:
         model.dof_solref[:] = stops_in_a_step(damping, model.dof_M0, STEP_S)
         return model
 
-    def _change(
-        self, model: "mujoco.MjModel", servo: Servo, variants: Variants
-    ) -> None:
+    def _change(self, model: mujoco.MjModel, servo: Servo, variants: Variants) -> None:
         """Write the only variant's effects into a model with a recording's servos."""
         plant, joints = self._plant, variants.joints
         for name, values in variants.fields.items():
@@ -139,8 +133,6 @@ def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> A
     The name of its `MjSpec` is made from `number`. Positions are compared as part of
     the state, since position sensors in MuJoCo's rollout are one step late.
     """
-    import mujoco
-
     spec = plant.spec.copy()
     spec.modelname = _label(number)
     spec.option.timestep = STEP_S
@@ -181,7 +173,7 @@ def _control(plant: Plant, trace: Trace, size: int, since_s: FloatArray) -> Floa
 
 
 def _start(
-    sysid: ModuleType, plant: Plant, trace: Trace, model: "mujoco.MjModel"
+    sysid: ModuleType, plant: Plant, trace: Trace, model: mujoco.MjModel
 ) -> FloatArray:
     run = Run.of(trace)
     qpos, qvel = model.qpos0.copy(), np.zeros(model.nv)

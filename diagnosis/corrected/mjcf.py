@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from diagnosis.effects.library import effect
@@ -17,9 +17,6 @@ from diagnosis.replay.friction import BatchFriction
 from diagnosis.replay.replay import STEP_S
 from diagnosis.replay.servos import BatchServos
 from diagnosis.residuals.predictor import Model, variants_of
-
-if TYPE_CHECKING:
-    import mujoco
 
 CORRECTED_XML = "corrected.xml"
 _LINEAR = 1
@@ -96,11 +93,9 @@ def _comment(variants: Variants, native: Model, model: Model) -> str:
 
 
 def _write_fields(
-    compiled: "mujoco.MjModel", variants: Variants, servo: Servo, step_s: float
+    compiled: mujoco.MjModel, variants: Variants, servo: Servo, step_s: float
 ) -> None:
     """Write servo gains and the only variant's effects into a compiled model."""
-    import mujoco
-
     for name, values in variants.fields.items():
         *holder, last = name.split(".")
         target = compiled.opt if holder else compiled
@@ -124,7 +119,7 @@ def _write_fields(
     compiled.dof_solimp[same], compiled.dof_solref[same] = own[0][same], own[1][same]
 
 
-def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> None:
+def _delay_commands(spec: mujoco.MjSpec, delay_s: float, step_s: float) -> None:
     """Delay all actuators' controls, interpolating if the delay is not whole steps."""
     if delay_s == 0:
         return
@@ -137,8 +132,6 @@ def _delay_commands(spec: "mujoco.MjSpec", delay_s: float, step_s: float) -> Non
 @contextmanager
 def _all_digits() -> Iterator[None]:
     """Let MuJoCo write XML with 17 digits in this block; it writes six by default."""
-    import mujoco
-
     folder = Path(mujoco.__file__).parent
     library = ctypes.CDLL(str(next(folder.glob("*mujoco.*"))))
     before = library._mjPRIVATE__get_xml_precision()

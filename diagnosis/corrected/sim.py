@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from mujoco.batch import Batch
 
 from diagnosis.corrected.delays import LateCommands, LateEncoders
 from diagnosis.effects.library import effect
@@ -20,9 +20,6 @@ from worlds import Observation, Truth, WorldOptions
 from worlds.rollouts import Schedule
 from worlds.sim.model import ground_name, world_spec
 from worlds.sim.world import SimWorld
-
-if TYPE_CHECKING:
-    from mujoco.batch import Batch
 
 
 def sim_plant(
@@ -99,12 +96,10 @@ class CorrectedSim(SimWorld):
         self._laws: BatchLaws | None = None
         super().__init__(description, grounds, seeds, options)
 
-    def _made_batch(self) -> "Batch":
+    def _made_batch(self) -> Batch:
         """Make the batch of simulations, in which each robot touches its own ground."""
         if not self._model:
             return super()._made_batch()
-        from mujoco.batch import Batch
-
         step_s = self.options.timestep_s
         grounds = list({id(ground): ground for ground in self._grounds}.values())
         plant = sim_plant(self.description, self.options, grounds)

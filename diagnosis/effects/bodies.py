@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import mujoco
+
 from diagnosis.effects.bases import BodyEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, Parameter
 from diagnosis.effects.scales import mass_kg, weight_n
@@ -156,8 +158,6 @@ class ExternalForce(BodyEffect):
 
 def _slides(plant: Plant, name: str) -> bool:
     """Whether a body can only slide along one line."""
-    import mujoco
-
     model = plant.model
     body = int(model.body(name).id)
     joints = []

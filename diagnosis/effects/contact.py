@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import mujoco
 import numpy as np
 
 from diagnosis.effects.effect import Effect
@@ -126,8 +127,6 @@ class ContactCompliance(Effect):
         self, variants: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Make all feet of a variant soft, in series with any softness given before."""
-        import mujoco
-
         stiffness = values[0]
         if np.isinf(stiffness):
             return
@@ -160,8 +159,6 @@ def _soften(variants: Variants, row: int, foot: str, stiffness: float) -> None:
 
 def _contact_points(plant: Plant, geoms: IntArray) -> int:
     """Number of contacts that MuJoCo 4.0 makes between geoms lying flat and a plane."""
-    import mujoco
-
     kind = mujoco.mjtGeom
     points = {  # other shapes, such as spheres, touch at one point
         int(kind.mjGEOM_CAPSULE): 2,

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from diagnosis.effects.bases import NumberEffect
@@ -184,8 +185,6 @@ def _tilt(pitch_rad: float, roll_rad: float) -> FloatArray:
 
 def _call(function: str, size: int, *arguments: Any) -> FloatArray:
     """Call a function of MuJoCo by name; return the array (size,) that it writes."""
-    import mujoco
-
     result = np.zeros(size)
     getattr(mujoco, function)(result, *arguments)
     return result

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import mujoco
 import numpy as np
 
 from diagnosis.plant.plant import Plant
@@ -37,8 +38,6 @@ def torque_nm(plant: Plant, joint: str) -> float:
 
 def inertia_kg_m2(plant: Plant, joint: str) -> float:
     """A joint's entry in the mass matrix's diagonal, in the reference pose."""
-    import mujoco
-
     model, data = plant.model, _reference(plant)
     mass_matrix = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass_matrix)
@@ -58,8 +57,6 @@ def speed_rad_s(plant: Plant, joint: str) -> float:
 
 def brisk_rad_s(plant: Plant, joint: str) -> float:
     """Speed of a joint in brisk use: 5 rad/s for a hinge, 0.5 m/s for a slider."""
-    import mujoco
-
     number = plant.model.joint(joint).id
     slides = plant.model.jnt_type[number] == mujoco.mjtJoint.mjJNT_SLIDE
     return REFERENCE_SPEED_M_S if slides else REFERENCE_SPEED_RAD_S
@@ -89,8 +86,6 @@ def _gravity_torque_nm(plant: Plant, joint: str) -> float:
 
     The robot is in its reference pose. For a sliding joint, the weight [N] it carries.
     """
-    import mujoco
-
     model, data = plant.model, _reference(plant)
     number = model.joint(joint).id
     body = int(model.jnt_bodyid[number])
@@ -104,8 +99,6 @@ def _gravity_torque_nm(plant: Plant, joint: str) -> float:
 
 def _reference(plant: Plant) -> Any:
     """`MjData` of the robot model at rest in its reference pose."""
-    import mujoco
-
     data = mujoco.MjData(plant.model)
     mujoco.mj_forward(plant.model, data)
     return data

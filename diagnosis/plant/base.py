@@ -1,20 +1,18 @@
 """Changes how a robot model is held: a fixed or floating base, and locked joints."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import mujoco
 import numpy as np
 
 from diagnosis.plant.plant import ROOT, Base
 from groundwalk.errors import BadModelError
 
-if TYPE_CHECKING:
-    import mujoco
-
 _LEVEL_M = 0.02
 """A body reaching down to at most this [m] above the lowest one counts as a foot."""
 
 
-def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
+def set_base(spec: mujoco.MjSpec, base: Base) -> None:
     """Weld the base to the world, without contacts, or let it float above a ground.
 
     For a floating base, a model without a free joint gets one at its only body under
@@ -24,8 +22,6 @@ def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
       BadModelError: the base is to float, but several bodies are under the world, none
         is, or a joint other than a free one holds it.
     """
-    import mujoco
-
     free = [
         joint
         for joint in spec.joints
@@ -44,14 +40,12 @@ def set_base(spec: "mujoco.MjSpec", base: Base) -> None:
     _add_ground(spec)
 
 
-def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
+def lock_joints(spec: mujoco.MjSpec, free: set[str]) -> None:
     """Remove all joints but those in `free`, as if they were locked at position 0.
 
     A body whose joint is removed becomes part of the body that carries it. Equalities,
     tendons and sensors of the model that refer to a removed joint are removed, too.
     """
-    import mujoco
-
     locked = [joint for joint in spec.joints if joint.name not in free]
     names = {joint.name for joint in locked}
     for equality in list(spec.equalities):
@@ -69,14 +63,12 @@ def lock_joints(spec: "mujoco.MjSpec", free: set[str]) -> None:
     spec.compiler.fusestatic = True
 
 
-def standing_bodies(model: "mujoco.MjModel") -> tuple[str, ...]:
+def standing_bodies(model: mujoco.MjModel) -> tuple[str, ...]:
     """Names of the bodies taken as feet, left before right.
 
     With all joints at zero they reach lowest, to within 2 cm, of all bodies that carry
     no other body and have shapes that can touch something.
     """
-    import mujoco
-
     data = mujoco.MjData(model)
     data.qpos[:] = model.qpos0
     mujoco.mj_kinematics(model, data)
@@ -94,14 +86,14 @@ def standing_bodies(model: "mujoco.MjModel") -> tuple[str, ...]:
     return tuple(model.body(body).name for body in feet)
 
 
-def _bottom(model: "mujoco.MjModel", data: Any, geom: int) -> float:
+def _bottom(model: mujoco.MjModel, data: Any, geom: int) -> float:
     """Height of the lowest corner of a shape's bounding box [m]."""
     centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
     down = data.geom_xmat[geom].reshape(3, 3)[2]
     return float(data.geom_xpos[geom, 2] + down @ centre - np.abs(down) @ half)
 
 
-def _root_body(spec: "mujoco.MjSpec") -> Any:
+def _root_body(spec: mujoco.MjSpec) -> Any:
     bodies = spec.worldbody.bodies
     if len(bodies) != 1:
         names = ", ".join(body.name for body in bodies)
@@ -117,9 +109,7 @@ def _root_body(spec: "mujoco.MjSpec") -> Any:
     return bodies[0]
 
 
-def _add_ground(spec: "mujoco.MjSpec") -> None:
-    import mujoco
-
+def _add_ground(spec: mujoco.MjSpec) -> None:
     grounds = (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD)
     if any(geom.type in grounds for geom in spec.worldbody.geoms):
         return

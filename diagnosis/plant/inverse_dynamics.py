@@ -1,20 +1,17 @@
 """Computes joint torques by inverse dynamics of the robot model."""
 
 import copy
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from diagnosis.plant.plant import Plant
 from groundwalk.arrays import FloatArray
 
-if TYPE_CHECKING:
-    import mujoco
-
 
 def inverse_dynamics(
     plant: Plant,
-    model: "mujoco.MjModel",
+    model: mujoco.MjModel,
     position_rad: FloatArray,
     velocity_rad_s: FloatArray,
     acceleration_rad_s2: FloatArray,
@@ -25,8 +22,6 @@ def inverse_dynamics(
     constraints, such as equalities between joints, are left out: they would turn sensor
     noise into large torques.
     """
-    import mujoco
-
     model = copy.copy(model)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
     data = mujoco.MjData(model)

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import mujoco
 
 from diagnosis.plant.base import lock_joints, set_base, standing_bodies
 from diagnosis.plant.model_files import mjcf_spec, urdf_spec
@@ -23,9 +24,6 @@ from robots import names as robot_names
 from robots.engine_models.mjcf import quiet_mujoco
 from robots.from_urdf.package_paths import example_robots
 from worlds.recordings.columns import nearest
-
-if TYPE_CHECKING:
-    import mujoco
 
 _SUFFIXES = (".xml", ".urdf")
 _HELD_AT_M = 1.0
@@ -80,9 +78,7 @@ def load_plant(
     return Plant(name, spec, ours, own, base, feet, options)
 
 
-def described_plant(
-    description: Description, spec: "mujoco.MjSpec", base: Base
-) -> Plant:
+def described_plant(description: Description, spec: mujoco.MjSpec, base: Base) -> Plant:
     """Make the plant of a robot whose MuJoCo specification, changed here, exists."""
     servo = described_servo(description, description.joints)
     _equip(spec, base, description.joints, servo)
@@ -91,11 +87,9 @@ def described_plant(
 
 
 def _equip(
-    spec: "mujoco.MjSpec", base: Base, joints: Sequence[str], servo: Servo
+    spec: mujoco.MjSpec, base: Base, joints: Sequence[str], servo: Servo
 ) -> None:
     """Fix or free the base, lock all joints but `joints`, and add their servos."""
-    import mujoco
-
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     remove_actuators(spec)
@@ -108,7 +102,7 @@ def _equip(
 
 def _read(
     source: str | Path, base: Base
-) -> tuple[str, "mujoco.MjSpec", Description | None]:
+) -> tuple[str, mujoco.MjSpec, Description | None]:
     text = str(source)
     if Path(text).suffix in _SUFFIXES:
         path = Path(text)
@@ -126,7 +120,7 @@ def _read(
     return text, urdf_spec(examples[text], base == "floating"), None
 
 
-def _described_spec(description: Description) -> "mujoco.MjSpec":
+def _described_spec(description: Description) -> mujoco.MjSpec:
     from robots.engine_models.mjcf import mujoco_spec
 
     spec = mujoco_spec(description)
@@ -137,7 +131,7 @@ def _described_spec(description: Description) -> "mujoco.MjSpec":
     return spec
 
 
-def _compiled(spec: "mujoco.MjSpec", name: str) -> "mujoco.MjModel":
+def _compiled(spec: mujoco.MjSpec, name: str) -> mujoco.MjModel:
     try:
         return spec.compile()
     except ValueError as error:
@@ -148,11 +142,9 @@ def _compiled(spec: "mujoco.MjSpec", name: str) -> "mujoco.MjModel":
 
 
 def _chosen(
-    model: "mujoco.MjModel", joints: Sequence[str] | None, name: str
+    model: mujoco.MjModel, joints: Sequence[str] | None, name: str
 ) -> tuple[str, ...]:
     """Names of the hinges and slides, in the model's order; only `joints` if given."""
-    import mujoco
-
     kinds = (mujoco.mjtJoint.mjJNT_HINGE.value, mujoco.mjtJoint.mjJNT_SLIDE.value)
     names = [model.joint(i).name for i in range(model.njnt)]
     there = [

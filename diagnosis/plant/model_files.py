@@ -1,21 +1,18 @@
 """Reads robot models from MJCF and URDF files."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
+import mujoco
 import numpy as np
 
 from groundwalk.errors import BadModelError
-
-if TYPE_CHECKING:
-    import mujoco
 
 _COMPILER = {"balanceinertia": "true", "boundmass": "1e-6", "boundinertia": "1e-9"}
 _NO_DYNAMICS = ("transmission", "gazebo", "material", "mujoco")
 
 
-def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
+def urdf_spec(path: Path, contacts: bool) -> mujoco.MjSpec:
     """Read a URDF as a MuJoCo specification without visual shapes.
 
     Meshes are never read: they do not matter to the dynamics, and their paths are
@@ -26,8 +23,6 @@ def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
     Raises:
       BadModelError: the file cannot be read or is no URDF.
     """
-    import mujoco
-
     try:
         root = ElementTree.parse(path).getroot()
     except (ElementTree.ParseError, OSError) as error:
@@ -50,14 +45,12 @@ def urdf_spec(path: Path, contacts: bool) -> "mujoco.MjSpec":
     return spec
 
 
-def mjcf_spec(path: Path) -> "mujoco.MjSpec":
+def mjcf_spec(path: Path) -> mujoco.MjSpec:
     """Read an MJCF file as a MuJoCo specification.
 
     Raises:
       BadModelError: MuJoCo cannot read the file.
     """
-    import mujoco
-
     try:
         return mujoco.MjSpec.from_file(str(path))
     except ValueError as error:

@@ -3,12 +3,11 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+import mujoco
 
 from diagnosis.plant.servo import Servo
-
-if TYPE_CHECKING:
-    import mujoco
 
 Base = Literal["fixed", "floating"]
 """How a robot's base is held: welded to the world, or free to move.
@@ -35,7 +34,7 @@ class ModelOptions:
     disableflags: int
 
     @classmethod
-    def of(cls, spec: "mujoco.MjSpec") -> "ModelOptions":
+    def of(cls, spec: mujoco.MjSpec) -> "ModelOptions":
         """The options of a MuJoCo specification."""
         option = spec.option
         return cls(option.timestep, int(option.integrator), int(option.disableflags))
@@ -61,7 +60,7 @@ class Plant:
     """
 
     name: str
-    spec: "mujoco.MjSpec"
+    spec: mujoco.MjSpec
     joints: tuple[str, ...]
     servo: Servo
     base: Base = "fixed"
@@ -69,7 +68,7 @@ class Plant:
     options: ModelOptions | None = None
 
     @cached_property
-    def model(self) -> "mujoco.MjModel":
+    def model(self) -> mujoco.MjModel:
         """The compiled model; do not change it."""
         return self.spec.compile()
 
@@ -91,8 +90,6 @@ class Plant:
     @cached_property
     def slides(self) -> frozenset[str]:
         """Names of the joints that slide instead of turning."""
-        import mujoco
-
         kinds = {name: int(self.model.joint(name).type[0]) for name in self.joints}
         slide = int(mujoco.mjtJoint.mjJNT_SLIDE)
         return frozenset(name for name, kind in kinds.items() if kind == slide)
@@ -141,7 +138,7 @@ class Plant:
         )
 
 
-def _carries(model: "mujoco.MjModel", body: int, other: int) -> bool:
+def _carries(model: mujoco.MjModel, body: int, other: int) -> bool:
     """Whether a body is an ancestor of another one in the kinematic tree."""
     while other > 0:
         other = int(model.body_parentid[other])

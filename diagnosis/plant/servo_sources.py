@@ -3,8 +3,8 @@
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from diagnosis.plant.servo import Servo
@@ -12,9 +12,6 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import UnknownNameError
 from robots import Description
 from worlds.recordings.metadata import ServoGains
-
-if TYPE_CHECKING:
-    import mujoco
 
 Gains = Mapping[str, ServoGains] | ServoGains
 """Servo gains by the joint's name, or one set of gains for all joints."""
@@ -33,7 +30,7 @@ def described_servo(description: Description, joints: Sequence[str]) -> Servo:
     )
 
 
-def model_servo(model: "mujoco.MjModel", joints: Sequence[str]) -> Servo:
+def model_servo(model: mujoco.MjModel, joints: Sequence[str]) -> Servo:
     """Read the servos of a compiled model; joints without any get zero stiffness.
 
     Stiffness and damping are those of position actuators (fixed gain, affine bias)
@@ -86,10 +83,8 @@ def with_gains(servo: Servo, joints: Sequence[str], gains: Gains | None) -> Serv
     return replace(servo, **values)
 
 
-def remove_actuators(spec: "mujoco.MjSpec") -> None:
+def remove_actuators(spec: mujoco.MjSpec) -> None:
     """Remove all actuators, sensors of actuators and keyframes from a model."""
-    import mujoco
-
     kind = mujoco.mjtObj.mjOBJ_ACTUATOR
     sensors = [sensor for sensor in spec.sensors if sensor.objtype == kind]
     # the keyframes' controls would be of the wrong number
@@ -97,14 +92,12 @@ def remove_actuators(spec: "mujoco.MjSpec") -> None:
         spec.delete(part)
 
 
-def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> None:
+def add_servos(spec: mujoco.MjSpec, joints: Sequence[str], servo: Servo) -> None:
     """Add one affine actuator for each joint to a model, named as the joint.
 
     Its force is clip(kp (control - q) - kd v, +-max_torque) at joint position q and
     velocity v; the back-EMF becomes damping of the joint.
     """
-    import mujoco
-
     for column, name in enumerate(joints):
         joint = spec.joint(name)
         joint.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE.value
@@ -126,9 +119,7 @@ def add_servos(spec: "mujoco.MjSpec", joints: Sequence[str], servo: Servo) -> No
             actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE.value
 
 
-def _actuators_of(model: "mujoco.MjModel", joint: int) -> list[int]:
-    import mujoco
-
+def _actuators_of(model: mujoco.MjModel, joint: int) -> list[int]:
     at_joint = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
     kinds = [kind.value for kind in at_joint]
     return [

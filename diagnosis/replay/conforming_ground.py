@@ -7,18 +7,15 @@ as high or low as the bumps. Where a foot steps later, the ground is flat.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import mujoco
 import numpy as np
 
 from diagnosis.effects.ground import foot_geoms, ground_geoms
+from diagnosis.plant.plant import Plant
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
-
-if TYPE_CHECKING:
-    import mujoco
-
-    from diagnosis.plant.plant import Plant
 
 DOUBT_M = 6e-4
 """Distance [m] from the plane below which a sole counts as standing on the plane: three
@@ -33,7 +30,7 @@ forces are not recorded."""
 
 
 def conform(
-    batch: Any, plant: "Plant", runs: Sequence[Run], height_m: FloatArray
+    batch: Any, plant: Plant, runs: Sequence[Run], height_m: FloatArray
 ) -> None:
     """Raise or lower the ground under loaded soles to where the soles are.
 
@@ -41,8 +38,6 @@ def conform(
     (N,) at most. The `batch` of N simulations is in the states that their `runs` start
     from.
     """
-    import mujoco
-
     model, floor = plant.model, ground_geoms(plant)[0]
     n = len(height_m)
     places = np.asarray(batch.expand("geom_pos")).reshape(n, model.ngeom, 3)
@@ -66,7 +61,7 @@ def conform(
 
 
 def _above(
-    model: "mujoco.MjModel",
+    model: mujoco.MjModel,
     geoms: IntArray,
     floor: int,
     at: FloatArray,
@@ -77,8 +72,6 @@ def _above(
     `geoms` are a foot's, `floor` is the plane; `at` (N, ngeom, 3) and `turns` (N,
     ngeom, 3, 3) are positions and orientations of all geoms.
     """
-    import mujoco
-
     normal = turns[:, floor, :, 2]
     down = np.einsum("ngij,ni->ngj", turns[:, geoms], normal)
     middle, half = model.geom_aabb[geoms, :3], model.geom_aabb[geoms, 3:]

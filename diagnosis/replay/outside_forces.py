@@ -1,21 +1,17 @@
 """Applies pushes and drag to bodies in a batch of simulations."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from mujoco.batch import Batch
 
 from diagnosis.effects.variants import Variants
 from groundwalk.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from mujoco.batch import Batch
 
 
 class OutsideForces:
     """Pushes and drag at the centres of mass of bodies in all simulations."""
 
     def __init__(
-        self, batch: "Batch", variants: Variants, runs: int, step_s: float
+        self, batch: Batch, variants: Variants, runs: int, step_s: float
     ) -> None:
         """Find the simulations and bodies that forces act on.
 

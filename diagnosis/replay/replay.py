@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from mujoco.batch import Batch, SimulationError
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.servo import Servo
@@ -85,8 +86,6 @@ class ReplayBatch:
         self, runs: Sequence[Run], variants: Variants, step_s: float, threads: int
     ) -> None:
         """Put every simulation into its run's start state; arguments of `replay`."""
-        from mujoco.batch import Batch
-
         self.plant, self.step_s = variants.plant, step_s
         self.n, self.count = variants.n * len(runs), len(runs)
         self._batch = Batch(self.plant.model, self.n, threads)
@@ -99,8 +98,6 @@ class ReplayBatch:
 
     def step(self) -> None:
         """Take one step of physics; a simulation that diverges gets NaN positions."""
-        from mujoco.batch import SimulationError
-
         try:
             self._batch.step()
         except SimulationError as error:

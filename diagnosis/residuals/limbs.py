@@ -5,15 +5,13 @@ missing physics at an elbow, only that arm needs to be simulated, which is faste
 """
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+
+import mujoco
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.traces.windows import Run
-
-if TYPE_CHECKING:
-    import mujoco
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +82,8 @@ def limbs_of(plant: Plant) -> tuple[Limb, ...]:
     )
 
 
-def _coupled_trees(model: "mujoco.MjModel") -> list[set[int]]:
+def _coupled_trees(model: mujoco.MjModel) -> list[set[int]]:
     """Sets of kinematic trees that constraints couple; empty if contacts may, too."""
-    import mujoco
-
     touchable = model.geom_contype.any() and model.geom_conaffinity.any()
     off = model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONTACT
     if (touchable and not off) or model.ntendon or model.nflex:
@@ -128,10 +124,8 @@ def _with_trees(plant: Plant, kept: set[int]) -> Plant:
     )
 
 
-def _without_shapes(spec: "mujoco.MjSpec", model: "mujoco.MjModel") -> None:
+def _without_shapes(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
     """Remove shapes and sensors, which a limb does not need, but keep all inertias."""
-    import mujoco
-
     for body in spec.bodies[1:]:
         compiled = model.body(body.name)
         body.explicitinertial = True
