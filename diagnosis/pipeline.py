@@ -12,9 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.audit.result import Audit
-from diagnosis.conclude.answer import believed_effects, verdict_kind, without_unsure
-from diagnosis.conclude.confidence import alternatives
-from diagnosis.conclude.detectable import smallest_detectable
+from diagnosis.conclude.answer import (
+    alternatives,
+    believed_effects,
+    verdict_kind,
+    without_unsure,
+)
+from diagnosis.conclude.estimates import smallest_detectable
 from diagnosis.conclude.held_out_errors import (
     held_out_errors,
     larger_than_learned,
@@ -24,14 +28,12 @@ from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.data_sets import DataSets
-from diagnosis.residuals.mismatch_map import mismatch_map
+from diagnosis.residuals.data_sets import DataSets, expected_seconds
+from diagnosis.residuals.mismatch_map import mismatch_map, unexplained
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.residuals.unexplained import unexplained
 from diagnosis.search.accept import accepted
 from diagnosis.search.all_joints import all_joints
-from diagnosis.search.cost import expected_seconds
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge

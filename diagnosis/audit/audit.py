@@ -5,14 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.audit.channels import (
+from diagnosis.audit.measures import (
     audit_channel,
+    audit_joint,
+    audit_timing,
     channel_findings,
     channels_of,
+    excitation_findings,
     repeated_findings,
     repeated_share,
+    stuck_findings,
 )
-from diagnosis.audit.motion import audit_joint, excitation_findings, stuck_findings
 from diagnosis.audit.result import Audit, Finding, TraceAudit
 from diagnosis.audit.suspicions import (
     drive_findings,
@@ -22,7 +25,6 @@ from diagnosis.audit.suspicions import (
     torque_findings,
     velocity_findings,
 )
-from diagnosis.audit.timing import audit_timing
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.smoothing import smooth
 from diagnosis.traces.trace import Trace

@@ -9,8 +9,7 @@ from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.screening import Screen
-from diagnosis.search.signatures import signatures
+from diagnosis.search.screening import Screen, signatures
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict

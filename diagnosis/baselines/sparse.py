@@ -1,18 +1,213 @@
 """Baseline: sparse regression of the joint torque that the nominal model lacks."""
 
+import copy
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 
 from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
-from diagnosis.baselines.sparse_columns import Column, Torques, torque_columns
-from diagnosis.effects.library import effect
-from diagnosis.effects.parts import PlacedEffect
-from diagnosis.plant.plant import Plant
+from diagnosis.effects.effect import Effect
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import JointMotion, PlacedEffect
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant, inverse_dynamics
+from diagnosis.residuals.predictor import variants_of
+from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray, IntArray
+
+MOST_ROWS = 1500
+"""Largest number of rows, of all recordings together, that regression uses."""
+
+NUDGE_RAD = 1e-4
+"""Step of an angle [rad] for finite differences of inverse dynamics."""
+
+_EDGE_S = 0.2
+"""Time at both ends of a recording that is left out, because smoothed accelerations are
+poor there [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Torques:
+    """The torque that the nominal model does not explain, in R rows of all recordings.
+
+    Attributes:
+      motion: smoothed motion, arrays (R, j); its torque is that of the nominal model.
+      damping_nm_s_rad: (j,) median damping plus back-EMF of the servos.
+      weight_rad_nm: (j,) weights 1 / kp. They turn torques into position errors, which
+        are about equally large at all joints.
+      missing: (R j,) weighted torque of the servos less that of the nominal model.
+    """
+
+    motion: JointMotion
+    damping_nm_s_rad: FloatArray
+    weight_rad_nm: FloatArray
+    missing: FloatArray
+
+    @classmethod
+    def of(cls, plant: Plant, traces: Sequence[Trace]) -> "Torques":
+        """Compute servo torque minus inverse dynamics for recordings of a robot."""
+        every = max(1, -(-sum(trace.ticks for trace in traces) // MOST_ROWS))
+        parts = zip(*(_rows(trace, every) for trace in traces), strict=True)
+        since_s, q, v, a, command, rate, kp, damping, servo_nm = map(
+            np.concatenate, parts
+        )
+        # the model has the nominal servo's back-EMF as damping
+        emf = traces[0].servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
+        nominal = inverse_dynamics(plant, plant.model, q, v, a) + emf * v
+        weight = 1 / np.maximum(np.median(kp, axis=0), 1e-6)
+        return cls(
+            JointMotion(since_s, q, v, a, command, rate, kp, nominal),
+            np.median(damping, axis=0),
+            weight,
+            ((servo_nm - nominal) * weight).reshape(-1),
+        )
+
+    def weighted(self, values: FloatArray) -> FloatArray:
+        """(R j,) torques (R, j) times the weights."""
+        return np.asarray((values * self.weight_rad_nm).reshape(-1))
+
+
+def _rows(trace: Trace, every: int) -> list[FloatArray]:
+    """Arrays (rows, j) that `Torques.of` names, at some rows of a trace."""
+    q, v, a = smooth_columns(trace.time_s, trace.position_rad)
+    command = trace.position_rad if trace.command_rad is None else trace.command_rad
+    # around a row the one before it holds as long as its own
+    command = (command + np.vstack([command[:1], command[:-1]])) / 2
+    rate = np.gradient(command, trace.time_s, axis=0)
+    servo, since_s = trace.servo, trace.time_s - trace.time_s[0]
+    whole = np.isfinite(np.hstack([q, v, a, command, rate])).all(axis=1)
+    inside = (since_s > _EDGE_S) & (since_s < since_s[-1] - _EDGE_S)
+    rows = np.flatnonzero(whole & inside)[::every]
+    damping = servo.kd_nm_s_rad + servo.back_emf_nm_s_rad
+    torque = servo.torque(command - q, v)
+    columns = (
+        since_s[:, None],
+        q,
+        v,
+        a,
+        command,
+        rate,
+        servo.kp_nm_rad,
+        damping,
+        torque,
+    )
+    return [np.broadcast_to(column, q.shape)[rows] for column in columns]
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """One column of the regression: torque of an effect for a parameter value of 1.
+
+    The name is empty for a constant torque, which is no effect alone; the parameter is
+    given by its index, the torque (N,) is weighted.
+    """
+
+    effect: str
+    place: str
+    parameter: int
+    values: FloatArray
+    damping_nm_s_rad: float = 1.0
+    """Damping of the servo plus back-EMF at the joint."""
+
+    def named(self, size: float, error: float) -> tuple[str, float, float]:
+        """Effect name, parameter value and standard error for a fitted coefficient."""
+        if not self.effect:
+            return "", size, error
+        return effect(self.effect).from_column(size, error, self.damping_nm_s_rad)
+
+
+def torque_columns(
+    plant: Plant, traces: Sequence[Trace], torques: Torques
+) -> list[Column]:
+    """Columns of all effects that are linear, or nearly so, in a parameter."""
+    columns = [
+        column
+        for joint in range(len(plant.joints))
+        for column in _joint_columns(plant, torques, joint)
+    ]
+    for kind in all_effects().values():
+        if kind.by_inverse_dynamics:
+            for place in kind.places(plant, traces):
+                columns += _changed_columns(plant, torques, kind, place)
+        elif kind.place_kind == "commands" and kind.places(plant, traces):
+            columns += _signal_columns(plant, torques, kind)
+    return columns
+
+
+def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Column]:
+    """Columns of effects at one joint alone, and of a constant torque there."""
+    motion, place = _motion_of(torques, joint), plant.joints[joint]
+    damping = float(torques.damping_nm_s_rad[joint])
+
+    def column(name: str, parameter: int, values: FloatArray) -> Column:
+        """The column of an effect whose torque (rows,) acts at this joint only."""
+        whole = np.zeros_like(torques.motion.position_rad)
+        whole[:, joint] = values
+        return Column(name, place, parameter, torques.weighted(whole), damping)
+
+    for kind in all_effects().values():
+        values = kind.torque_column(motion) if kind.place_kind == "joint" else None
+        if values is not None:
+            yield column(kind.name, kind.column_parameter, values)
+    yield column("", 0, np.ones_like(motion.position_rad))
+
+
+def _signal_columns(plant: Plant, torques: Torques, kind: Effect) -> Iterator[Column]:
+    """The column of an effect on the commands of all joints, if it has one."""
+    every = [
+        kind.torque_column(_motion_of(torques, joint))
+        for joint in range(len(plant.joints))
+    ]
+    values = [one for one in every if one is not None]
+    if values:
+        whole = np.stack(values, axis=1)
+        place, number = kind.place_kind, kind.column_parameter
+        yield Column(kind.name, place, number, torques.weighted(whole))
+
+
+def _motion_of(torques: Torques, joint: int) -> JointMotion:
+    """The motion of one joint, taken from arrays of all joints."""
+    return JointMotion(*(values[:, joint] for values in vars(torques.motion).values()))
+
+
+def _changed_columns(
+    plant: Plant, torques: Torques, kind: Effect, place: str
+) -> Iterator[Column]:
+    """Columns of an effect that changes model or pose, by finite differences."""
+    motion = torques.motion
+    parameters = kind.parameters(plant, place)
+    for number, parameter in enumerate(parameters):
+        size = parameter.typical or 0.1 * parameter.high
+        if kind.place_kind == "joint":
+            size = NUDGE_RAD
+        values = tuple(size if i == number else 0.0 for i in range(len(parameters)))
+        variants = variants_of(plant, [(PlacedEffect(kind.name, place, values),)])
+        pose = motion.position_rad - variants.joints.offset_rad[0]
+        model = _model_of(plant, variants)
+        moves = pose, motion.velocity_rad_s, motion.acceleration_rad_s2
+        change = (inverse_dynamics(plant, model, *moves) - motion.torque_nm) / size
+        yield Column(kind.name, place, number, torques.weighted(change))
+
+
+def _model_of(plant: Plant, variants: Variants) -> mujoco.MjModel:
+    """A compiled model of the robot with the changes of the first variant."""
+    if not variants.fields:
+        return plant.model
+    model = copy.copy(plant.model)
+    for field, values in variants.fields.items():
+        owner = model
+        *parents, last = field.split(".")
+        for parent in parents:
+            owner = getattr(owner, parent)
+        getattr(owner, last)[:] = values[0].reshape(getattr(owner, last).shape)
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    return model
+
 
 THRESHOLD = 0.1
 """Smallest part of the missing torque that a column must explain to be kept: the norm

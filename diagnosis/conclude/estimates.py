@@ -1,13 +1,15 @@
-"""Computes intervals for the values (parameters of effects) of a fitted model."""
+"""Intervals for fitted values, and the smallest sizes of effects that would show."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import islice
 
 import numpy as np
 
+from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.fitting import FittedModel
-from diagnosis.verdict import Estimate
+from diagnosis.search.fitting import Coordinates, FittedModel
+from diagnosis.search.screening import Signature
+from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import FloatArray, IntArray
 
 Z_80 = 1.2815515655446004
@@ -118,3 +120,35 @@ def _neutral(fit: FittedModel, index: int) -> float:
 def _values(fit: FittedModel, x: FloatArray) -> list[float]:
     """The p values of all effects at the (p,) scaled coordinates `x`."""
     return [value for placed in fit.coordinates.model_at(x) for value in placed.values]
+
+
+def smallest_detectable(
+    predictor: Predictor, found: Sequence[Signature], gain: float
+) -> Mapping[str, Amount]:
+    """The size of each effect, by "effect@place", that would just be reported.
+
+    The change of the residual by an effect (its signature) is taken as proportional to
+    the effect's size, hence the gain grows with the square of the size. Effects that
+    act only above a threshold are left out.
+
+    Args:
+      predictor: predictor of the data.
+      found: signatures of the effects.
+      gain: gain [nats] that an effect needs to be reported.
+    """
+    sizes: dict[str, Amount] = {}
+    for signature in found:
+        placed = signature.placed
+        power = 0.5 * float(signature.change @ signature.change)
+        if effect(placed.name).threshold or power <= 0:
+            continue
+        first = Coordinates(predictor.plant, (placed,)).parameters[0]
+        if not np.isfinite(first.neutral):
+            continue
+        tried = max(abs(value) for value in placed.values[:1])
+        size = abs(tried - first.neutral) or max(map(abs, placed.values))
+        least = size * float(np.sqrt(gain / power))
+        if placed.key not in sizes or least < sizes[placed.key].value:
+            unit = predictor.plant.unit(first.unit, placed.place)
+            sizes[placed.key] = Amount(least, unit)
+    return sizes

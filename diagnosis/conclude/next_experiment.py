@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.conclude.confidence import TIED_NATS
+from diagnosis.conclude.answer import TIED_NATS
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.predictor import Model, variants_of

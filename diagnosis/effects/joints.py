@@ -84,8 +84,8 @@ class Backlash(NumberEffect, ServoEffect):
 
     The servo controls the motor's angle; the recorded encoder sits at the joint. Within
     the gap, whose size is the total play, the motor moves freely, slowed only by its
-    damping; at the gap's edges it pushes the joint. See `diagnosis.replay.gaps`. Cheap
-    gears have a gap of some hundredths of a radian.
+    damping; at the gap's edges it pushes the joint. Cheap gears have a gap of some
+    hundredths of a radian.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model.

@@ -5,15 +5,7 @@ from collections.abc import Iterator, Mapping
 from contextvars import ContextVar
 from types import MappingProxyType
 
-from diagnosis.effects import (
-    bodies,
-    contact,
-    friction,
-    ground,
-    joints,
-    servos,
-    signals,
-)
+from diagnosis.effects import bodies, friction, ground, joints, servos
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
 from groundwalk.errors import BadValueError, UnknownNameError
@@ -28,10 +20,10 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             friction.LoadFriction(),
             joints.Backlash(),
             joints.JointElasticity(),
-            signals.CommandLatency(),
-            signals.SensorDelay(),
+            servos.CommandLatency(),
+            servos.SensorDelay(),
             joints.EncoderOffset(),
-            signals.GyroBias(),
+            servos.GyroBias(),
             servos.TorqueLimit(),
             servos.SpeedLimit(),
             servos.ServoGain(),
@@ -42,8 +34,8 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             joints.JointSpring(),
             joints.EndStop(),
             servos.ServoFade(),
-            contact.ContactFriction(),
-            contact.ContactCompliance(),
+            ground.ContactFriction(),
+            ground.ContactCompliance(),
             ground.GroundSlope(),
             ground.UnevenGround(),
             bodies.ExternalForce(),

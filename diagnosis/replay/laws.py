@@ -7,11 +7,10 @@ import numpy as np
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.servo import Servo
-from diagnosis.replay.elastic import ElasticJoints
 from diagnosis.replay.friction import BatchFriction
-from diagnosis.replay.gaps import BatchGaps
 from diagnosis.replay.outside_forces import OutsideForces
 from diagnosis.replay.servos import BatchServos, Ends, columns, first_share
+from diagnosis.replay.transmission import BatchGaps, ElasticJoints
 from groundwalk.arrays import FloatArray
 
 FAST = 1e9

@@ -1,7 +1,7 @@
 """Replays: variants of a robot model driven by the commands of recordings."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mujoco.batch import Batch, SimulationError
@@ -11,10 +11,10 @@ from diagnosis.plant.servo import Servo
 from diagnosis.replay.conforming_ground import conform
 from diagnosis.replay.drive import Drive
 from diagnosis.replay.laws import BatchLaws
-from diagnosis.replay.tape import Replayed, Tape
+from diagnosis.replay.servos import columns
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
 
 STEP_S = 0.002
 """Default time step of the physics in replays.
@@ -26,6 +26,29 @@ Example:
 BLOCK = 256
 """Number of physics steps whose commands are computed at once, for speed; any value of
 this order does."""
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """Predicted measurements of n variants in one run, at the T rows of its recording.
+
+    Attributes:
+      position_rad: (n, T, j) measured joint positions.
+      velocity_rad_s: (n, T, j) measured joint velocities.
+      servo_nm: (n, T, j) torques of the servos, without back-EMF.
+      base: (n, T, 13) position (3), orientation w, x, y, z, linear velocity (3, world
+        frame) and angular velocity (3, body frame) of the base; None if it is fixed.
+      gyroscope_rad_s: (n, T, 3) gyroscope, base frame; only the bias if base is fixed.
+
+    Example:
+      >>> position_rad = replay(runs, variants)[0].position_rad
+    """
+
+    position_rad: FloatArray
+    velocity_rad_s: FloatArray
+    servo_nm: FloatArray
+    base: FloatArray | None
+    gyroscope_rad_s: FloatArray
 
 
 def replay(
@@ -132,3 +155,108 @@ def _servo(trace: Trace) -> Servo:
         return trace.servo
     none = np.zeros_like(trace.servo.kp_nm_rad)
     return replace(trace.servo, kp_nm_rad=none, kd_nm_s_rad=none)
+
+
+class Tape:
+    """Stored states of the joints and of a floating base after every physics step."""
+
+    def __init__(self, batch: "ReplayBatch", steps: int) -> None:
+        """Make room for the states of `steps` physics steps, and store the start."""
+        self._batch, shape = batch, (steps + 1, batch.n, len(batch.plant.joints))
+        self._position, self._velocity, self._torque = map(np.empty, [shape] * 3)
+        self._base: FloatArray | None = None
+        if batch.plant.base == "floating":
+            self._base = np.empty((steps + 1, batch.n, 13))
+        self._force = batch.bind("actuator_force")
+        self._actuators = columns(batch.plant.actuators)
+        self.note(0)
+        self._torque[0] = 0.0  # no step has been taken
+
+    def note(self, step: int) -> None:
+        """Store the simulations' present state, the one after `step` physics steps."""
+        batch = self._batch
+        _, self._velocity[step] = batch.laws.joint_state()
+        self._position[step] = batch.laws.encoder_rad()
+        self._torque[step] = self._force[:, self._actuators]
+        if self._base is not None:
+            self._base[step, :, :7] = batch.qpos[:, :7]
+            self._base[step, :, 7:] = batch.qvel[:, :6]
+
+    def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
+        """Predicted measurements for each run, at the rows of its recording."""
+        return [self._read(k, run, variants) for k, run in enumerate(runs)]
+
+    def _read(self, k: int, run: Run, variants: Variants) -> Replayed:
+        """Predicted measurements for run number k."""
+        rows = np.arange(variants.n) * self._batch.count + k
+        since_s = run.trace.time_s - run.trace.time_s[0]
+        now_s = np.tile(since_s, (variants.n, 1))
+        late_s = now_s - variants.signals.sensor_delay_s[:, None]
+        position, velocity = self._joints_at(rows, late_s)
+        position = position + variants.joints.offset_rad[:, None]
+        bias = variants.signals.gyro_bias_rad_s[:, None]
+        gyroscope, base = np.repeat(bias, run.trace.ticks, axis=1), None
+        if self._base is not None:
+            low, t = self._between(now_s)
+            row = rows[:, None]
+            base = (1 - t) * self._base[low, row] + t * self._base[low + 1, row]
+            base[:, :, 3:7] /= np.linalg.norm(base[:, :, 3:7], axis=2, keepdims=True)
+            gyroscope = gyroscope + base[:, :, 10:]
+        torque = self._torque_at(rows, since_s)
+        return Replayed(position, velocity, torque, base, gyroscope)
+
+    def _torque_at(self, rows: IntArray, since_s: FloatArray) -> FloatArray:
+        """(n, T, j) servo torque [N m], averaged from the row before to the row after.
+
+        A stiff servo's simulated torque jumps with its command. A real controller's
+        does not: it computes once in a control tick and then holds the torque.
+        """
+        total = np.cumsum(self._torque[:, rows], axis=0) * self._batch.step_s
+        low, t = self._between(since_s)
+        at = (1 - t[..., None]) * total[low] + t[..., None] * total[low + 1]
+        before, after = np.r_[0, : len(at) - 1], np.r_[1 : len(at), len(at) - 1]
+        lasted_s = (since_s[after] - since_s[before])[:, None, None]
+        lasted_s = np.where(lasted_s > 0, lasted_s, np.inf)  # a run of one row
+        return np.asarray(((at[after] - at[before]) / lasted_s).transpose(1, 0, 2))
+
+    def _joints_at(
+        self, rows: IntArray, time_s: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Joint positions and velocities (n, T, j) of simulations `rows` at some times.
+
+        Before the start, joints are assumed to have moved at their first velocities.
+        """
+        low, t = self._between(time_s)
+        row = rows[:, None]
+        before = self._position[low, row], self._velocity[low, row]
+        after = self._position[low + 1, row], self._velocity[low + 1, row]
+        position, velocity = hermite(before, after, self._batch.step_s, t)
+        before_s = np.minimum(time_s, 0.0)[..., None]
+        return position + before_s * self._velocity[0, row], velocity
+
+    def _between(self, time_s: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Index of the physics step before each time, and the share of a step since."""
+        last = len(self._position) - 1
+        at = np.clip(time_s / self._batch.step_s, 0, last - 1e-9)
+        low = at.astype(int)
+        return low, (at - low)[..., None]
+
+
+def hermite(
+    before: tuple[FloatArray, FloatArray],
+    after: tuple[FloatArray, FloatArray],
+    step_s: float,
+    share: FloatArray | float,
+) -> tuple[FloatArray, FloatArray]:
+    """Positions by cubic Hermite interpolation, velocities by linear interpolation.
+
+    `before` and `after` are positions and velocities at two steps `step_s` apart,
+    `share` is what has passed of the step, 0 to 1. SciPy's `CubicHermiteSpline` is not
+    used, since it needs the same times in all rows.
+    """
+    h, t = step_s, share
+    (q0, v0), (q1, v1) = before, after
+    v0, v1 = h * v0, h * v1
+    rise = q1 - q0
+    position = q0 + t * (v0 + t * (3 * rise - 2 * v0 - v1 + t * (v0 + v1 - 2 * rise)))
+    return position, (v0 + t * (v1 - v0)) / h

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo, servo_torque
-from diagnosis.replay.elastic import ElasticJoints
+from diagnosis.replay.transmission import ElasticJoints
 from groundwalk.arrays import FloatArray
 
 UNLIMITED_NM = 1e9

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.replay.tape import Replayed
+from diagnosis.replay.replay import Replayed
 from diagnosis.traces.noise import noise_of
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import continuous

@@ -1,14 +1,16 @@
-"""Divides recordings into data for fitting, for selection and for the final test."""
+"""Divides recordings by their use, and estimates how long a diagnosis of them takes."""
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from diagnosis.effects.library import all_effects
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.traces.shorten import LEAST_FLOATING_S, LEAST_S, shortened
-from diagnosis.traces.split import Split, split
+from diagnosis.traces.split import LEAST_FLOATING_S, LEAST_S, Split, shortened, split
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Recordings
 from groundwalk.errors import BadRecordingError
@@ -115,3 +117,36 @@ def affordable(plant: Plant, parts: Split) -> Split:
     return Split(
         *(tuple(shortened(use, longest_s, least_s)) for use, longest_s in uses)
     )
+
+
+REPLAYS = {"fixed": 600, "floating": 1500}
+"""Typical number of simulations of the fitting data in one diagnosis, by the robot's
+base. Six test cases with a fixed base needed 160 to 920, more for more effects. The
+number for floating bases, where more effects are tried, is a guess."""
+
+
+def expected_seconds(
+    plant: Plant,
+    traces: Sequence[Trace],
+    reference: Sequence[Trace],
+    channels: Channels,
+    threads: int,
+) -> float:
+    """Estimated duration of a diagnosis [s], right within a factor of two or three.
+
+    One batch is simulated and timed: every kind of effect once, at its first place. On
+    a fixed base a search in the recordings of the healthy robot (`reference`) precedes
+    that in `traces` and takes as long.
+    """
+    fit = affordable(plant, split(traces)).fit
+    predictor = Predictor(plant, fit, channels, threads=threads)
+    models: list[Model] = []
+    for name, kind in all_effects().items():
+        for place in kind.places(plant, predictor.traces)[:1]:
+            values = tuple(one.typical for one in kind.parameters(plant, place))
+            models.append((PlacedEffect(name, place, values),))
+    begun_s = time.monotonic()
+    predictor.predict(models)
+    each_s = (time.monotonic() - begun_s) / len(models)
+    searches = 2 if reference and plant.base == "fixed" else 1
+    return searches * REPLAYS[plant.base] * each_s

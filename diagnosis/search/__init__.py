@@ -1,7 +1,7 @@
 """The search for missing physics (effects) that explains a sim's errors.
 
-`signatures` and `screening` estimate what effects would explain, `candidates` proposes
-models, `fitting` fits them, `judging` decides which to believe, `search` adds effects,
-`accept` tests the result, and `all_joints` adds an effect at all joints at once.
+`screening` estimates what effects would explain, `candidates` proposes models,
+`fitting` fits them, `judging` decides which to believe, `search` adds effects, `accept`
+tests the result, and `all_joints` adds an effect at all joints at once.
 `reference` learns from recordings of the healthy robot.
 """

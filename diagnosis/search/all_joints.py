@@ -16,8 +16,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import Nudges, fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import Judged, SearchResult, without_each
-from diagnosis.search.screening import Guess, Screen
-from diagnosis.search.signatures import signatures
+from diagnosis.search.screening import Guess, Screen, signatures
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import BoolArray
 

@@ -10,8 +10,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.result import Judged, keys_of, without_each
 from diagnosis.search.rules import Rules
-from diagnosis.search.screening import Screen
-from diagnosis.search.signatures import Signature
+from diagnosis.search.screening import Screen, Signature
 from groundwalk.arrays import FloatArray
 
 FEW_JOINTS = 6

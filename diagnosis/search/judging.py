@@ -7,9 +7,8 @@ import numpy as np
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import MOST_STEPS, FittedModel, fit_all
 from diagnosis.search.hooks import Hooks
-from diagnosis.search.result import Judged, ranked
+from diagnosis.search.result import Judged, pack, ranked, unpack
 from diagnosis.search.rules import Rules
-from diagnosis.search.stored_models import pack, unpack
 from groundwalk.arrays import FloatArray
 
 

@@ -10,11 +10,10 @@ from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
+from diagnosis.search.result import pack_noise, unpack_noise
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
-from diagnosis.search.stored_models import pack_noise, unpack_noise
-from diagnosis.traces.shorten import LEAST_FLOATING_S, shortened
-from diagnosis.traces.split import split
+from diagnosis.traces.split import LEAST_FLOATING_S, shortened, split
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import FLOATING_WINDOW_S
 from groundwalk.errors import BadRecordingError

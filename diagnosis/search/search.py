@@ -14,7 +14,7 @@ from diagnosis.residuals.predictor import Model
 from diagnosis.search.candidates import Candidates, grown
 from diagnosis.search.judging import Judge, distinct
 from diagnosis.search.result import Judged, SearchResult
-from diagnosis.search.signatures import Signature, signatures
+from diagnosis.search.screening import Signature, signatures
 from diagnosis.traces.usage import Usage
 
 

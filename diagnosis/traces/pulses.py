@@ -12,8 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import median_filter, minimum_filter1d
 
-from diagnosis.plant.inverse_dynamics import inverse_dynamics
-from diagnosis.plant.plant import Plant
+from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace, filled, stretches
 from diagnosis.verdict import Pulse, PulseSource

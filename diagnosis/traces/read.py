@@ -9,7 +9,7 @@ import numpy as np
 
 from diagnosis.plant.load import load_plant
 from diagnosis.plant.plant import Plant
-from diagnosis.plant.servo_sources import Gains, with_gains
+from diagnosis.plant.servo import Gains, with_gains
 from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError

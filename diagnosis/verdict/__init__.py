@@ -3,7 +3,6 @@
 `Verdict` holds everything; docs/diagnosis_json.md documents its file field by field.
 """
 
-from diagnosis.verdict.errors import ChannelFit, Errors, Fit
 from diagnosis.verdict.parts import (
     Amount,
     Estimate,
@@ -17,7 +16,7 @@ from diagnosis.verdict.parts import (
     Unexplained,
     When,
 )
-from diagnosis.verdict.verdict import Verdict, VerdictKind
+from diagnosis.verdict.verdict import ChannelFit, Errors, Fit, Verdict, VerdictKind
 
 __all__ = [
     "Amount",

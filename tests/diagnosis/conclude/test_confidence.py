@@ -4,7 +4,7 @@ import pytest
 from made_up_search import found, judged, placed
 from made_up_traces import arm
 
-from diagnosis.conclude.confidence import (
+from diagnosis.conclude.answer import (
     MOST,
     TIED_NATS,
     alternatives,

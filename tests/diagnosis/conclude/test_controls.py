@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.controls import controls_of
+from diagnosis.conclude.held_out_errors import controls_of
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
+from diagnosis.residuals.mismatch_map import unexplained
 from diagnosis.residuals.predictor import Channels, Predictor
-from diagnosis.residuals.unexplained import unexplained
 
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))

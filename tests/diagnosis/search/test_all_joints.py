@@ -4,7 +4,7 @@ import pytest
 from known_arms import CHANNELS, LEAN, measured
 from made_up_traces import arm
 
-from diagnosis.conclude.confidence import probability
+from diagnosis.conclude.answer import probability
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.all_joints import all_joints, kinds_to_add

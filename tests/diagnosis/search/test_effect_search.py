@@ -10,7 +10,7 @@ from known_arms import CHANNELS, LEAN, NOISE_RAD, measured
 from made_up_search import judged
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.detectable import smallest_detectable
+from diagnosis.conclude.estimates import smallest_detectable
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import SearchResult, ranked

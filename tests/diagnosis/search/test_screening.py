@@ -7,8 +7,7 @@ from made_up_traces import arm, recorded
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
-from diagnosis.search.screening import Screen
-from diagnosis.search.signatures import Signature, signatures
+from diagnosis.search.screening import Screen, Signature, signatures
 from diagnosis.traces.usage import Usage
 
 NOISE_RAD = 4e-4

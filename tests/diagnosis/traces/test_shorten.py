@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from diagnosis.plant.servo import Servo
-from diagnosis.traces.shorten import shortened
+from diagnosis.traces.split import shortened
 from diagnosis.traces.trace import Trace
 
 
