@@ -40,6 +40,8 @@ class OptimizeGait(RunOptions):
       population: number of gaits tried in each generation.
       generations: number of generations of the search.
       sigma: spread of the first generation, as a share of each parameter's range.
+      ratings: number of times that the mean gait of each generation is rated after the
+        search, to choose the best of them.
       trials: number of trials of each gait in each world.
       course_m: length of the trials' course [m].
       threads: processor threads; 0 for all.
@@ -56,6 +58,7 @@ class OptimizeGait(RunOptions):
     population: int = 150
     generations: int = DefaultInt(15)
     sigma: float = 0.15
+    ratings: int = 10
     trials: int = 10
     course_m: float = 3.0
     threads: int = 0

@@ -23,6 +23,7 @@ class RealCourse:
     Attributes:
       terrain: name and parameters of the ground, such as "lumps:amplitude_m=0.01".
       hidden: physics of the real world that the sim's model lacks.
+      length_m: length of the course on which a gait is tried [m].
 
     Example:
       >>> RealCourse("flat").flat
@@ -31,6 +32,7 @@ class RealCourse:
 
     terrain: str = worlds.kind("real").terrain
     hidden: tuple[Hidden, ...] = ()
+    length_m: float = 3.0
 
     def __post_init__(self) -> None:
         """Refuse an unknown terrain."""

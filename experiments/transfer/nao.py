@@ -39,7 +39,8 @@ def _write(folder: RunFolder, config: TransferNao, cells: Sequence[Cell]) -> Non
     """Write the results so far, since a study takes hours."""
     folder.write_json(RESULT, {CELLS: cells})
     write_picture(folder, FIGURE, cells_figure, cells)
-    write_nao_page(folder, cells, len(config.plan), config.places.real)
+    planned, course = len(config.plan), config.places.real
+    write_nao_page(folder, cells, planned, config.ratings, course)
 
 
 if __name__ == "__main__":

@@ -59,6 +59,7 @@ class SearchPlan:
     population: int = 150
     generations: int = 15
     sigma: float = 0.15
+    ratings: int = RATINGS
     seed: int = 1
     threads: int = 0
 
@@ -70,7 +71,7 @@ class SearchPlan:
         load_gait(self.start)
         parse(self.terrain)
         check_search(self.population, self.sigma)
-        check_at_least(self, generations=1, seed=0, threads=0)
+        check_at_least(self, generations=1, ratings=1, seed=0, threads=0)
 
     @property
     def options(self) -> WorldOptions:
@@ -155,10 +156,10 @@ def _generation(
 
 
 def _ratings(plan: SearchPlan, means: FloatArray) -> FloatArray:
-    """(RATINGS, n) rewards [cm/s] of n gaits, each time on another ground."""
+    """(ratings, n) rewards [cm/s] of n gaits, each time on another ground."""
     _, _, of_ratings, _ = plan.seeds()
-    grounds = plan.grounds(plan.generations + RATINGS)[plan.generations :]
+    grounds = plan.grounds(plan.generations + plan.ratings)[plan.generations :]
     under = [ground for spec in grounds for ground in [spec.make()] * len(means)]
-    poses = [pose for pose in of_ratings.spawn(RATINGS) for _ in means]
-    _, rewards = rate(plan, np.tile(means, (RATINGS, 1)), under, poses, RATED)
-    return rewards.reshape(RATINGS, len(means))
+    poses = [pose for pose in of_ratings.spawn(plan.ratings) for _ in means]
+    _, rewards = rate(plan, np.tile(means, (plan.ratings, 1)), under, poses, RATED)
+    return rewards.reshape(plan.ratings, len(means))

@@ -121,7 +121,7 @@ MEAN = "mean_gait"
 """Key, in the record of a generation, of the mean gait that it began with."""
 
 RATINGS = 10
-"""Number of ratings of every generation's mean gait after the search."""
+"""Default number of ratings of every generation's mean gait after the search."""
 
 Rater = Callable[[FloatArray, np.random.SeedSequence], FloatArray]
 """Function that rates n gaits, vectors (n, 16), and returns their rewards (n,) [cm/s].
@@ -135,18 +135,19 @@ class Budget:
     """The size of a search.
 
     `sigma` is the standard deviation of the first generation, as a share of each
-    parameter's range.
+    parameter's range; `ratings` is how often every mean gait is rated after the search.
     """
 
     population: int
     generations: int
     sigma: float
+    ratings: int = RATINGS
 
     @property
     def rated(self) -> int:
         """Total number of ratings: samples and means in the search, means after it."""
         means = self.generations + 1
-        return self.generations * (self.population + 1) + RATINGS * means
+        return self.generations * (self.population + 1) + self.ratings * means
 
 
 def run_search(
@@ -201,7 +202,7 @@ def tune(
 ) -> Gait:
     """Search from a gait on, and choose the best of the means of all generations.
 
-    The means are rated `RATINGS` times after the search. The checkpoint is a file that
+    The means are rated again after the search. The checkpoint is a file that
     is written after every generation; all randomness follows from the seed.
     """
     of_search, *of_walks, of_ratings = seed.spawn(2 + budget.generations)
@@ -218,7 +219,8 @@ def tune(
         generation,
         budget.generations,
     )
-    return best_mean(means, [rater(means, one) for one in of_ratings.spawn(RATINGS)])
+    ratings = [rater(means, one) for one in of_ratings.spawn(budget.ratings)]
+    return best_mean(means, ratings)
 
 
 def _read(checkpoint: Path) -> tuple[GaitSearch, list[Entry]]:

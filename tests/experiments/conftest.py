@@ -34,7 +34,6 @@ def short_searches(monkeypatch):
 def short_walks(monkeypatch):
     """Walks of the NAO studies that end soon: where they lead to does not matter."""
     from experiments.grounded_walks.data import walk, walk_in_sim
-    from experiments.walking.evaluation import Study
 
     def short_walk(place, robot, vectors, seed, exploration_rad=(0.0,), rules=SHORT):
         return walk(place, robot, vectors, seed, exploration_rad, rules)
@@ -46,7 +45,6 @@ def short_walks(monkeypatch):
         "grounded_walks.models.WALK": SHORT,
         "transfer.nao_falls.walk": short_walk,
         "transfer.nao_falls.walk_in_sim": partial(walk_in_sim, rules=SHORT),
-        "transfer.nao_studies.study.Study": partial(Study, rules=SHORT),
     }
     for name, value in short.items():
         monkeypatch.setattr(f"experiments.{name}", value)

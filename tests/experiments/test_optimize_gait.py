@@ -13,7 +13,8 @@ from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
-SMALL = "--population 4 --generations 4 --trials 1 --course-m 0.3".split()
+SIZES = {"population": 4, "generations": 4, "trials": 1, "course-m": 0.3}
+SMALL = [f"--{name}={size}" for name, size in SIZES.items()]
 PATIENCE_S = 300
 
 
@@ -196,6 +197,7 @@ def test_a_damaged_checkpoint_is_named(tmp_path):
         ({"population": 3}, "population is 3; it must be at least 4"),
         ({"sigma": 0.0}, "sigma is 0.0"),
         ({"trials": 0}, "trials is 0"),
+        ({"ratings": 0}, "ratings is 0"),
         ({"course_m": 0.0}, "course_m is 0; it must be positive"),
         ({"course_m": 6.0}, "course_m is 6, but the ground ends at 5 m"),
         ({"threads": -1}, "threads is -1"),

@@ -46,13 +46,13 @@ class NotRun:
 Step = Run | NotRun
 
 SHORT = "--trials 1 --course-m 0.3"
-SEARCH = f"--population 4 --generations 1 {SHORT}"
+SEARCH = f"--population 4 --generations 1 --ratings 1 {SHORT}"
 FILM = "--duration 0.3 --width 64 --height 64"
 SMALL_STUDY = (
-    "--trials 2 --population 4 --generations 1 --repeats 1 --real-walks 4 "
-    "--more-real-walks 2 --sim-walks 4 --real-population 4 --real-generations 1"
+    "--trials 2 --course-m 0.3 --population 4 --generations 1 --ratings 1 "
+    "--repeats 1 --real-walks 2 --more-real-walks 2 --sim-walks 2 "
+    "--real-population 4 --real-generations 1"
 )
-STUDY = f"--methods 'no grounding' SGAT {SMALL_STUDY}"
 TUNED = (
     "report.html", "result.json", "result.md", "config.json", "provenance.json",
     "history.json", "walk.rrd", "walk.png", "search.png", "recordings/*.parquet",
@@ -110,7 +110,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             "--out runs/toy", writes=("runs/toy/report.html", "runs/toy/result.json")
         ),
         "groundwalk transfer nao": Run(
-            f"{STUDY} --out runs/nao",
+            f"--methods 'no grounding' {SMALL_STUDY} --out runs/nao",
             writes=("runs/nao/report.html", "runs/nao/result.json", "runs/nao/*.png"),
         ),
         "groundwalk transfer nao-falls": NotRun(
@@ -182,7 +182,8 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
         "groundwalk transfer nao --sim runs/knee --hidden "
         "speed_limit@LKneePitch:speed=2.5": Run(
-            f"{STUDY} --out runs/nao", writes=("runs/nao/report.html",)
+            f"--methods 'diagnosed sim' {SMALL_STUDY} --out runs/nao",
+            writes=("runs/nao/report.html",),
         ),
         "groundwalk diagnose air.parquet --robot nao": NotRun(
             "how commands look in general; those above are of this kind",

@@ -12,7 +12,6 @@ from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
 from experiments.transfer.nao_studies.figure import FIGURE
-from experiments.walking.search import RATINGS
 from experiments.walking.trials import FALL_PENALTY_CM_S
 from sgat.transformers.catalogue import groundings
 from terrain import Flat, Lumps, configuration, parse
@@ -111,17 +110,23 @@ def _better_than_nominal(diagnosed: Cell, nominal: Cell) -> Claim:
 
 
 def write_nao_page(
-    folder: RunFolder, cells: Sequence[Cell], planned: int, course: RealCourse
+    folder: RunFolder,
+    cells: Sequence[Cell],
+    planned: int,
+    ratings: int,
+    course: RealCourse,
 ) -> None:
     """Write `result.md` and `report.html` with the results so far.
 
-    `planned` is the number of cells that the study will have.
+    `planned` is the number of cells that the study will have, `ratings` the number of
+    times that a mean gait was rated after a search.
     """
     trials = cells[0]["trials"]
     missing = planned - len(cells)
     body = [
         *([f"Not finished: {missing} of {planned} rows are to come."] * (missing > 0)),
-        f"Every gait walked the same grounds, courses of 3 m {_ground(course)},",
+        f"Every gait walked the same grounds, courses of {course.length_m:g} m "
+        f"{_ground(course)},",
         f"{trials} trials. Speed is forward, until the fall where the robot",
         "fell; its spread is the standard deviation over trials. Intervals are",
         "Wilson's.",
@@ -137,7 +142,7 @@ def write_nao_page(
         f"A search pays {FALL_PENALTY_WALK_CM_S:.0f} cm/s for a fall in a walk of",
         f"{WALK.limit_s:g} s, or {ON_COURSE.limit_s:g} s where the ground has lumps.",
         "What a search finds is the best of its generations' mean gaits, each rated",
-        f"{RATINGS} times more.",
+        f"{ratings} times more.",
         "*real walks*: number of real walks that the method used before its trials.",
     ]
     title = "Do gaits from grounded sims hold in the real world?"

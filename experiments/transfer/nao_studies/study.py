@@ -38,8 +38,9 @@ from experiments.transfer.nao_studies.page import (
     worth_cm_s,
 )
 from experiments.walking.evaluation import Study, evaluate
-from experiments.walking.search import Budget, Rater, check_search, tune
+from experiments.walking.search import RATINGS, Budget, Rater, check_search, tune
 from experiments.walking.sims import check_correction
+from experiments.walking.trials import course
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transformers.catalogue import grounding
 from sgat.walks.gait_cloud import GaitCloud
@@ -76,7 +77,7 @@ WITH_SIM_ON_FLAT = (NONE, SGAT, DIAGNOSED_SIM, DIAGNOSED_SGAT)
 """Methods that are compared by default with a diagnosed sim, on flat real ground. They
 have no uneven sim, since lumps would not explain why gaits fall on flat ground."""
 
-SMALLEST = {"trials": 2, "generations": 1, "repeats": 1, "real_walks": 2,
+SMALLEST = {"trials": 2, "generations": 1, "ratings": 1, "repeats": 1, "real_walks": 2,
             "more_real_walks": 2, "sim_walks": 2, "real_generations": 1}  # fmt: skip
 """Least value of each option with which the study can run."""
 
@@ -97,16 +98,19 @@ class TransferNao(RunOptions):
 
     Attributes:
       methods: methods to compare; the start gait is always tried.
-      terrain: ground of the real world's courses, which are 3 m long.
+      terrain: ground of the real world's courses.
       hidden: physics of the real world that the sim's model lacks, such as
         speed_limit@LKneePitch:speed=3.
       sim: folder of a diagnosis of the real robot; the sim that it corrects is tried
         beside the plain one.
       trials: number of real courses on which each gait that was found is tried.
+      course_m: length of these courses [m].
       population: number of gaits in a generation of a search in the sim.
       generations: number of generations of a search in the sim.
       sigma: standard deviation of the first generation, as a share of each parameter's
         range.
+      ratings: number of times that the mean gait of each generation is rated after a
+        search, to choose the best of them.
       repeats: number of walks that rate a gait in a sim with random numbers.
       real_walks: number of real walks that the first grounding step learns from.
       more_real_walks: number of real walks that each further step adds.
@@ -120,9 +124,11 @@ class TransferNao(RunOptions):
     hidden: tuple[str, ...] = ()
     sim: Path | None = None
     trials: int = 40
+    course_m: float = 3.0
     population: int = 150
     generations: int = 10
     sigma: float = 0.15
+    ratings: int = RATINGS
     repeats: int = 2
     real_walks: int = 96
     more_real_walks: int = 48
@@ -145,6 +151,7 @@ class TransferNao(RunOptions):
         check_search(self.population, self.sigma)
         check_search(self.real_population, self.sigma)
         check_at_least(self, **SMALLEST)
+        self.study(self.trials)
         super().__post_init__()
 
     @property
@@ -165,7 +172,13 @@ class TransferNao(RunOptions):
     def places(self) -> Places:
         """The real course, and the diagnosis that corrects the sim."""
         hidden = tuple(Hidden.parse(text) for text in self.hidden)
-        return Places(RealCourse(self.terrain, hidden), self.sim)
+        return Places(RealCourse(self.terrain, hidden, self.course_m), self.sim)
+
+    def study(self, trials: int) -> Study:
+        """The evaluation of a gait in the real world."""
+        real = self.places.real
+        rules = course(real.length_m)
+        return Study("real", real.terrain, trials, rules, hidden=real.hidden)
 
 
 class NaoStudy:
@@ -218,7 +231,10 @@ class NaoStudy:
             return self._best_envelope(checkpoint)
         if method == REAL:
             budget = Budget(
-                config.real_population, config.real_generations, config.sigma
+                config.real_population,
+                config.real_generations,
+                config.sigma,
+                config.ratings,
             )
             rater: Rater = partial(rate_on_real, self._plain.real)
             gait = self._tune(checkpoint, START_GAIT, rater, budget)
@@ -276,12 +292,14 @@ class NaoStudy:
         self, checkpoint: Path, start: Gait, rater: Rater, budget: Budget | None = None
     ) -> Gait:
         config = self._config
-        in_sim = Budget(config.population, config.generations, config.sigma)
-        return tune(checkpoint, start, budget or in_sim, rater, self._seed(OF_SEARCH))
+        if budget is None:
+            budget = Budget(
+                config.population, config.generations, config.sigma, config.ratings
+            )
+        return tune(checkpoint, start, budget, rater, self._seed(OF_SEARCH))
 
     def _try(self, gait: Gait, trials: int, use: int) -> dict[str, Any]:
-        course = self._plain.real
-        study = Study("real", course.terrain, trials, hidden=course.hidden)
+        study = self._config.study(trials)
         outcome = evaluate(study, robots.get(ROBOT), {"gait": gait}, self._seed(use))
         score = outcome["gait"].score
         return {

@@ -35,8 +35,9 @@ from walk_engine import gaits
 from worlds.sim.world import SimWorld
 
 SMOKE = {
-    "methods": (SGAT,), "trials": 2, "population": 4, "generations": 1, "repeats": 1,
-    "real_walks": 4, "more_real_walks": 2, "sim_walks": 4,
+    "methods": (SGAT,), "trials": 2, "course_m": 0.3, "population": 4,
+    "generations": 1, "ratings": 1, "repeats": 1, "real_walks": 4,
+    "more_real_walks": 2, "sim_walks": 4,
 }  # fmt: skip
 
 
@@ -103,7 +104,9 @@ def test_table_and_figure_have_a_row_for_each_cell():
     assert labels == ["GAT, step 1", "SGAT, step 2"]
 
 
-@pytest.mark.parametrize("change", [{"trials": 1}, {"seed": -1}, {"population": 2}])
+@pytest.mark.parametrize(
+    "change", [{"trials": 1}, {"course_m": 5.0}, {"seed": -1}, {"population": 2}]
+)
 def test_impossible_studies_are_refused(change):
     with pytest.raises(BadValueError):
         TransferNao(**change)
@@ -186,7 +189,7 @@ def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
     methods = [cell["method"] for cell in cells]
     assert methods == [START, DIAGNOSED_SIM, NONE]
     page = (config.out / "result.md").read_text()
-    assert "courses of 3 m on flat ground" in page
+    assert "courses of 0.3 m on flat ground" in page
     assert "speed_limit@LKneePitch:speed=2" in page
 
 
