@@ -35,9 +35,6 @@ def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
 
     A delay between commands and positions is no finding: it is physics that a diagnosis
     looks for.
-
-    Example:
-      See docs/python.md.
     """
     audits, findings = [], []
     for trace in traces:

@@ -19,7 +19,4 @@ BASELINES: Mapping[str, Callable[[Plant, Sequence[Trace]], Verdict]] = {
     "sparse": sparse.answer,
 }
 """The baselines by name. Sets of test cases keep answers in folders of these names.
-
-Example:
-  See docs/concealed.md.
 """

@@ -36,9 +36,6 @@ class Correction:
       base: "fixed" or "floating", as it was in the recordings.
       native: effects that MuJoCo can simulate, which `corrected.xml` contains.
       per_tick: other effects, which a simulation has to compute at every step.
-
-    Example:
-      See docs/python.md.
     """
 
     robot: str
@@ -110,9 +107,6 @@ def load_correction(source: str | Path, plant: Plant) -> Model:
     Raises:
       BadModelError: the file is not from a diagnosis, or belongs to another robot.
       UnknownNameError: the file names an effect or a place that does not exist.
-
-    Example:
-      See docs/python.md.
     """
     path = _file(Path(source))
     try:

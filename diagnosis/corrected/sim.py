@@ -79,9 +79,6 @@ def sim_plant(
       options: time step, friction and whether the base is fixed.
       grounds: heightfields, all put into the model; a plane if empty. A fixed base has
         no ground.
-
-    Example:
-      See docs/python.md.
     """
     base: Base = "fixed" if options.fixed_base else "floating"
     spec = world_spec(description, options, () if options.fixed_base else grounds)
@@ -114,9 +111,6 @@ class CorrectedSim(SimWorld):
 
     Without effects it computes exactly the same as `SimWorld`. Effects that depend on
     time, such as pushes, count it from the start of the rollout.
-
-    Example:
-      See docs/python.md.
     """
 
     def __init__(

@@ -5,29 +5,17 @@ is a class here, one line in `library`, and a second implementation for test wor
 `worlds.hidden.effects`. An effect of your own only needs `also_known`.
 """
 
-from diagnosis.effects.bases import (
-    BodyEffect,
-    JointEffect,
-    NumberEffect,
-    ServoEffect,
-    TorqueEffect,
-)
-from diagnosis.effects.effect import Effect
+from diagnosis.effects.effect import Effect, TorqueEffect
 from diagnosis.effects.library import all_effects, also_known, effect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, PlacedEffect
-from diagnosis.effects.variants import Push, Variants
+from diagnosis.effects.variants import Variants
 
 __all__ = [
-    "BodyEffect",
     "Effect",
     "EffectWords",
-    "JointEffect",
     "JointMotion",
-    "NumberEffect",
     "Parameter",
     "PlacedEffect",
-    "Push",
-    "ServoEffect",
     "TorqueEffect",
     "Variants",
     "all_effects",

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import mujoco
 
-from diagnosis.effects.bases import BodyEffect, NumberEffect
+from diagnosis.effects.effect import BodyEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, Parameter
 from diagnosis.effects.scales import mass_kg, weight_n
 from diagnosis.effects.variants import Push, Variants

@@ -1,4 +1,4 @@
-"""The base class of all effects: kinds of physics that a sim may lack."""
+"""The base classes of effects: kinds of physics that a sim may lack."""
 
 import inspect
 from abc import ABC, abstractmethod
@@ -22,7 +22,7 @@ from diagnosis.plant.plant import Base, Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import When
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
 
 STRETCHES = (0.4, 1.0, 2.5)
 """Factors on a guessed size of an effect that are tried before the size is fitted."""
@@ -48,7 +48,7 @@ class Effect(ABC):
     within `diagnosis.effects.also_known`.
 
     Example:
-      See docs/python.md, "An effect of your own".
+      See docs/python.md, "Physics of your own".
     """
 
     name: ClassVar[str]
@@ -235,3 +235,100 @@ class Effect(ABC):
         The damping is that of the servo at the joint, plus its motor's back-EMF.
         """
         return self.name, size, error
+
+
+class JointEffect(Effect):
+    """An effect that may be at any joint."""
+
+    place_kind: ClassVar[PlaceKind] = "joint"
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of all joints of the robot model."""
+        return plant.joints
+
+
+class ServoEffect(JointEffect):
+    """An effect that may be at joints whose servo has a stiffness above 0."""
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of joints whose servo has a stiffness above 0 in any recording."""
+        servos = [trace.servo for trace in traces] or [plant.servo]
+        return joints_where(plant, [servo.kp_nm_rad > 0 for servo in servos])
+
+
+class BodyEffect(Effect):
+    """An effect that may be at any body that has a name and mass, and can move."""
+
+    place_kind: ClassVar[PlaceKind] = "body"
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of the bodies that have mass and can move."""
+        return tuple(name for name in plant.bodies if name)
+
+
+class NumberEffect(Effect):
+    """An effect that changes one number, or one vector, of its place.
+
+    Attributes:
+      quantity: what the effect changes, see `Variants.at`.
+      combined: function of the quantity and the effect's values that gives the new
+        quantity.
+      usual: the effect's parameters, if they are the same for all robots and places;
+        otherwise override `parameters`.
+    """
+
+    quantity: ClassVar[str]
+    combined: ClassVar[np.ufunc] = np.add
+    usual: ClassVar[tuple[Parameter, ...]]
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The effect's parameters, the same for all robots and places."""
+        return self.usual
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Change the quantity in one variant by the effect's value or vector."""
+        numbers, at = variants.at(self.quantity, row, place)
+        change = values if self.components > 1 else values[0]
+        numbers[at] = self.combined(numbers[at], change)
+
+
+class TorqueEffect(JointEffect):
+    """A torque at a joint by a law that MuJoCo lacks: `torque_nm`, for every step."""
+
+    native: ClassVar[bool] = False
+
+    def apply(
+        self, variants: Variants, row: int, place: str, values: FloatArray
+    ) -> None:
+        """Store the values for one variant; those of several effects are added.
+
+        A law that is not linear in its values has to override this.
+        """
+        noted = variants.torque_values(self, len(values))
+        noted[row, variants.column(place)] += values
+
+    @abstractmethod
+    def torque_nm(
+        self,
+        values: FloatArray,
+        position_rad: FloatArray,
+        velocity_rad_s: FloatArray,
+        time_s: FloatArray,
+    ) -> FloatArray:
+        """Torques (rows, j) [N m] at the j joints of all simulations for one step.
+
+        Args:
+          values: (rows, j, p) the effect's p parameters. Where all are 0, there is no
+            effect, and the torque must be 0.
+          position_rad: (rows, j) joint angles as the step begins.
+          velocity_rad_s: (rows, j) joint speeds as the step begins.
+          time_s: (rows, 1) time in the recording.
+        """
+
+
+def joints_where(plant: Plant, masks: Sequence[BoolArray]) -> tuple[str, ...]:
+    """Names of the joints for which at least one of the masks (j,) is true."""
+    found = np.flatnonzero(np.any(masks, axis=0))
+    return tuple(plant.joints[column] for column in found)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.bases import JointEffect, NumberEffect
+from diagnosis.effects.effect import JointEffect, NumberEffect
 from diagnosis.effects.parts import (
     EffectWords,
     Interval,

@@ -53,19 +53,18 @@ class Parameter:
 class EffectWords(NamedTuple):
     """Words that reports use for an effect.
 
-    Example:
-      >>> EffectWords("drag", "{body} meets a drag of {coefficient} {lacking}", "...")
+    Attributes:
+      label: noun for the effect, for example "play (backlash)".
+      finding: clause about an effect that was found. Parameter names in braces stand
+        for values, `{joint}` or `{body}` for the place, `{lacking}` for "that the sim
+        lacks" and `{usual}` for "in the sim"; the last two have other words where
+        recordings of the healthy robot are the reference.
+      meaning: explanation for a reader of the report, in one sentence.
     """
 
     label: str
-    """Noun for the effect, for example "play (backlash)"."""
     finding: str
-    """Template of a clause about an effect that was found. Parameter names in braces
-    are replaced by values, `{joint}` or `{body}` by the place, `{lacking}` by "that the
-    sim lacks" and `{usual}` by "in the sim". The last two have other words where
-    recordings of the healthy robot are the reference instead of the sim."""
     meaning: str
-    """Explanation of the effect for a reader of the report, in one sentence."""
 
     @property
     def place_kind(self) -> str:
@@ -80,9 +79,6 @@ class JointMotion:
 
     Commands are position targets, `kp_nm_rad` is the servo's stiffness, and `torque_nm`
     the torque for this motion by inverse dynamics of the nominal model.
-
-    Example:
-      See docs/python.md, "An effect of your own".
     """
 
     since_s: FloatArray

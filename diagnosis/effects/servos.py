@@ -5,8 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.bases import JointEffect, NumberEffect, ServoEffect, joints_where
-from diagnosis.effects.effect import LIMITS
+from diagnosis.effects.effect import (
+    LIMITS,
+    JointEffect,
+    NumberEffect,
+    ServoEffect,
+    joints_where,
+)
 from diagnosis.effects.parts import (
     EffectWords,
     Interval,

@@ -9,18 +9,14 @@ from diagnosis.plant.plant import Plant
 from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
-    from diagnosis.effects.bases import TorqueEffect
+    from diagnosis.effects.effect import TorqueEffect
 
 
 @dataclass(frozen=True)
 class Push:
-    """A constant force on a body for some time.
+    """A constant force (world frame) on a body's centre of mass for some time.
 
-    Example:
-      >>> Push("torso", (5.0, 0.0, 0.0), start_s=2.0, duration_s=0.2)
-
-    The force is in the world frame, at the body's centre of mass; the start is in the
-    recording's time.
+    The start is in the recording's time.
     """
 
     body: str

@@ -13,12 +13,7 @@ from diagnosis.plant.servo import Servo
 from groundwalk.arrays import FloatArray
 
 Base = Literal["fixed", "floating"]
-"""How a robot's base is held: welded to the world, or free to move.
-
-Example:
-  >>> load_plant("nao", base="floating").base
-  'floating'
-"""
+"""How a robot's base is held: welded to the world, or free to move."""
 ROOT = "root"
 """Name of a floating base's free joint."""
 _SLIDING = (("kg m^2", "kg"), ("N m", "N"), ("rad", "m"))

@@ -17,11 +17,7 @@ from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray, IntArray
 
 STEP_S = 0.002
-"""Default time step of the physics in replays.
-
-Example:
-  >>> predicted = replay(runs, variants, step_s=STEP_S / 2)
-"""
+"""Default time step of the physics in replays."""
 
 BLOCK = 256
 """Number of physics steps whose commands are computed at once, for speed; any value of
@@ -39,9 +35,6 @@ class Replayed:
       base: (n, T, 13) position (3), orientation w, x, y, z, linear velocity (3, world
         frame) and angular velocity (3, body frame) of the base; None if it is fixed.
       gyroscope_rad_s: (n, T, 3) gyroscope, base frame; only the bias if base is fixed.
-
-    Example:
-      >>> position_rad = replay(runs, variants)[0].position_rad
     """
 
     position_rad: FloatArray

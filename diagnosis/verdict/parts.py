@@ -41,12 +41,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Amount:
-    """A size, 0 or more, such as the smallest effect that the data could show.
-
-    Example:
-      >>> Amount(0.5, "N s/m").unit
-      'N s/m'
-    """
+    """A size, 0 or more, such as the smallest effect that the data could show."""
 
     value: float
     unit: str
@@ -254,12 +249,7 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class NextExperiment:
-    """The recording that would best decide what is still open: a joint's, or all's.
-
-    Example:
-      >>> NextExperiment("slow ramps", "elbow", "friction or play").motion
-      'slow ramps'
-    """
+    """The recording that would best decide what is still open: a joint's, or all's."""
 
     motion: str
     joint: str | None
@@ -270,12 +260,8 @@ class NextExperiment:
 class Recordings:
     """Names of the recordings, or of parts of them, by their use.
 
-    `fit` is used to fit parameters, `select` to choose between fitted models, `test`
-    for the final errors.
-
-    Example:
-      >>> Recordings(fit=("a",), select=("b",), test=("c",)).test
-      ('c',)
+    Parameters are fitted to `fit`, `select` decides between fitted models, and `test`
+    gives the final errors.
     """
 
     fit: tuple[str, ...] = ()
