@@ -46,7 +46,7 @@ from diagnosis.search.result import SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict import Amount, Fit, PlacedEffect, Verdict, VerdictKind
+from diagnosis.verdict import Amount, Fit, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 
 MORE_FLOATING = 4
@@ -106,8 +106,7 @@ def diagnose(
       seed: seed of the flexible regression and of the random control.
       rules: settings of the search; None for the default ones.
       threads: number of threads that simulate.
-      reference: recordings of the healthy robot; the diagnosis looks only for
-        differences that they do not show.
+      reference: recordings of the healthy robot; what they show is not looked for.
       drive: "servos": simulated servos follow the recorded commands; "torques": the
         measured torques act on the joints.
       hooks: progress display and checkpoint; None for neither.
@@ -127,36 +126,27 @@ def diagnose(
         recordings = material.traces, material.reference
         seconds = expected_seconds(plant, *recordings, material.channels, threads)
         hooks.progress.cost(seconds)
-    learned = _learned(material, rules, threads, hooks)
-    result, kind = _searched(learned.search, material.audited)
+    data, noise, search = _learned(material, rules, threads, hooks)
+    result, kind = _searched(search, material.audited)
     hooks.stage("test", TEST_REPLAYS)
-    tested = _tested(learned, result, kind, seed)
-    verdict = _verdict(material, learned, tested, alternatives(result, kind))
-    verdict = replace(verdict, seconds=time.monotonic() - begun_s)
-    return Diagnosis(
-        verdict,
-        tested.model,
-        plant,
-        tested.test,
-        learned.data.test,
-        material.audited,
-        learned.noise.model if learned.noise else (),
+    tested = _tested(data, result, kind, seed)
+    verdict = replace(
+        _verdict(material, data, search, tested),
+        alternatives=alternatives(result, kind),
+        seconds=time.monotonic() - begun_s,
     )
-
-
-@dataclass(frozen=True, eq=False)
-class _Learned:
-    """A search that is ready to run, its data, and the healthy robot's model errors."""
-
-    data: DataSets
-    noise: ReferenceNoise | None
-    search: Search
+    given: Model = ()
+    if noise:
+        given = noise.model
+        verdict = replace(verdict, limits=(*verdict.limits, *reference_limit(noise)))
+    sims = tested.test, data.test
+    return Diagnosis(verdict, tested.model, plant, *sims, material.audited, given)
 
 
 def _learned(
     material: Material, rules: Rules | None, threads: int, hooks: Hooks
-) -> _Learned:
-    """Learn model errors of the healthy robot, divide the data, and make the search."""
+) -> tuple[DataSets, ReferenceNoise | None, Search]:
+    """The data by use, the healthy robot's model errors, and a search ready to run."""
     plant, reference, channels = material.plant, material.reference, material.channels
     noise, healthy = None, list[Predictor]()
     if reference:
@@ -166,7 +156,7 @@ def _learned(
     if reference:
         healthy = reference_checks(plant, reference, channels, threads, hooks)
     judge = Judge(data.fit, data.select, _rules(plant, rules), healthy, hooks)
-    return _Learned(data, noise, Search(judge))
+    return data, noise, Search(judge)
 
 
 def _rules(plant: Plant, rules: Rules | None) -> Rules:
@@ -219,7 +209,7 @@ class _Tested:
 
 
 def _tested(
-    learned: _Learned,
+    data: DataSets,
     result: SearchResult,
     kind: VerdictKind,
     seed: np.random.SeedSequence,
@@ -227,7 +217,7 @@ def _tested(
     """Fit the effects found to all data but the held-out ones; test them on these."""
     if kind == "not_identifiable":  # then no effect is believed
         result = replace(result, chosen=0)
-    winner, data = result.winner, learned.data
+    winner = result.winner
     both, test = data.calibrated(winner.model if winner else ())
     refitted = fit_all(both, [winner.model])[0] if winner else None
     model = refitted.model if refitted else ()
@@ -236,36 +226,29 @@ def _tested(
 
 
 def _verdict(
-    material: Material,
-    learned: _Learned,
-    tested: _Tested,
-    others: tuple[tuple[PlacedEffect, ...], ...],
+    material: Material, data: DataSets, search: Search, tested: _Tested
 ) -> Verdict:
     """The verdict; its kind becomes "unknown" where held-out data contradict it."""
-    data, result, kind = learned.data, tested.result, tested.kind
-    both, judge = tested.both, learned.search.judge
+    both, result, kind = tested.both, tested.result, tested.kind
     nominal = data.learned.residuals([()])[0]
     left = tested.refitted.residual if tested.refitted else nominal
     unmodelled = data.test.residuals([()])[0]
     modelled = tested.test.residuals([tested.model])[0]
     larger = larger_than_learned(data.learned, left, tested.fit)
-    refuted = model_refuted(unmodelled, modelled, judge.least_gain)
+    refuted = model_refuted(unmodelled, modelled, search.judge.least_gain)
     share = 1 - result.closed(result.winner) if result.winner else 1.0
     shape = both, left, share
     if kind == "none" and larger:
         kind, shape = "unknown", (data.test, unmodelled, 1.0)
     if kind == "effects" and refuted:
         kind = "unknown"
-    limits = (*larger, *refuted, *material.audited.limits, *material.limits)
-    given = reference_limit(learned.noise) if learned.noise else ()
     effects = believed_effects(both, result, tested.refitted)
     return Verdict(
         kind=kind,
         effects=effects if kind != "none" else (),
-        alternatives=others,
-        smallest_detectable=_detectable(learned.search, kind),
+        smallest_detectable=_detectable(search, kind),
         unexplained=unexplained(*shape) if kind == "unknown" else None,
-        limits=(*limits, *given),
+        limits=(*larger, *refuted, *material.audited.limits, *material.limits),
         mismatch=mismatch_map(data.learned, nominal),
         pulses=material.pulses,
         fit=tested.fit,

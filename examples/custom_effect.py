@@ -41,9 +41,9 @@ class WaterDrag(Effect):
         """The coefficient c of the drag: unit, bounds, no-drag value, first guess."""
         return (Parameter("coefficient", "N m s^2/rad^2", 0.0, 5.0, 0.0, 0.1),)
 
-    def apply(self, variants, row, place, values):
+    def apply(self, copies, row, place, values):
         """Add the drag to a row of the batch: MuJoCo's second damping coefficient."""
-        variants.field("dof_dampingpoly")[row, variants.dof(place), 0] += values[0]
+        copies.field("dof_dampingpoly")[row, copies.dof(place), 0] += values[0]
 
 
 def swing(path: Path, duration: float, seed: int) -> None:

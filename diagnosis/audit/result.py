@@ -1,7 +1,6 @@
 """The result of an audit of recordings, as data and as JSON."""
 
 import json
-import math
 from dataclasses import asdict, dataclass
 from typing import Literal
 
@@ -17,10 +16,9 @@ class Finding:
     Attributes:
       severity: "note": for information; "limit": some effects cannot be judged with
         these data; "refuse": the recording cannot be used.
-      text: a sentence for the report, which names trace, channel and number.
-      trace: name of the trace; empty if the finding is about all of them together.
-      channel: such as "position.LKneePitch" or "time"; empty if the finding is about
-        the whole trace.
+      text: a sentence for the report.
+      trace: name of the trace; empty if the finding is about all of them.
+      channel: such as "position.LKneePitch" or "time"; empty for a whole trace.
     """
 
     severity: Severity
@@ -38,7 +36,6 @@ class ChannelAudit:
       noise_std: standard deviation of white noise, rounding not included.
       quantum: step to which values are rounded; None if they are continuous.
       clipped_share: share of rows in which the channel is stuck at an extreme.
-      longest_missing_s: longest time without values [s].
     """
 
     name: str
@@ -60,10 +57,8 @@ class JointAudit:
     """The motion of one joint in a trace; sliding joints have m for rad.
 
     Attributes:
-      low_rad: smallest smoothed position.
-      high_rad: largest smoothed position.
+      low_rad, high_rad: range of the smoothed positions.
       speed_rad_s: speed below which the joint is in 99 % of the rows.
-      reversals: number of changes of direction.
       moves: whether the range exceeds noise and rounding.
     """
 
@@ -80,13 +75,10 @@ class TraceAudit:
     """Measurements of one trace.
 
     Attributes:
-      duration_s: time from the first to the last row.
-      rate_hz: rows per second: one over the median tick (time between rows).
+      rate_hz: one over the median tick (time between rows).
       jitter_s: standard deviation of the ticks that are no gaps.
       gaps: number of ticks longer than two and a half median ticks.
-      longest_gap_s: length of the longest gap, 0 without any.
       repeated_share: share of the rows in motion that repeat the row before.
-      joints: all joints of the robot model.
     """
 
     name: str
@@ -130,17 +122,8 @@ class Audit:
 
     def to_json(self) -> str:
         """The audit as JSON text; numbers that are not finite become null."""
-        return json.dumps(_plain(asdict(self)), allow_nan=False, indent=1)
+        text = json.dumps(asdict(self))
+        return json.dumps(json.loads(text, parse_constant=lambda _: None), indent=1)
 
     def _texts(self, severity: Severity) -> tuple[str, ...]:
         return tuple(item.text for item in self.findings if item.severity == severity)
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

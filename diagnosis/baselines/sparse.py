@@ -4,6 +4,7 @@ import copy
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 import mujoco
 import numpy as np
@@ -85,17 +86,8 @@ def _rows(trace: Trace, every: int) -> list[FloatArray]:
     rows = np.flatnonzero(whole & inside)[::every]
     damping = servo.kd_nm_s_rad + servo.back_emf_nm_s_rad
     torque = servo.torque(command - q, v)
-    columns = (
-        since_s[:, None],
-        q,
-        v,
-        a,
-        command,
-        rate,
-        servo.kp_nm_rad,
-        damping,
-        torque,
-    )
+    motion = since_s[:, None], q, v, a, command, rate
+    columns = *motion, servo.kp_nm_rad, damping, torque
     return [np.broadcast_to(column, q.shape)[rows] for column in columns]
 
 
@@ -104,7 +96,8 @@ class Column:
     """One column of the regression: torque of an effect for a parameter value of 1.
 
     The name is empty for a constant torque, which is no effect alone; the parameter is
-    given by its index, the torque (N,) is weighted.
+    given by its index, the torque (N,) is weighted. The damping is that of servo and
+    back-EMF at the joint.
     """
 
     effect: str
@@ -112,7 +105,6 @@ class Column:
     parameter: int
     values: FloatArray
     damping_nm_s_rad: float = 1.0
-    """Damping of the servo plus back-EMF at the joint."""
 
     def named(self, size: float, error: float) -> tuple[str, float, float]:
         """Effect name, parameter value and standard error for a fitted coefficient."""
@@ -200,11 +192,8 @@ def _model_of(plant: Plant, variants: Variants) -> mujoco.MjModel:
         return plant.model
     model = copy.copy(plant.model)
     for field, values in variants.fields.items():
-        owner = model
-        *parents, last = field.split(".")
-        for parent in parents:
-            owner = getattr(owner, parent)
-        getattr(owner, last)[:] = values[0].reshape(getattr(owner, last).shape)
+        target = attrgetter(field)(model)
+        target[:] = values[0].reshape(target.shape)
     mujoco.mj_setConst(model, mujoco.MjData(model))
     return model
 

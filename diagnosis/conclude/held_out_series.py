@@ -10,16 +10,12 @@ from diagnosis.residuals.channels import measured_of
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.verdict import Fit
 from groundwalk.arrays import FloatArray
-from groundwalk.errors import BadValueError
 
 
 class ChannelSeries(NamedTuple):
-    """One measured quantity over T ticks, in SI units; NaN is a missing value.
+    """A quantity (T,) as measured, and as predicted by nominal and corrected sim.
 
-    Attributes:
-      real: (T,) measured values.
-      sim: (T,) values predicted by the nominal sim.
-      corrected: (T,) values predicted by the sim with the diagnosed effects.
+    In SI units; NaN is a missing value.
     """
 
     real: FloatArray
@@ -31,35 +27,13 @@ class ChannelSeries(NamedTuple):
 class HeldOutSeries:
     """A held-out recording, or a part of one, with the predictions of two sims.
 
-    Attributes:
-      name: name of the recording.
-      time_s: (T,) times, increasing.
-      channels: channels by name, such as "position.LKneePitch"; the text before the
-        first dot is the quantity.
+    `channels` are by name, such as "position.LKneePitch"; the text before the first dot
+    is the quantity. The times (T,) increase.
     """
 
     name: str
     time_s: FloatArray
     channels: Mapping[str, ChannelSeries]
-
-    def __post_init__(self) -> None:
-        """Refuse arrays that do not fit together.
-
-        Raises:
-          BadValueError: fewer than two ticks, no channels, or a channel of another
-            length.
-        """
-        if self.time_s.ndim != 1 or self.time_s.size < 2 or not self.channels:
-            raise BadValueError(
-                f"series {self.name!r} must have a channel and two ticks at least"
-            )
-        for name, channel in self.channels.items():
-            for part, values in channel._asdict().items():
-                if values.shape != self.time_s.shape:
-                    raise BadValueError(
-                        f"series {self.name!r}: {part} of {name} has shape "
-                        f"{values.shape}, time_s has {self.time_s.shape}"
-                    )
 
 
 def held_out_series(
@@ -67,10 +41,7 @@ def held_out_series(
 ) -> list[HeldOutSeries]:
     """Measured values of held-out recordings, and those predicted by both sims.
 
-    Args:
-      nominal: predictor of the held-out recordings, calibrated at the nominal model.
-      corrected: predictor of the same recordings, calibrated at `model`.
-      model: the effects that the corrected sim has.
+    Both predictors are of the same recordings, `corrected` is calibrated at `model`.
     """
     sim, after = _by_trace(nominal, ()), _by_trace(corrected, model)
     series = []

@@ -175,7 +175,7 @@ class CorrectedSim(SimWorld):
             for _ in range(steps):
                 now_s = np.array([self._steps * self.options.timestep_s])
                 self._laws.servo(self._commands.step(targets), now_s)
-                self._laws.push_bodies(now_s)
+                self._laws.outside.apply(now_s)
                 self._run(1)
                 self._steps += 1
                 _, velocity = self._laws.joint_state()

@@ -5,20 +5,13 @@ is a class here, one line in `library`, and a second implementation for test wor
 `worlds.hidden.effects`. An effect of your own only needs `also_known`.
 """
 
-from diagnosis.effects.effect import Effect, TorqueEffect
-from diagnosis.effects.library import all_effects, also_known, effect
-from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, PlacedEffect
-from diagnosis.effects.variants import Variants
-
-__all__ = [
-    "Effect",
-    "EffectWords",
-    "JointMotion",
-    "Parameter",
-    "PlacedEffect",
-    "TorqueEffect",
-    "Variants",
-    "all_effects",
-    "also_known",
-    "effect",
-]
+from diagnosis.effects.effect import Effect as Effect
+from diagnosis.effects.effect import TorqueEffect as TorqueEffect
+from diagnosis.effects.library import all_effects as all_effects
+from diagnosis.effects.library import also_known as also_known
+from diagnosis.effects.library import effect as effect
+from diagnosis.effects.parts import EffectWords as EffectWords
+from diagnosis.effects.parts import JointMotion as JointMotion
+from diagnosis.effects.parts import Parameter as Parameter
+from diagnosis.effects.parts import PlacedEffect as PlacedEffect
+from diagnosis.effects.variants import Variants as Variants

@@ -146,14 +146,12 @@ class ExternalForce(BodyEffect):
             Parameter("duration", "s", 0.0, _LONGEST_S, 0.0, 0.2),
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Add the push to one variant of the model; overlapping forces add up."""
         x, y, z, start_s, duration_s = (float(value) for value in values)
         if duration_s > 0 and any((x, y, z)):
             push = Push(place, (x, y, z), start_s, duration_s)
-            variants.outside.pushes[row].append(push)
+            copies.outside.pushes[row].append(push)
 
 
 def _slides(plant: Plant, name: str) -> bool:

@@ -10,10 +10,8 @@ import numpy as np
 
 from diagnosis.effects.parts import (
     EffectWords,
-    Interval,
     JointMotion,
     Parameter,
-    PlacedEffect,
     PlaceKind,
     Values,
 )
@@ -21,7 +19,7 @@ from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
-from diagnosis.verdict import When
+from diagnosis.verdict import PlacedEffect, When
 from groundwalk.arrays import BoolArray, FloatArray
 
 STRETCHES = (0.4, 1.0, 2.5)
@@ -123,35 +121,31 @@ class Effect(ABC):
         """Names of places where the robot may have the effect, given its recordings."""
 
     @abstractmethod
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
-        """Put the effect into one variant (row) of the robot model, in place.
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
+        """Put the effect into one of n copies (row) of the robot model, in place.
 
-        Several effects may be applied to one variant; each adds to those before. The
-        values (p,) are in the order of `parameters`.
+        Each effect adds to those applied before. The values (p,) are in the order of
+        `parameters`.
         """
 
     def apply_to_sim(
-        self, variants: Variants, row: int, place: str, values: FloatArray
+        self, copies: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Do as `apply`, for a sim world, whose ground is a heightfield of its own.
 
         Raises:
           BadModelError: a sim world cannot have this effect.
         """
-        self.apply(variants, row, place, values)
+        self.apply(copies, row, place, values)
 
     def obstacle(self, recorded: Base, base: Base) -> str:
         """Why a sim with a `base` cannot have the effect; "" if it can."""
         return ""
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Values to try first; one set is enough where the effect is nearly linear.
 
-        `intervals` are times at which the recordings show a short error.
+        Start and duration of a timed effect are replaced by those of short errors.
         """
         typical = tuple(one.typical for one in self.parameters(plant, place))
         size = self.components
@@ -159,10 +153,7 @@ class Effect(ABC):
             tuple(value if i == axis else 0.0 for i, value in enumerate(typical[:size]))
             for axis in range(size)
         ]
-        if not self.timed:
-            return [vector + typical[size:] for vector in vectors]
-        between = typical[size:-2]
-        return [vector + between + when for when in intervals for vector in vectors]
+        return [vector + typical[size:] for vector in vectors]
 
     def sizes_to_scan(
         self, plant: Plant, placed: PlacedEffect, traces: Sequence[Trace]
@@ -285,11 +276,9 @@ class NumberEffect(Effect):
         """The effect's parameters, the same for all robots and places."""
         return self.usual
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Change the quantity in one variant by the effect's value or vector."""
-        numbers, at = variants.at(self.quantity, row, place)
+        numbers, at = copies.at(self.quantity, row, place)
         change = values if self.components > 1 else values[0]
         numbers[at] = self.combined(numbers[at], change)
 
@@ -299,15 +288,13 @@ class TorqueEffect(JointEffect):
 
     native: ClassVar[bool] = False
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Store the values for one variant; those of several effects are added.
 
         A law that is not linear in its values has to override this.
         """
-        noted = variants.torque_values(self, len(values))
-        noted[row, variants.column(place)] += values
+        noted = copies.torque_values(self, len(values))
+        noted[row, copies.column(place)] += values
 
     @abstractmethod
     def torque_nm(

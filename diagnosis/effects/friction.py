@@ -1,22 +1,14 @@
 """Effects of friction in joints: viscous, dry, with a peak at rest, and by load."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from diagnosis.effects.effect import JointEffect, NumberEffect
-from diagnosis.effects.parts import (
-    EffectWords,
-    Interval,
-    JointMotion,
-    Parameter,
-    PlacedEffect,
-    Values,
-)
+from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import brisk_rad_s, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.usage import Usage
+from diagnosis.verdict import PlacedEffect
 from groundwalk.arrays import FloatArray
 
 GROWN_SPEEDS_RAD_S = (0.02, 0.07, 0.25)
@@ -129,12 +121,10 @@ class StribeckFriction(JointEffect):
             Parameter("speed", "rad/s", 0.005, 2.0, 0.1, 0.1, logarithmic=True),
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Add the torques to a variant's; speeds v_s are averaged by extra torque."""
         coulomb_nm, extra_nm, speed_rad_s = values
-        joints, at = variants.joints, (row, variants.column(place))
+        joints, at = copies.joints, (row, copies.column(place))
         joints.coulomb_nm[at] += coulomb_nm
         if extra_nm > 0:
             total_nm = joints.stribeck_nm[at] + extra_nm
@@ -153,9 +143,7 @@ class StribeckFriction(JointEffect):
             for speed in GROWN_SPEEDS_RAD_S
         )
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Values with two different speeds v_s: the effect is not linear in v_s."""
         coulomb, extra, _ = (one.typical for one in self.parameters(plant, place))
         return [(coulomb, extra, speed) for speed in (0.03, 0.2)]

@@ -98,26 +98,24 @@ class GroundSlope(Effect):
             Parameter(name, "rad", -0.3, 0.3, 0.0, 0.03) for name in ("pitch", "roll")
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Rotate a variant's ground, or its gravity if the base is fixed."""
         if not np.any(values):
             return
-        if variants.plant.base == "fixed":
-            self.apply_to_sim(variants, row, place, values)
+        if copies.plant.base == "fixed":
+            self.apply_to_sim(copies, row, place, values)
             return
         tilt = _tilt(*values)
-        places, turns = variants.field("geom_pos"), variants.field("geom_quat")
-        for geom in ground_geoms(variants.plant):
+        places, turns = copies.field("geom_pos"), copies.field("geom_quat")
+        for geom in ground_geoms(copies.plant):
             places[row, geom] = _call("mju_rotVecQuat", 3, places[row, geom], tilt)
             turns[row, geom] = _call("mju_mulQuat", 4, tilt, turns[row, geom])
 
     def apply_to_sim(
-        self, variants: Variants, row: int, place: str, values: FloatArray
+        self, copies: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Rotate gravity instead of the ground, so that heightfields stay in place."""
-        gravity = variants.field("opt.gravity")
+        gravity = copies.field("opt.gravity")
         back = _call("mju_negQuat", 4, _tilt(*values))
         gravity[row] = _call("mju_rotVecQuat", 3, gravity[row], back)
 
@@ -163,7 +161,7 @@ class UnevenGround(NumberEffect):
         return ("world",) if has_ground_contact(plant) else ()
 
     def apply_to_sim(
-        self, variants: Variants, row: int, place: str, values: FloatArray
+        self, copies: Variants, row: int, place: str, values: FloatArray
     ) -> None:
         """Refuse the effect, because it is not known where the bumps are.
 
@@ -237,18 +235,16 @@ class ContactFriction(Effect):
             Parameter("coefficient", "1", 0.02, high, nominal, nominal * 2 / 3, True),
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Scale the coefficients of feet and ground in one variant by the same factor.
 
         MuJoCo uses the larger coefficient of two geoms, or that of the geom with higher
         priority; scaling both gives mu in either case.
         """
-        plant = variants.plant
+        plant = copies.plant
         geoms = np.concatenate([ground_geoms(plant), sole_geoms(plant)])
         factor = values[0] / sole_friction(plant)
-        variants.field("geom_friction")[row, geoms, 0] *= factor
+        copies.field("geom_friction")[row, geoms, 0] *= factor
 
 
 class ContactCompliance(Effect):
@@ -293,37 +289,35 @@ class ContactCompliance(Effect):
         low, typical, high = (weight / sinks_m for sinks_m in (0.03, 4e-3, 1e-4))
         return (Parameter("stiffness", "N/m", low, high, np.inf, typical, True),)
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Make all feet of a variant soft, in series with any softness given before."""
         stiffness = values[0]
         if np.isinf(stiffness):
             return
-        for foot in variants.plant.feet:
-            _soften(variants, row, foot, stiffness)
-        variants.field("opt.cone")[row] = mujoco.mjtCone.mjCONE_ELLIPTIC
-        ratio = variants.field("opt.impratio")
+        for foot in copies.plant.feet:
+            _soften(copies, row, foot, stiffness)
+        copies.field("opt.cone")[row] = mujoco.mjtCone.mjCONE_ELLIPTIC
+        ratio = copies.field("opt.impratio")
         ratio[row] = np.maximum(ratio[row], _IMPEDANCE_RATIO)
 
 
-def _soften(variants: Variants, row: int, foot: str, stiffness: float) -> None:
+def _soften(copies: Variants, row: int, foot: str, stiffness: float) -> None:
     """Give one foot a stiffness [N/m], in series with any that it was given before."""
-    plant = variants.plant
+    plant = copies.plant
     geoms = foot_geoms(plant, foot)
     points = _contact_points(plant, geoms)
     if points == 0:
         return
     impedance = _ADDED_MASS / (points + _ADDED_MASS)
-    inverse_mass = float(plant.model.body_invweight0[variants.body(foot), 0])
+    inverse_mass = float(plant.model.body_invweight0[copies.body(foot), 0])
     scale = inverse_mass * (1 - impedance) / points
-    reference = variants.field("geom_solref")
-    mix = variants.field("geom_solmix")
+    reference = copies.field("geom_solref")
+    mix = copies.field("geom_solmix")
     if mix[row, geoms[0]] == _WEIGHT_OVER_GROUND:
         stiffness = 1 / (1 / stiffness - scale / reference[row, geoms[0], 0])
     damping = 2 * DAMPING_RATIO * np.sqrt(stiffness * mass_kg(plant))
     reference[row, geoms] = -scale * stiffness, -scale * damping
-    variants.field("geom_solimp")[row, geoms, :2] = impedance
+    copies.field("geom_solimp")[row, geoms, :2] = impedance
     mix[row, geoms] = _WEIGHT_OVER_GROUND
 
 

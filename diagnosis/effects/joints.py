@@ -5,19 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.effects.effect import JointEffect, NumberEffect, ServoEffect
-from diagnosis.effects.parts import (
-    EffectWords,
-    Interval,
-    JointMotion,
-    Parameter,
-    PlacedEffect,
-    Values,
-)
+from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
+from diagnosis.verdict import PlacedEffect
 from groundwalk.arrays import FloatArray
 
 PLAY_RAD = 0.005
@@ -102,9 +96,7 @@ class Backlash(NumberEffect, ServoEffect):
         "before the joint follows.",
     )
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """A small and a large gap [rad]: the effect is not linear in its size."""
         return [(0.01,), (0.03,)]
 
@@ -152,9 +144,7 @@ class JointElasticity(JointEffect):
             Parameter("damping", "N m s/rad", 0.0, critical, 0.0, 0.03 * critical),
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Put the spring in series with any other at the joint: compliances add.
 
         With s the Laplace variable, springs k_i + d_i s in series give
@@ -163,16 +153,14 @@ class JointElasticity(JointEffect):
         stiffness, damping = values
         if np.isinf(stiffness):
             return
-        joints, at = variants.joints, (row, variants.column(place))
+        joints, at = copies.joints, (row, copies.column(place))
         before = joints.spring_nm_rad[at]
         total = 1 / (1 / before + 1 / stiffness)
         joints.spring_damping_nm_s_rad[at] *= (total / before) ** 2
         joints.spring_damping_nm_s_rad[at] += damping * (total / stiffness) ** 2
         joints.spring_nm_rad[at] = total
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """A soft and a stiff spring: the effect is not linear in its size."""
         stiffness, damping = (one.typical for one in self.parameters(plant, place))
         return [(stiffness * k, damping * k) for k in (1.0, 5.0)]
@@ -204,9 +192,7 @@ class JointSpring(JointEffect):
             Parameter("rest", "rad", low, high, rest, rest),
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Merge the spring with any other at the joint in one variant of the model.
 
         Stiffnesses are added; rest angles are averaged, weighted by stiffness.
@@ -214,17 +200,15 @@ class JointSpring(JointEffect):
         stiffness, rest = values
         if stiffness == 0:
             return
-        joint = variants.plant.model.joint(place).id
-        qpos = variants.plant.qpos[variants.column(place)]
-        stiffnesses = variants.field("jnt_stiffness")
-        rests = variants.field("qpos_spring")
+        joint = copies.plant.model.joint(place).id
+        qpos = copies.plant.qpos[copies.column(place)]
+        stiffnesses = copies.field("jnt_stiffness")
+        rests = copies.field("qpos_spring")
         total = stiffnesses[row, joint] + stiffness
         rests[row, qpos] += stiffness / total * (rest - rests[row, qpos])
         stiffnesses[row, joint] = total
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Springs with rest angles in the middle and at both ends of the motion."""
         column = plant.joints.index(place)
         low, high = usage.low_rad[column], usage.high_rad[column]
@@ -268,23 +252,19 @@ class EndStop(JointEffect):
             Parameter("side", "1", -1.0, 1.0, 1.0, 1.0),
         )
 
-    def apply(
-        self, variants: Variants, row: int, place: str, values: FloatArray
-    ) -> None:
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Narrow a joint's range in one variant; stops outside it change nothing."""
         angle, side = (float(value) for value in values)
-        joint = variants.plant.model.joint(place).id
-        limited, ranges = variants.field("jnt_limited"), variants.field("jnt_range")
+        joint = copies.plant.model.joint(place).id
+        limited, ranges = copies.field("jnt_limited"), copies.field("jnt_range")
         low, high = ranges[row, joint] if limited[row, joint] else (-_FAR_RAD, _FAR_RAD)
         if not low < angle < high:
             return
         ranges[row, joint] = (low, angle) if side > 0 else (angle, high)
         limited[row, joint] = 1
-        variants.field("jnt_solref")[row, joint] = _STIFF
+        copies.field("jnt_solref")[row, joint] = _STIFF
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Stops that cut 5 % and 20 % of the joint's recorded range off either end."""
         column = plant.joints.index(place)
         low, high = usage.low_rad[column], usage.high_rad[column]

@@ -12,19 +12,12 @@ from diagnosis.effects.effect import (
     ServoEffect,
     joints_where,
 )
-from diagnosis.effects.parts import (
-    EffectWords,
-    Interval,
-    JointMotion,
-    Parameter,
-    PlacedEffect,
-    Values,
-)
+from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import speed_rad_s, torque_nm
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
-from diagnosis.verdict import When
+from diagnosis.verdict import PlacedEffect, When
 from groundwalk.arrays import FloatArray
 
 WEAKER = (0.65, 0.8, 0.9, 0.96)
@@ -146,9 +139,7 @@ class TorqueLimit(NumberEffect, JointEffect):
         low, typical = 0.02 * scale, 0.6 * scale
         return (Parameter("torque", "N m", low, high, np.inf, typical, True),)
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Limits at 90, 70 and 45 % of the torque that the nominal servo would give."""
         torque = usage.torque_nm[plant.joints.index(place)]
         return [(share * torque,) for share in (0.9, 0.7, 0.45)]
@@ -194,9 +185,7 @@ class SpeedLimit(NumberEffect, ServoEffect):
         low, typical, high = 0.01 * scale, 0.4 * scale, 4 * scale
         return (Parameter("speed", "rad/s", low, high, np.inf, typical, True),)
 
-    def first_tries(
-        self, plant: Plant, place: str, usage: Usage, intervals: Sequence[Interval]
-    ) -> list[Values]:
+    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Limits at 80, 50 and 25 % of the commands' speed in the recordings."""
         speed = usage.command_speed_rad_s[plant.joints.index(place)]
         return [(share * speed,) for share in (0.8, 0.5, 0.25)]

@@ -1,6 +1,7 @@
 """Variants of a robot model: all that effects can change, with one row per variant."""
 
 from dataclasses import dataclass, fields
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -129,10 +130,7 @@ class Variants:
     def field(self, name: str) -> FloatArray:
         """(n, ...) values of a field in `mujoco.batch.MODEL_FIELDS`, to be changed."""
         if name not in self.fields:
-            value = self.plant.model
-            for part in name.split("."):
-                value = getattr(value, part)
-            nominal = np.asarray(value, float)
+            nominal = np.asarray(attrgetter(name)(self.plant.model), float)
             self.fields[name] = np.repeat(nominal[None], self.n, axis=0)
         return self.fields[name]
 

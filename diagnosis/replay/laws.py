@@ -23,6 +23,7 @@ class BatchLaws:
     Attributes:
       joints: arrays (n R, j) of `Joints` by name, a row for each simulation, sorted by
         variant, then by run.
+      outside: pushes and drag; call its `apply` at every step, too.
     """
 
     def __init__(
@@ -64,7 +65,7 @@ class BatchLaws:
         # bind before the first step: a later view would lag by one step
         self._force = self._bind("actuator_force")
         self._applied = self._bind("qfrc_applied")
-        self._outside = OutsideForces(batch, variants, runs, step_s)
+        self.outside = OutsideForces(batch, variants, runs, step_s)
         self._elastic: ElasticJoints | None = None
 
     def begin(self, asked_rad: FloatArray | None = None) -> None:
@@ -78,7 +79,7 @@ class BatchLaws:
             self._setpoint = asked_rad - self.joints["offset_rad"]
         if self._gaps is not None:
             self._gaps.begin()
-        self._outside.begin()
+        self.outside.begin()
         is_first = self._elastic is None
         if np.isfinite(self.joints["spring_nm_rad"]).any():
             law, inertia = self._servos.law, self._rotor_kg_m2
@@ -156,10 +157,6 @@ class BatchLaws:
         set_before = self._gaps is not None or bool(self._torques)
         already = self._applied[:, self._dofs] if set_before else 0.0
         self._applied[:, self._dofs] = already + torque_nm
-
-    def push_bodies(self, time_s: FloatArray) -> None:
-        """Apply pushes and drag in the step that begins at (R,) times [s]."""
-        self._outside.apply(time_s)
 
     def joint_state(self) -> tuple[FloatArray, FloatArray]:
         """Joint positions [rad] and velocities [rad/s], (n R, j) views of the batch."""

@@ -81,7 +81,7 @@ def replay(
                 batch.laws.push_joints(pushed[i], now_s[i])
             if added is not None:
                 batch.laws.add_to_joints(added[i])
-            batch.laws.push_bodies(now_s[i])
+            batch.laws.outside.apply(now_s[i])
             batch.step()
             tape.note(first + i + 1)
     return tape.read(runs, variants)

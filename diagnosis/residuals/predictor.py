@@ -12,14 +12,7 @@ from diagnosis.replay.replay import replay
 from diagnosis.residuals.channels import Channels, measured_of, shared_channels, stacked
 from diagnosis.residuals.limbs import Limb, limbs_of
 from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
-from diagnosis.residuals.start_state import (
-    POSITION_SPREAD_RAD,
-    POSITION_STEP_RAD,
-    VELOCITY_SPREAD_RAD_S,
-    VELOCITY_STEP_RAD_S,
-    StartUncertainty,
-    nudged,
-)
+from diagnosis.residuals.start_state import SPREADS, STEPS, StartUncertainty, nudged
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import is_left_over, runs_of, window_s
 from groundwalk.arrays import BoolArray, FloatArray
@@ -56,10 +49,6 @@ class Predictor:
     every simulation.
 
     Attributes:
-      plant: nominal robot model.
-      traces: the recordings.
-      channels: the c quantities that are compared, with their noise.
-      step_s: time step of the simulations [s].
       blocks: rows of all traces in blocks of 0.3 s, in which model errors that the
         healthy robot shows are correlated.
       channel: (N,) index of the channel of each entry of a residual.
@@ -83,8 +72,7 @@ class Predictor:
         Args:
           plant: nominal robot model.
           traces: recordings, all with the same channels.
-          channels: the quantities to compare, with their noise; None to estimate them
-            from the traces.
+          channels: the quantities to compare; None to estimate them from the traces.
           step_s: time step of the simulations; None for 4 ms (floating base: 2 ms).
           threads: number of threads that simulate a batch.
           noise: model errors that recordings of the healthy robot show, or None.
@@ -163,17 +151,13 @@ class Predictor:
         results = replay(runs, variants, self.step_s, self._threads)
         stacks = [stacked(result, self.channels)[0] for result in results]
         count = len(self._runs)
-        plain, positions, velocities = (
+        plain, *moved = (
             np.concatenate(stacks[k * count : (k + 1) * count]) for k in range(3)
         )
-        changes = [
-            (positions - plain) * (POSITION_SPREAD_RAD / POSITION_STEP_RAD),
-            (velocities - plain) * (VELOCITY_SPREAD_RAD_S / VELOCITY_STEP_RAD_S),
-        ]
-        changes = [
-            np.nan_to_num(np.where(self._scored, change / self.channels.noise, 0.0))
-            for change in changes
-        ]
+        changes = []
+        for other, step, spread in zip(moved, STEPS, SPREADS, strict=True):
+            change = (other - plain) * (spread / step) / self.channels.noise
+            changes.append(np.nan_to_num(np.where(self._scored, change, 0.0)))
         ends = np.cumsum([run.trace.ticks for run in self._runs])
         return StartUncertainty(changes, ends.tolist())
 

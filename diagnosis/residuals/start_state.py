@@ -16,13 +16,12 @@ import numpy as np
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
 
-POSITION_STEP_RAD, VELOCITY_STEP_RAD_S = 1e-3, 0.03
+STEPS = (1e-3, 0.03)
 """Changes of the start positions [rad] and start velocities [rad/s] of simulations by
 which the influence of a wrong start is measured."""
 
-POSITION_SPREAD_RAD, VELOCITY_SPREAD_RAD_S = 2e-3, 0.3
-"""Standard deviations of the errors of positions [rad] and velocities [rad/s] from
-which simulations start."""
+SPREADS = (2e-3, 0.3)
+"""Standard deviations of the errors of start positions [rad] and velocities [rad/s]."""
 
 
 def nudged(runs: Sequence[Run]) -> list[Run]:
@@ -31,14 +30,10 @@ def nudged(runs: Sequence[Run]) -> list[Run]:
     Three times as many windows, in this order. All joints' starts are changed at once:
     servos are stiff, so that each joint hardly moves the others.
     """
-    positions = [
-        replace(run, position_rad=run.position_rad + POSITION_STEP_RAD) for run in runs
-    ]
-    velocities = [
-        replace(run, velocity_rad_s=run.velocity_rad_s + VELOCITY_STEP_RAD_S)
-        for run in runs
-    ]
-    return [*runs, *positions, *velocities]
+    dq, dv = STEPS
+    positions = [replace(run, position_rad=run.position_rad + dq) for run in runs]
+    speeds = [replace(run, velocity_rad_s=run.velocity_rad_s + dv) for run in runs]
+    return [*runs, *positions, *speeds]
 
 
 class StartUncertainty:
@@ -47,11 +42,9 @@ class StartUncertainty:
     def __init__(self, changes: Sequence[FloatArray], ends: Sequence[int]) -> None:
         """Prepare the projection that removes the signatures.
 
-        Args:
-          changes: changes (rows, c) of the simulated channels in units of noise, 0
-            where errors do not count: first if the start positions are wrong by one
-            standard deviation, then if the start velocities are.
-          ends: row after the last one of each window.
+        `changes` (rows, c) of the simulated channels, in units of noise and 0 where
+        errors do not count, are those by start positions, then by start velocities that
+        are wrong by one standard deviation; `ends` are the rows after each window.
         """
         signatures = np.stack(changes)
         self._windows = []

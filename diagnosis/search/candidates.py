@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.effects.library import all_effects, effect, grown_from
-from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.result import Judged, keys_of, without_each
 from diagnosis.search.rules import Rules
@@ -99,10 +98,11 @@ class Candidates:
 
         Linear estimates are far off for some effects, such as backlash or delays.
         """
-        options = [
-            [(*start[:-1], other) for other in self._sizes(start[-1])]
-            for start in starts
-        ]
+        options = []
+        for *rest, last in starts:
+            scan = effect(last.name).sizes_to_scan
+            sizes = scan(self._fit.plant, last, self._fit.traces)
+            options.append([(*rest, other) for other in sizes])
         if not options:
             return []
         every = [model for some in options for model in some]
@@ -112,11 +112,6 @@ class Candidates:
             some[int(np.argmin(energy))]
             for some, energy in zip(options, np.split(energies, ends[:-1]), strict=True)
         ]
-
-    def _sizes(self, placed: PlacedEffect) -> list[PlacedEffect]:
-        """An effect in several sizes around a guessed one."""
-        kind = effect(placed.name)
-        return kind.sizes_to_scan(self._fit.plant, placed, self._fit.traces)
 
     def _leading(self, best: Sequence[Judged]) -> list[Judged]:
         """The models to extend: the best on the selection data, and on all data.

@@ -1,12 +1,12 @@
 """Learns the errors of a robot model from recordings of the healthy robot."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from diagnosis.audit.audit import audit
-from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
@@ -34,6 +34,24 @@ REPLAYS = 40
 only for the progress display."""
 
 
+class _Simulations(NamedTuple):
+    """What all simulations of recordings of the healthy robot have in common."""
+
+    plant: Plant
+    channels: Channels
+    threads: int
+    hooks: Hooks
+
+    def predictor(
+        self, traces: Sequence[Trace], noise: ReferenceNoise | None = None
+    ) -> Predictor:
+        """A calibrated predictor of some recordings."""
+        options = None, self.threads, noise, self.hooks.advance
+        predictor = Predictor(self.plant, traces, self.channels, *options)
+        predictor.calibrate()
+        return predictor
+
+
 def learn_reference(
     plant: Plant,
     traces: Sequence[Trace],
@@ -48,13 +66,8 @@ def learn_reference(
     in any recording. A robot on a floating base differs from its model in every
     contact, which no effect describes; there all of the difference counts as noise.
 
-    Args:
-      plant: nominal robot model.
-      traces: recordings of the healthy robot, at least one.
-      channels: channels and their noise in the recordings to be diagnosed.
-      rules: settings of the search; None for the default ones.
-      threads: number of threads that simulate.
-      hooks: progress display and checkpoint; None for neither.
+    `traces` are recordings of the healthy robot, `channels` are those of the recordings
+    to be diagnosed, with their noise.
 
     Raises:
       BadRecordingError: the recordings are unusable or too short to learn from.
@@ -64,36 +77,28 @@ def learn_reference(
         raise BadRecordingError(f"the reference: {refused[0]}")
     hooks = (hooks or Hooks()).within("reference")
     traces = shortened(traces, MOST_S)
-    model: tuple[PlacedEffect, ...] = ()
-    if plant.base == "fixed":
-        model = _explained(plant, traces, channels, rules, threads, hooks)
+    sims = _Simulations(plant, channels, threads, hooks)
+    model = _explained(sims, traces, rules) if plant.base == "fixed" else ()
     hooks.stage("noise", REPLAYS)
-    return _learned(plant, traces, channels, model, threads, hooks)
+    return _learned(sims, traces, model)
 
 
 def _learned(
-    plant: Plant,
-    traces: Sequence[Trace],
-    channels: Channels,
-    model: tuple[PlacedEffect, ...],
-    threads: int,
-    hooks: Hooks,
+    sims: _Simulations, traces: Sequence[Trace], model: Model
 ) -> ReferenceNoise:
     """The errors that a model leaves in recordings, as noise."""
 
     def work() -> ReferenceNoise:
-        count = len(channels.names)
+        count = len(sims.channels.names)
         known = ReferenceNoise.known(model, count)
-        floats = plant.base == "floating"
+        floats = sims.plant.base == "floating"
         every = [late for one in traces for late in _shifted(one)] if floats else traces
-        options = None, threads, known, hooks.advance
-        predictor = Predictor(plant, every, channels, *options)
-        predictor.calibrate()
+        predictor = sims.predictor(every, known)
         residual = predictor.residuals([()])[0].reshape(-1, count)
         scored = predictor.scored.reshape(-1, count)
         return ReferenceNoise.of(model, residual, scored, predictor.blocks)
 
-    return hooks.saved(work, pack_noise, unpack_noise)
+    return sims.hooks.saved(work, pack_noise, unpack_noise)
 
 
 def reference_checks(
@@ -116,13 +121,11 @@ def reference_checks(
     hooks = (hooks or Hooks()).within("reference check")
     hooks.stage("", 2 * REPLAYS)
     halves = _halves(shortened(traces, MOST_S))
+    sims = _Simulations(plant, channels, threads, hooks)
     checks = []
     for own, other in (halves, halves[::-1]):
         some = shortened(own, CHECK_S / 2, LEAST_FLOATING_S)
-        noise = _learned(plant, other, channels, (), threads, hooks)
-        options = None, threads, noise, hooks.advance
-        checks.append(Predictor(plant, some, channels, *options))
-        checks[-1].calibrate()
+        checks.append(sims.predictor(some, _learned(sims, other, ())))
     return checks
 
 
@@ -146,21 +149,14 @@ def reference_limit(noise: ReferenceNoise) -> tuple[str, ...]:
 
 
 def _explained(
-    plant: Plant,
-    traces: Sequence[Trace],
-    channels: Channels,
-    rules: Rules | None,
-    threads: int,
-    hooks: Hooks,
-) -> tuple[PlacedEffect, ...]:
+    sims: _Simulations, traces: Sequence[Trace], rules: Rules | None
+) -> Model:
     """The effects, with values, that a search finds in recordings."""
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select
-    options = None, threads, None, hooks.advance
-    whole = Predictor(plant, [*fit, *select], channels, *options)
-    whole.calibrate()
-    first, last = len(fit), len(fit) + len(select)
-    judge = Judge(whole.part(0, first), whole.part(first, last), rules, hooks=hooks)
+    whole = sims.predictor([*fit, *select])
+    parted = whole.part(0, len(fit)), whole.part(len(fit), len(whole.traces))
+    judge = Judge(*parted, rules, hooks=sims.hooks)
     winner = Search(judge).run().winner
     return winner.model if winner else ()
 

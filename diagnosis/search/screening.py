@@ -88,9 +88,13 @@ def _trials(
         if kind.at_tips:
             places = tuple(p for p in places if p in tips(predictor.plant)) or places
         options = {
-            place: kind.first_tries(predictor.plant, place, usage, intervals)
-            for place in places
+            place: kind.first_tries(predictor.plant, place, usage) for place in places
         }
+        if kind.timed:
+            options = {
+                place: [values[:-2] + when for when in intervals for values in tries]
+                for place, tries in options.items()
+            }
         if not any(options.values()):
             continue
         if kind.place_kind == "joint" and kind.joint_by_joint:
@@ -213,7 +217,7 @@ class Screen:
                 best[keys] = guess
         return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
 
-    def _promising(self, view: "_View") -> list[tuple[list[int], list[int]]]:
+    def _promising(self, view: _View) -> list[tuple[list[int], list[int]]]:
         """Pairs of effects, as groups of signature indices, whose gain to compute."""
         alone = [group for group in self._groups if len(group) == 1]
         rows = np.array([row for group in alone for row in group], int)
@@ -235,7 +239,7 @@ class Screen:
             pairs += [(vector, other) for other in others]
         return pairs
 
-    def _gains_together(self, view: "_View", rows: IntArray) -> FloatArray:
+    def _gains_together(self, view: _View, rows: IntArray) -> FloatArray:
         """(K, K) gains of pairs of K signatures by least squares, above the diagonal.
 
         0 if an effect would need an impossible sign, or both signatures are
@@ -267,9 +271,7 @@ class Screen:
                 alone.append([row])
         return [*alone, *vectors.values()]
 
-    def _view(
-        self, residual: FloatArray, jacobian: FloatArray | None = None
-    ) -> "_View":
+    def _view(self, residual: FloatArray, jacobian: FloatArray | None = None) -> _View:
         """Scalar products with a residual, less the part in the span of a Jacobian."""
         wanted = -(self._columns @ residual.astype(np.float32)).astype(float)
         if jacobian is None or not jacobian.any():
@@ -280,7 +282,7 @@ class Screen:
         wanted = wanted + done @ (basis.T @ residual)
         return _View(wanted, self._products - done @ done.T, SAME)
 
-    def _guess(self, view: "_View", groups: Sequence[list[int]]) -> Guess | None:
+    def _guess(self, view: _View, groups: Sequence[list[int]]) -> Guess | None:
         """The best allowed sizes of some groups of signatures; None if useless."""
         rows = [row for group in groups for row in group]
         products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]

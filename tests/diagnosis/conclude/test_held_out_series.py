@@ -8,7 +8,6 @@ from diagnosis.conclude.held_out_series import (
     rms,
 )
 from diagnosis.verdict import ChannelFit, Fit
-from groundwalk.errors import BadValueError
 
 
 def channels(**errors):
@@ -33,17 +32,3 @@ def test_the_worst_channel_is_that_of_most_noise_floors():
 def test_rms_leaves_out_what_is_missing():
     assert rms(np.array([3.0, np.nan, -4.0])) == pytest.approx(np.sqrt(12.5))
     assert rms(np.array([np.nan])) == 0.0
-
-
-@pytest.mark.parametrize(
-    ("time_s", "of"),
-    [
-        (np.arange(5.0), {}),
-        (np.arange(4.0), channels(a=1.0)),
-        (np.arange(1.0), channels(a=1.0)),
-    ],
-)
-def test_series_that_do_not_fit_together_are_refused(time_s, of):
-    assert HeldOutSeries("a", np.arange(5.0), channels(a=1.0)).name == "a"
-    with pytest.raises(BadValueError, match="series 'a'"):
-        HeldOutSeries("a", time_s, of)

@@ -13,12 +13,12 @@ from diagnosis.effects import (
     EffectWords,
     Parameter,
     PlacedEffect,
-    Push,
     TorqueEffect,
     all_effects,
     also_known,
     effect,
 )
+from diagnosis.effects.variants import Push
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.judging import Judge
 from diagnosis.search.search import Search
@@ -58,8 +58,8 @@ class OtherGravity(Effect):
     def parameters(self, plant, place):
         return tuple(Parameter(axis, "m/s^2", -5.0, 5.0, 0.0, 0.3) for axis in "xyz")
 
-    def apply(self, variants, row, place, values):
-        variants.field("opt.gravity")[row] += values
+    def apply(self, copies, row, place, values):
+        copies.field("opt.gravity")[row] += values
 
 
 class Wind(Effect):
@@ -77,12 +77,12 @@ class Wind(Effect):
             Parameter("duration", "s", 0.0, 600.0, 0.0, 0.2),
         )
 
-    def apply(self, variants, row, place, values):
+    def apply(self, copies, row, place, values):
         force, (start_s, duration_s) = tuple(values[:3]), values[3:]
         for body in ("upper", "lower"):
             if duration_s > 0 and any(force):
                 push = Push(body, force, start_s, duration_s)
-                variants.outside.pushes[row].append(push)
+                copies.outside.pushes[row].append(push)
 
 
 OWN = SpeedBrake(), OtherGravity(), Wind()
@@ -120,14 +120,14 @@ def test_effects_of_ones_own_are_found_with_their_values(truth, rel):
 def test_they_get_the_tries_and_sizes_of_their_kind():
     with also_known(*OWN):
         kinds = all_effects()
-        wind = kinds["wind"].first_tries(PLANT, "world", None, [(1.0, 0.5)])
-        gravity = kinds["other_gravity"].first_tries(PLANT, "world", None, [])
+        wind = kinds["wind"].first_tries(PLANT, "world", None)
+        gravity = kinds["other_gravity"].first_tries(PLANT, "world", None)
         brake = PlacedEffect("speed_brake", "elbow", (1.0,))
         sizes = kinds["speed_brake"].sizes_to_scan(PLANT, brake, [])
         assert kinds["speed_brake"].stretched(PLANT, brake, 2.0) == brake
         blown = PlacedEffect("wind", "world", (1.0, 0.0, 0.0, 1.0, 0.5))
         assert kinds["wind"].acted(blown, 0.0, 9.0).kind == "burst"
-    assert wind[0] == (1.0, 0.0, 0.0, 1.0, 0.5)
+    assert wind[0][:3] == (1.0, 0.0, 0.0)
     assert len(wind) == len(gravity) == 3
     assert gravity[2] == (0.0, 0.0, 0.3)
     assert len(sizes) == 7

@@ -248,10 +248,10 @@ def test_trial_values_follow_usage():
     assert usage.torque_nm[elbow] < 0.5 * np.abs(asked).max()
     for share, (limit,) in zip(
         (0.9, 0.7, 0.45),
-        effect("torque_limit").first_tries(plant, "elbow", usage, []),
+        effect("torque_limit").first_tries(plant, "elbow", usage),
         strict=True,
     ):
         assert limit == pytest.approx(share * usage.torque_nm[elbow])
-    for angle, side in effect("end_stop").first_tries(plant, "elbow", usage, []):
+    for angle, side in effect("end_stop").first_tries(plant, "elbow", usage):
         assert usage.low_rad[elbow] < angle < usage.high_rad[elbow]
         assert abs(side) == 1
