@@ -42,6 +42,7 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
         for values, channel in zip(trace.position_rad.T, positions, strict=True)
     ]
     joints = tuple(map(measures.audit_joint, plant.joints, positions, smoothed))
+    moves = [joint.moves for joint in joints]
     steps = np.array([channel.quantum or 0.0 for channel in positions])
     repeated = measures.repeated_share(trace, steps)
     for channel in channels.values():
@@ -51,10 +52,10 @@ def _audit_trace(trace: Trace, plant: Plant) -> tuple[TraceAudit, list[Finding]]
         *measures.stuck_findings(trace, plant.joints, channels),
         *suspicions.range_findings(trace, plant),
         *suspicions.following_findings(trace, plant),
-        *suspicions.velocity_findings(trace, plant, smoothed, [joint.moves for joint in joints]),
+        *suspicions.velocity_findings(trace, plant, smoothed, moves),
         *suspicions.torque_findings(trace, plant),
         *suspicions.imu_findings(trace),
     ]
     every = tuple(channels.values())
-    audited = replace(timing, measures.repeated_share=repeated, channels=every, joints=joints)
+    audited = replace(timing, repeated_share=repeated, channels=every, joints=joints)
     return audited, findings
