@@ -35,9 +35,7 @@ multiple of the standard deviation that chance gives it."""
 def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estimate]]:
     """For each effect its values with 80 % intervals and units, by parameter name.
 
-    Args:
-      predictor: predictor of the data to which the model was fitted.
-      fit: the model with a Jacobian by finite differences at its values.
+    The `fit` to the predictor's data has a Jacobian by finite differences.
     """
     deviation = standard_errors(predictor, fit)
     x = fit.coordinates.of(fit.model)
@@ -61,11 +59,7 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
     They are those of White's sandwich estimator of 1980 with blocks of time: no
     simulator is exact, so residuals are correlated and larger than the sensors' noise.
     The systematic error of simulators does not show in the data; it is added as a fixed
-    share of each value.
-
-    Args:
-      predictor: predictor of the data to which the model was fitted.
-      fit: the model with a Jacobian by finite differences at its values.
+    share of each value. The `fit` has a Jacobian by finite differences.
     """
     jacobian, residual = fit.jacobian, fit.residual
     known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
@@ -90,9 +84,8 @@ def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
     correlated, they are joined in pairs until they are not: friction that varies with
     the position, for example, causes an error as long as a stroke lasts.
 
-    Args:
-      influence: (N, p) change of each value by each entry of the residual.
-      block: (N,) number of each entry's time block from 0, increasing with time.
+    `influence` (N, p) is the change of each value by each entry of the residual,
+    `block` (N,) the number of each entry's time block, increasing with time.
     """
     sums = np.zeros((int(block.max()) + 1, influence.shape[1]))
     np.add.at(sums, block, influence)
@@ -129,12 +122,8 @@ def smallest_detectable(
 
     The change of the residual by an effect (its signature) is taken as proportional to
     the effect's size, hence the gain grows with the square of the size. Effects that
-    act only above a threshold are left out.
-
-    Args:
-      predictor: predictor of the data.
-      found: signatures of the effects.
-      gain: gain [nats] that an effect needs to be reported.
+    act only above a threshold are left out. `gain` [nats] is what an effect needs to be
+    reported.
     """
     sizes: dict[str, Amount] = {}
     for signature in found:

@@ -34,12 +34,8 @@ def flexible_regression_errors(
 
     For each channel a ridge regression predicts the nominal sim's error from random
     Fourier features (Rahimi and Recht 2007) of simulated motion, commands and time. Its
-    penalty is chosen on a quarter of the rows, in blocks of 50.
-
-    Args:
-      learn: predictor of the data to learn from.
-      judge: predictor, with the same channels, of the data on which it is tested.
-      seed: seed of the features.
+    penalty is chosen on a quarter of the rows, in blocks of 50. Both predictors have
+    the same channels; the regression learns from the first one's data.
     """
     rng = np.random.default_rng(seed)
     known, wrong, seen = _data(learn)

@@ -99,10 +99,8 @@ def larger_than_learned(
 ) -> tuple[str, ...]:
     """A sentence for the limits if held-out errors are much larger than fitted ones.
 
-    Args:
-      learned: predictor of the data to which the model was fitted.
-      left: (N,) residual of the model on these data, in units of noise.
-      fit: errors on the held-out data.
+    `left` (N,) is the residual that the model leaves, in units of noise, on the data of
+    `learned`, to which it was fitted.
     """
     before = max(float(np.sqrt(np.mean(channel_rms(learned, left) ** 2))), 1.0)
     if fit.corrected < SURPRISE * before:
@@ -134,12 +132,7 @@ def controls_of(
 
     The main effect is the one whose removal increases the error most.
 
-    Args:
-      predictor: predictor of the data to fit.
-      model: the model found, with at least one effect.
-      alike: keys "effect@place" of effects that may be the truth as well and therefore
-        are no controls.
-      rng: chooses the wrong effect.
+    Effects `alike`, keys "effect@place", may be the truth as well and are no controls.
 
     Returns:
       "without": the other effects alone; "wrong_place": the main effect moved to the

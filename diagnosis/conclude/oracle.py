@@ -23,16 +23,11 @@ from groundwalk.blas import one_blas_thread
 
 @dataclass(frozen=True)
 class StructureFit:
-    """Errors on recordings: of a known structure (the true effects) and other models.
+    """Rms errors, in units of noise, on held-out recordings.
 
-    Rms errors are those on held-out recordings, in units of noise.
-
-    Attributes:
-      gain: mean over all recordings of the log-likelihood [nats] by which the fitted
-        structure beats the nominal model.
-      nominal: rms error of the nominal model.
-      fitted: rms error of the fitted structure.
-      others: rms error of each other model, in the order they were given.
+    They are of the nominal model, the fitted structure (true effects) and other models.
+    `gain` is the mean over all recordings of the log-likelihood [nats] by which the
+    fitted structure beats the nominal model.
     """
 
     gain: float
@@ -53,13 +48,7 @@ def fit_structure(
 
     The values are fitted to the same recordings that a diagnosis fits. The other
     models, such as the answers of a diagnosis, keep the values they are given.
-
-    Args:
-      plant: nominal robot model.
-      traces: recordings of the robot.
-      reference: recordings of the healthy robot; may be empty.
-      structure: the true effects at their true places, with values to start from.
-      others: models to compare with.
+    `reference` are recordings of the healthy robot, if any.
     """
     parts = split(traces)
     channels = shared_channels(plant, [*traces, *reference])

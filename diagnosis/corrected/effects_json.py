@@ -99,10 +99,8 @@ class Correction:
 def load_correction(source: str | Path, plant: Plant) -> Model:
     """Read the effects that a diagnosis found, for a sim of the same robot.
 
-    Args:
-      source: a folder that `groundwalk diagnose` has written, a `corrected.json`, or
-        a `diagnosis.json`, for which the base is assumed to be fixed.
-      plant: the robot model of the sim.
+    The source is a folder that `groundwalk diagnose` has written, a `corrected.json`,
+    or a `diagnosis.json`, for which the base is assumed to be fixed.
 
     Raises:
       BadModelError: the file is not from a diagnosis, or belongs to another robot.

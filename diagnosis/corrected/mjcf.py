@@ -37,16 +37,9 @@ def corrected_mjcf(
     Controls are position targets of the joints. Late commands become the actuators'
     `delay`; until the first command is due the target is 0.
 
-    Args:
-      plant: the robot model without the effects.
-      model: the effects; those that MuJoCo cannot simulate are left out.
-      servo: servo gains of the recordings; None for the robot model's own.
-      step_s: time step; None for the model file's own, or 2 ms if it has none.
-
-    Example:
-      >>> plant = load_plant("so101", "fixed")
-      >>> dry = PlacedEffect("coulomb_friction", "elbow_flex", (0.1,))
-      >>> Path("corrected.xml").write_text(corrected_mjcf(plant, (dry,)))
+    Effects of the `model` that MuJoCo cannot simulate are left out. `servo` are the
+    gains of the recordings if not the plant's own; the time step is the model file's
+    own, or 2 ms if it has none.
     """
     native = tuple(placed for placed in model if effect(placed.name).native)
     variants = variants_of(plant, [native])

@@ -74,11 +74,8 @@ def sim_plant(
 ) -> Plant:
     """Make the robot model that the sim world simulates, for use by a diagnosis.
 
-    Args:
-      description: the robot as data: links, joints, motors, feet and sensors.
-      options: time step, friction and whether the base is fixed.
-      grounds: heightfields, all put into the model; a plane if empty. A fixed base has
-        no ground.
+    All `grounds` are put into the model, a plane if there are none. A fixed base has no
+    ground.
     """
     base: Base = "fixed" if options.fixed_base else "floating"
     spec = world_spec(description, options, () if options.fixed_base else grounds)
@@ -89,11 +86,6 @@ def sim_variants(plant: Plant, model: Model, n: int) -> Variants:
     """Make n equal copies of a robot model with the effects, for rollouts.
 
     A slope rotates gravity instead of the ground, so that heightfields stay in place.
-
-    Args:
-      plant: the sim world's robot model.
-      model: the effects with places and values.
-      n: number of robots.
 
     Raises:
       BadModelError: a sim cannot have one of the effects.
@@ -121,14 +113,9 @@ class CorrectedSim(SimWorld):
         options: WorldOptions,
         model: Model,
     ) -> None:
-        """Make the world.
+        """Make the world with the effects of `model`; arguments as for `SimWorld`.
 
-        Args:
-          description: the robot as data: links, joints, motors, feet and sensors.
-          grounds: one per robot; give one object n times to share it.
-          seeds: one per robot, for its sensor noise.
-          options: as for `SimWorld`; a latency among the effects is added to theirs.
-          model: the effects with places and values.
+        A latency among the effects is added to that of the options.
 
         Raises:
           BadModelError: a sim cannot have one of the effects.

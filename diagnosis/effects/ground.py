@@ -132,12 +132,10 @@ class GroundSlope(Effect):
 class UnevenGround(NumberEffect):
     """Bumps: heights of the ground spread about the plane, 99 % within +-height.
 
-    Where the bumps are cannot be known. A simulation that starts in the middle of a
-    recording takes the ground to be where the recorded soles stood at its start, within
-    +-height of the plane (`diagnosis.replay.conforming_ground`). So the height found is
-    about that of the largest bump stepped on, bumps below 0.6 mm are not seen, and the
-    ground is flat where a foot steps later. 1 mm is tried first, less than most real
-    bumps.
+    Where the bumps are cannot be known: a simulation takes the ground to be where the
+    recorded soles stood at its start (`diagnosis.replay.conforming_ground`). So the
+    height found is about that of the largest bump stepped on, bumps below 0.6 mm are
+    not seen, and the ground is flat where a foot steps later.
 
     Source: ground profiles as random processes, ISO 8608:2016.
     """
@@ -145,9 +143,7 @@ class UnevenGround(NumberEffect):
     name = "uneven_ground"
     place_kind = "world"
     native = False
-    rarity_nats = 10.0
-    """Extra log-likelihood [nats] that the effect needs to be accepted: it fits the
-    ground to every stand of a sole, which is like one more parameter for each."""
+    rarity_nats = 10.0  # fits every stand of a sole, like a parameter for each
     quantity = "bump_height_m"
     usual = (Parameter("height", "m", 0.0, 0.03, 0.0, 0.001),)
     words = EffectWords(
@@ -163,11 +159,7 @@ class UnevenGround(NumberEffect):
     def apply_to_sim(
         self, copies: Variants, row: int, place: str, values: FloatArray
     ) -> None:
-        """Refuse the effect, because it is not known where the bumps are.
-
-        Raises:
-          BadModelError: always.
-        """
+        """Refuse the effect (`BadModelError`): nothing says where the bumps are."""
         raise BadModelError(
             "uneven_ground says how high bumps are, not where: give the sim a "
             "terrain with bumps instead"
@@ -190,15 +182,12 @@ def _call(function: str, size: int, *arguments: Any) -> FloatArray:
 
 DAMPING_RATIO = 0.1
 """Damping of soft contact as a share of critical damping of the robot on one foot."""
-
 _ADDED_MASS = 0.25
 """Apparent mass of MuJoCo's soft contact as a share of the foot's effective mass, small
 so that the contact acts like a spring and damper without mass."""
-
 _IMPEDANCE_RATIO = 100.0
 """MuJoCo's `impratio`, tangential over normal impedance of contacts: large, so that a
 sticking foot hardly creeps."""
-
 _WEIGHT_OVER_GROUND = 1e9
 """MuJoCo's `solmix` of a soft foot: so large that the foot's solver parameters count in
 a contact instead of the ground's."""
@@ -257,12 +246,9 @@ class ContactCompliance(Effect):
     (-k, -b) and constant impedance d solves a + b r' / d + k r / d + R f = 0, with
     acceleration a, force f, R = A (1 - d) / d, and A the foot's inverse mass in the
     reference pose (`body_invweight0`). At rest f = k r / (A (1 - d)). So a foot with n
-    contact points gets stiffness K by k = K A (1 - d) / n, and likewise B. Unlike a
-    spring the contact has an apparent mass n / R; d makes it a quarter of the foot's
-    effective mass 1 / A.
-
-    A sticking foot creeps at tangential force / B; an elliptic friction cone and
-    `impratio` 100 slow that to a hundredth.
+    contact points gets stiffness K by k = K A (1 - d) / n, and likewise B. Its apparent
+    mass n / R is made a quarter of the foot's 1 / A by d. A sticking foot creeps at
+    tangential force / B, slowed to a hundredth by an elliptic cone and `impratio` 100.
 
     Limits: if another effect changes masses, K changes with A. The feet's geoms must
     not have a lower priority than the ground's, or MuJoCo ignores their softness.

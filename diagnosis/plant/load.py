@@ -48,7 +48,7 @@ def load_plant(
         of example-robot-data, such as "so101".
       base: "fixed" to the world or "floating".
       joints: joints that the recordings have; None for all hinges and slides.
-      servo: servo gains that replace the model's own; None for the model's own.
+      servo: servo gains that replace the model's own.
 
     Raises:
       UnknownNameError: no robot has this name, or `servo` names an unknown joint.

@@ -49,20 +49,19 @@ sign of a push; noise reaches this in no window."""
 MEDIAN_OF_NORMAL = 0.6744897501960817
 """Median of the absolute value of a standard normal variable."""
 
+Span = tuple[float, float]
+"""Start [s] of something, and its end or its duration [s]."""
+
 
 def bursts(
     predictor: Predictor, residual: FloatArray, channel: int | None = None
-) -> list[tuple[float, float]]:
+) -> list[Span]:
     """Start and end [s] of the strongest bursts of error, at most three.
 
     Squared residuals are summed in bins of 50 ms. Neighbouring bins with much more than
     the median form one burst. An error that is present all the time, or at every
-    motion, raises the median and is no burst.
-
-    Args:
-      predictor: the predictor that computed `residual`.
-      residual: (N,) in units of noise.
-      channel: index of the only channel to look at; None for all channels together.
+    motion, raises the median and is no burst. `residual` (N,) is in units of noise;
+    `channel` is the index of the only channel to look at, None for all together.
     """
     found: list[tuple[float, float, float]] = []
     for number, trace in enumerate(predictor.traces):
@@ -84,9 +83,7 @@ def bursts(
     return [(start, end) for _, start, end in found[:MOST]]
 
 
-def push_intervals(
-    predictor: Predictor, residual: FloatArray
-) -> list[tuple[float, float]]:
+def push_intervals(predictor: Predictor, residual: FloatArray) -> list[Span]:
     """Start and duration [s] of possible pushes, from an (N,) residual [noise].
 
     The first one lasts for all of the recording; the others are the bursts of error or,
@@ -104,9 +101,7 @@ def push_intervals(
     return [(-LEAD_S, float(last_s) + 2 * LEAD_S), *short, *faint]
 
 
-def faint_pushes(
-    predictor: Predictor, residual: FloatArray
-) -> list[tuple[float, float]]:
+def faint_pushes(predictor: Predictor, residual: FloatArray) -> list[Span]:
     """Windows in which a faint push may have acted: start and end [s], surest first.
 
     There is at most one window of each length (0.1, 0.25, 0.5 s): that with the most

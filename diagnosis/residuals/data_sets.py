@@ -40,12 +40,8 @@ class DataSets:
 
     They are calibrated at the nominal model: they correct its integration error.
 
-    Attributes:
-      parts: the parts of the recordings by their use.
-      fit: predictor of the data that parameters are fitted to.
-      select: predictor of the data that decide between models.
-      learned: predictor of fitting and selection data together.
-      test: predictor of the held-out data, which are used once, at the end.
+    Parameters are fitted to `fit`, `select` decides between models, `learned` is both
+    together, and the held-out data `test` are used once, at the end.
     """
 
     parts: Split

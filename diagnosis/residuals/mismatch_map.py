@@ -114,12 +114,8 @@ def unexplained(
     """The mean error of the worst joint over one quantity; None if no row counts.
 
     The quantity is the one of the joint's position, velocity and command and of time
-    over which the mean error is most significant.
-
-    Args:
-      predictor: the predictor that computed `residual`.
-      residual: (N,) residual of the best model, in units of noise.
-      share: share of the squared error above the noise that the model leaves.
+    over which the mean error is most significant. `residual` (N,) is that of the best
+    model, in units of noise; it leaves `share` of the squared error above the noise.
     """
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)

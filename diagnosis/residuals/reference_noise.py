@@ -114,11 +114,8 @@ class ReferenceNoise:
     ) -> "ReferenceNoise":
         """Learn the errors from residuals of recordings of the healthy robot.
 
-        Args:
-          model: effects that count as part of the nominal model.
-          residual: (rows, c) residual of this model, in units of noise.
-          scored: (rows, c) whether an entry counts.
-          blocks: the rows in blocks.
+        The residual (rows, c) of the model is in units of noise; `scored` (rows, c)
+        says whether an entry counts.
 
         Raises:
           BadRecordingError: no block has enough rows that count.

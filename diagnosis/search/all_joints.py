@@ -141,12 +141,8 @@ def kinds_to_add(guesses: Sequence[Guess], least: float, model: Model) -> list[M
 
     First come the kinds that gain most in total, then those that gain most for each
     value: a single delay may explain all fast motions, although friction at all joints
-    gains more in the slow ones.
-
-    Args:
-      guesses: single effects with estimated gains.
-      least: gain [nats] below which a guess is ignored.
-      model: effects that are present already and not added again.
+    gains more in the slow ones. Guesses of single effects that gain less than `least`
+    [nats], or are in the `model` already, are left out.
     """
     known = {placed.key for placed in model}
     together: dict[str, tuple[float, Model]] = {}

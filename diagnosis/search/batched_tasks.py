@@ -21,18 +21,10 @@ def lockstep(
 ) -> list[Result]:
     """Run tasks that ask questions, and answer the questions of all tasks together.
 
-    A task is a function, for example a fit by an optimiser of SciPy, that is called
-    with a function to ask with. Whenever all tasks wait, `answer` is called once.
-
-    Args:
-      tasks: functions of one argument, the function to ask with.
-      answer: returns the answers to a list of questions, in their order.
-
-    Returns:
-      The results of the tasks, in their order.
-
-    Raises:
-      Exception: the exception of the first failing task, or that of `answer`.
+    A task is called with a function to ask with. Whenever all tasks wait, `answer` is
+    called once; it returns the answers to a list of questions, in their order. Returns
+    the results of the tasks; raises the exception of the first one that fails, or that
+    of `answer`.
     """
     asked: SimpleQueue[tuple[int, list[Question]]] = SimpleQueue()
     replies: list[SimpleQueue[Any]] = [SimpleQueue() for _ in tasks]

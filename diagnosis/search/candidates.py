@@ -57,11 +57,9 @@ class Candidates:
     ) -> list[Model]:
         """Models with one more effect; the same effects may occur with other values.
 
-        Args:
-          best: models with equally many effects, the best first.
-          near: whether to combine the best one with all effects at the same place.
-          residual: (N,) residual of the nominal sim, if pairs are to be guessed; else
-            None.
+        `best` are models with equally many effects, the best first; `near` combines the
+        best one with all effects at the same place. Pairs are guessed if the residual
+        (N,) of the nominal sim is given.
         """
         starts = self._growths(best)
         if near:

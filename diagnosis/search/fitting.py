@@ -32,13 +32,9 @@ Ask = Callable[[list[Model]], FloatArray]
 
 @dataclass(frozen=True, eq=False)
 class FittedModel:
-    """A model with fitted values.
+    """A model with fitted values, its (N,) residual in units of noise, and Jacobian.
 
-    Attributes:
-      model: the effects with the values found.
-      residual: (N,) residual of the model, in units of noise.
-      jacobian: (N, p) derivative of the residual by the scaled coordinates.
-      coordinates: conversion between the p values and coordinates of order one.
+    The `jacobian` (N, p) is the derivative of the residual by scaled coordinates.
     """
 
     model: Model
@@ -150,8 +146,7 @@ def fit_all(
       predictor: predictor of the data to fit.
       starts: models with values to start from.
       steps: most steps of each fit.
-      nudges_of: which values of a model are changed together in differences; None to
-        change each by itself.
+      nudges_of: which values are changed together in differences; None: each by itself.
       followed: take differences at the start only, and update the Jacobian from the
         residuals of each step (Broyden), which needs no simulations. Good enough to
         compare models, but not for intervals.

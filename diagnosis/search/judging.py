@@ -18,16 +18,9 @@ class Judge:
     An energy is half the sum of squared residuals in units of noise [nats].
 
     Attributes:
-      fit: predictor (simulation with residuals) of the fitting data.
-      select: predictor of the selection data.
-      rules: settings of the search.
-      healthy: predictors of recordings of the healthy robot; empty without such.
-      hooks: progress display and checkpoint.
       residual: (N,) residual of the nominal sim on the fitting data [noise].
-      nothing: energy of the nominal sim on the selection data.
-      nothing_fit: energy of the nominal sim on the fitting data.
-      floor: energy that noise alone leaves on the selection data.
-      floor_fit: energy that noise alone leaves on the fitting data.
+      nothing, nothing_fit: energy of the nominal sim on selection and fitting data.
+      floor, floor_fit: energy that noise alone leaves on them.
     """
 
     def __init__(
@@ -40,13 +33,8 @@ class Judge:
     ) -> None:
         """Judge the nominal sim, with which all models are compared.
 
-        Args:
-          fit: predictor of the fitting data, calibrated.
-          select: predictor of the selection data, calibrated, with the same channels.
-          rules: settings of the search; None for the default ones.
-          healthy: calibrated predictors of recordings of the healthy robot. A gain that
-            a model has there, too, is no evidence of a change.
-          hooks: progress display and checkpoint; None for neither.
+        Predictors are calibrated and have the same channels; `healthy` are those of
+        recordings of the healthy robot: a gain there, too, is no evidence of a change.
         """
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.healthy, self.hooks = healthy, hooks or Hooks()
@@ -152,10 +140,7 @@ class Judge:
 
         Only those that are among the best after a few steps are fitted to the end. Of
         several fits of the same effects at the same places the best is kept.
-
-        Args:
-          starts: models with values to begin with.
-          jacobians: (N, p) Jacobian of each model at these values; None if unknown.
+        `jacobians` (N, p) are those at the start values, None if unknown.
         """
 
         def work() -> list[Judged]:

@@ -17,11 +17,9 @@ from diagnosis.search.hooks import Saved
 class Judged:
     """A fitted model and how well it explains fitting and selection data.
 
-    Attributes:
-      fit: the model, fitted to the fitting data.
-      selected: energy (minus the log-likelihood) on the selection data [nats].
-      weight: 1 if the fitting data count in comparisons with other models, 0 if gains
-        there may be chance.
+    `selected` is its energy (minus the log-likelihood) on the selection data [nats];
+    `weight` is 1 if the fitting data count in comparisons, 0 if gains there may be
+    chance.
     """
 
     fit: FittedModel
@@ -56,12 +54,10 @@ class SearchResult:
     An energy is half the sum of squared residuals in units of noise.
 
     Attributes:
-      nothing: energy of the nominal sim on the selection data [nats].
-      floor: energy that noise alone leaves on the selection data [nats].
+      nothing, nothing_fit: the nominal sim's on selection and fitting data [nats].
+      floor, floor_fit: those that noise alone leaves [nats].
       best: the best models of each number of effects, the best first.
       chosen: the number of effects that are believed.
-      nothing_fit: energy of the nominal sim on the fitting data [nats].
-      floor_fit: energy that noise alone leaves on the fitting data [nats].
     """
 
     nothing: float

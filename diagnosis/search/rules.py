@@ -17,13 +17,13 @@ class Rules:
         not among the best guesses.
       beam: number of the best models that are extended in each round.
       growths_each: number of ways in which each of them is extended.
-      pairs: number of pairs of effects that are fitted because of their guessed gain.
+      pairs: number of pairs of effects that are fitted, the best guesses.
       first_steps: steps of a fit after which most models are given up.
       finished: largest number of models that are fitted to the end.
       drop_behind: give a model up after the first steps if it explains less than the
         best one by more than this share of the energy that the best one explains.
-      refinements: largest number of times that the best models are fitted again, with
-        the integration error measured at the best one.
+      refinements: most times that the best models are fitted again, with the
+        integration error measured at the best one.
       compared: number of the best models that are compared with exact integration.
       swaps: number of replacements that are tried for each effect of the best model.
       largest: largest number of effects in a model.
@@ -32,8 +32,7 @@ class Rules:
       promising: below that level a search ends if no guess gains this share of
         `least_gain`.
       least_gain: gain [nats] on the selection data that an effect needs.
-      least_hint: gain [nats] on the selection data that is enough for a single effect
-        which also shows on the fitting data.
+      least_hint: the same for a single effect that also shows on the fitting data.
       fitted_only: a single effect that gains this multiple of `least_gain` on the
         fitting data needs no gain on the selection data.
       least_pattern: an effect must gain as much as a pattern of this rms [noise] would;

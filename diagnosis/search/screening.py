@@ -49,12 +49,9 @@ def signatures(
 ) -> list[Signature]:
     """Simulate effects at all their places, to see how each changes the residual.
 
-    Args:
-      predictor: simulates the recordings.
-      base: the model to which the effects are added, one or one kind at a time.
-      usage: range, speed and torque of the joints, which set the sizes that are tried.
-      intervals: start and duration [s] of possible pushes.
-      names: names of the effects to try; all if empty.
+    The effects `names`, all if empty, are added to the model `base`, one or one kind at
+    a time. The `usage` of the joints sets the sizes that are tried; `intervals` are
+    start and duration [s] of possible pushes.
     """
     trials = _trials(predictor, usage, intervals, names or tuple(all_effects()))
     models = [base, *(base + added for added, _ in trials)]
@@ -137,9 +134,7 @@ combinations of others or of the model's Jacobian."""
 class Guess:
     """Effects that explain a part of a residual, by a linear estimate.
 
-    Attributes:
-      model: the effects with the values that explain most.
-      gain: reduction of half the sum of squared residuals [nats].
+    `gain` is the reduction of half the sum of squared residuals [nats].
     """
 
     model: Model
@@ -150,12 +145,9 @@ class Guess:
 class _View:
     """Scalar products of K signatures (changes by effects) with one residual.
 
-    Attributes:
-      wanted: (K,) products of the signatures with the negative residual.
-      products: (K, K) products of the signatures with each other.
-      ridge: share of each signature's square that is added to the diagonal, so that the
-        equations can always be solved.
-      bounded: whether the sizes of effects with only one possible sign must keep it.
+    `wanted` (K,) are products with the negative residual, `products` (K, K) those with
+    each other. `ridge` is the share of each signature's square that is added to the
+    diagonal; `bounded` whether effects with one possible sign must keep it.
     """
 
     wanted: FloatArray
@@ -168,12 +160,10 @@ class Screen:
     """Finds the effects, and the pairs of effects, that explain most of a residual."""
 
     def __init__(self, predictor: Predictor, found: Sequence[Signature]) -> None:
-        """Compute the scalar products of all signatures once.
+        """Compute the scalar products of all signatures, at least one, once.
 
-        Args:
-          predictor: the predictor that computed the signatures.
-          found: at least one signature. Components of a vector effect are combined;
-            other signatures of one effect and place are alternatives.
+        Components of a vector effect are combined; other signatures of one effect and
+        place are alternatives.
         """
         self._predictor, self._found = predictor, list(found)
         self._columns = np.zeros((len(found), len(predictor.scored)), np.float32)
@@ -185,13 +175,11 @@ class Screen:
     def singles(
         self, residual: FloatArray, jacobian: FloatArray | None = None
     ) -> list[Guess]:
-        """The best guess of each effect and place, largest gain first.
+        """The best guess of each effect and place for a residual (N,) [noise].
 
-        Args:
-          residual: (N,) residual to explain [noise].
-          jacobian: (N, p) Jacobian of the model that leaves the residual: its values
-            may change when an effect is added, so that two effects that nearly cancel
-            each other are found. None keeps them fixed.
+        The largest gain comes first. With the Jacobian (N, p) of the model that leaves
+        the residual, its values may change when an effect is added, so that two effects
+        that nearly cancel each other are found.
         """
         view = self._view(residual, jacobian)
         best: dict[str, Guess] = {}

@@ -69,17 +69,11 @@ def read_reference(
 ) -> list[Trace]:
     """Read reference recordings: those of the same robot while it was healthy.
 
-    Args:
-      paths: the recordings; an empty list gives an empty list.
-      source: a robot's name, or a path to its MJCF (.xml) or URDF (.urdf).
-      plant: robot model of the recordings that are diagnosed.
-      servo: servo gains for recordings that state none.
+    Arguments and errors are those of `read_traces`; `plant` is the robot model of the
+    recordings that are diagnosed. No paths give an empty list.
 
     Raises:
-      BadRecordingError: one cannot be read, or it has other joints or another base
-        than the recordings that are diagnosed.
-      UnknownNameError: there is no such robot.
-      BadModelError: the robot's file is no model.
+      BadRecordingError: one has other joints or another base than the plant.
 
     Example:
       See docs/diagnosis.md.

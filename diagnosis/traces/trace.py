@@ -47,20 +47,14 @@ class Trace:
 
     Attributes:
       name: name of the recording, with the time span if it is a part.
-      time_s: (T,) increasing.
-      position_rad: (T, j) measured positions.
       servo: the servos of this recording; gains may differ between recordings.
-      velocity_rad_s: (T, j) measured velocities.
-      command_rad: (T, j) position targets.
-      command_torque_nm: (T, j) torque targets.
-      torque_nm: (T, j) measured torques.
+      position_rad, velocity_rad_s, torque_nm: (T, j) measured at the joints.
+      command_rad, command_torque_nm: (T, j) position and torque targets.
       added_nm: (T, j) torques that act on the joints in addition to the servos'.
-      gyroscope_rad_s: (T, 3) in the sensor's frame.
-      accelerometer_m_s2: (T, 3) in the sensor's frame.
+      gyroscope_rad_s, accelerometer_m_s2: (T, 3) in the sensor's frame.
       foot_force_n: (T, feet) vertical force under each foot.
-      base_position_m: (T, 3) world frame.
+      base_position_m, base_linear_velocity_m_s: (T, 3) world frame.
       base_orientation: (T, 4) quaternion w, x, y, z, base to world.
-      base_linear_velocity_m_s: (T, 3) world frame.
       base_angular_velocity_rad_s: (T, 3) body frame.
 
     Example:

@@ -28,10 +28,8 @@ class Errors:
     the main effect is the found effect that reduces the error most.
 
     Attributes:
-      nominal: error of the nominal sim.
-      corrected: error of the sim with the effects found.
-      floor: noise floor: the measured noise, or the accuracy of simulation and clocks
-        where that is larger.
+      nominal, corrected: errors of the sims without and with the effects found.
+      floor: the measured noise, or the accuracy of simulation and clocks if larger.
       ceiling: error of a flexible regression without physics.
       without: error without the main effect, the others refitted.
       wrong_place: error with the main effect moved to the best other place.
@@ -114,9 +112,8 @@ class Verdict:
       limits: sentences on what these data cannot show.
       mismatch: where and when the nominal sim errs, the worst channel first.
       pulses: torques that servos did not ask for, in the order of time.
-      fit: errors of nominal and corrected sim on held-out data; None if there are none.
+      fit: errors of nominal and corrected sim on held-out data.
       next_experiment: what to record next; None if nothing is open.
-      recordings: which recordings were used for what.
       seconds: duration of the diagnosis.
 
     Example:
