@@ -21,11 +21,8 @@ def biped(description: Description) -> Biped:
     """Find the legs, arms and foot sensors of a robot that walks on two legs.
 
     A leg is the chain of joints from the root to a foot: three at the hip, the knee,
-    two at the ankle. An arm is a joint at the root that belongs to no leg (shoulder
-    pitch), with the joint after it (shoulder roll).
-
-    Raises:
-      BadValueError: a leg does not have six joints, or its knee's axis is not lateral.
+    two at the ankle; BadValueError if it is not. An arm is a joint at the root that
+    belongs to no leg (shoulder pitch), with the joint after it (shoulder roll).
 
     Example:
       >>> biped(robots.get("nao")).leg.thigh_m

@@ -30,12 +30,8 @@ def get(name: str) -> Description:
     """Describe a robot by its name, or from a file.
 
     A file is a URDF (.urdf) of a robot on two legs, or a TOML file (.toml) like
-    robots/nao.toml or that completes a URDF.
-
-    Raises:
-      UnknownNameError: there is no such robot.
-      GroundwalkError: the file cannot be read or holds no robot that walks on two legs;
-        the message says why.
+    robots/nao.toml or that completes a URDF. GroundwalkError if there is no such robot,
+    or the file holds no robot that walks on two legs; the message says why.
 
     Example:
       >>> get("nao").joints[:2]

@@ -22,10 +22,8 @@ def roles(axes: FloatArray) -> tuple[int, ...]:
     The unit vectors (6, 3) go from hip to foot; x is forward, y left, z up. The order
     of the three hip joints is the one in which yaw, roll and pitch axes are closest to
     z, x and y in sum; the NAO's yaw axis leans by 45 degrees. The order of ankle pitch
-    and roll is found in the same way. The fourth joint is the knee.
-
-    Raises:
-      ValueError: the knee's axis is not close to y.
+    and roll is found in the same way. The fourth joint is the knee; ValueError if its
+    axis is not close to y.
     """
     if abs(axes[KNEE, _Y]) < _CLEAR:
         raise ValueError(f"the knee's axis is {np.round(axes[KNEE], 3)}, not y")
@@ -89,10 +87,6 @@ class LegGeometry:
       thigh_m: length from hip to knee [m].
       tibia_m: length from knee to ankle [m].
       ankle_height_m: height of the ankle axes above the sole [m].
-
-    Example:
-      >>> robots.biped(robots.get("nao")).leg.thigh_m
-      0.1
     """
 
     hip_m: tuple[float, float, float]
@@ -127,25 +121,20 @@ class Biped:
 
     Attributes:
       leg: lengths and axes of the left leg.
-      left_leg: columns of yaw, roll, pitch, knee, ankle pitch and ankle roll.
-      right_leg: columns of the right leg's joints, in that order.
-      left_arm: columns of shoulder pitch and, if it exists, shoulder roll; None without
-        arms.
-      right_arm: columns of the right arm's joints, in that order.
-      joint_range_rad: (joints, 2) lower and upper end of each joint's range [rad].
-      max_speed_rad_s: (joints,) speeds of the motors without load [rad/s].
-      foot_sensor_xy_m: (8, 2) force sensors [m]: left foot front left, front right,
-        rear left, rear right, then the right foot; each in its own foot's ankle frame.
+      left_leg, right_leg: columns of yaw, roll, pitch, knee, ankle pitch and ankle
+        roll.
+      left_arm, right_arm: columns of shoulder pitch and, if it exists, shoulder roll;
+        None without arms.
+      joint_range_rad: (joints, 2) lower and upper end of each joint's range.
+      max_speed_rad_s: (joints,) speeds of the motors without load.
+      foot_sensor_xy_m: (8, 2) force sensors: left foot front left, front right, rear
+        left, rear right, then the right foot; each in its own foot's ankle frame.
       chains: the left and right leg as chains if their axes do not meet, else None.
-      hanging_rad: left and right shoulder pitch [rad] at which the arms hang down.
+      hanging_rad: left and right shoulder pitch at which the arms hang down.
       arm_signs: left and right: -1 if the shoulder pitch axis points right, else 1.
       scale: size relative to the NAO.
-      ankles_ahead_m: distance of the ankles ahead of the hips [m] when the gait
-        parameter `com_offset` is zero.
-
-    Example:
-      >>> robots.biped(robots.get("nao")).joints
-      20
+      ankles_ahead_m: distance of the ankles ahead of the hips when the gait parameter
+        `com_offset` is zero.
     """
 
     leg: LegGeometry

@@ -27,11 +27,7 @@ T = TypeVar("T")
 
 
 def read_description(path: Path) -> Description:
-    """Read the robot of a TOML file in the format of `robots/nao.toml`.
-
-    Raises:
-      UnknownNameError: a joint, foot or coupled pair refers to an unknown name.
-    """
+    """Read the robot of a TOML file in the format of `robots/nao.toml`."""
     table = tomllib.loads(path.read_text())
     joints: dict[str, Table] = table["joint"]
     root_name = table["root"]

@@ -22,12 +22,8 @@ REAL_LATENCY_S = 0.036
 class WorldKind:
     """A world's class and its defaults; see `kind` for an example.
 
-    Attributes:
-      world: the class, such as `SimWorld`.
-      options: the default settings.
-      terrain: name of the terrain on which its robots stand by default.
-      seed_key: fixed number, combined with a seed so that sim and real draw different
-        random numbers from the same seed.
+    The robots stand on `terrain` by default. The number `seed_key` is combined with a
+    seed so that sim and real draw different random numbers from the same seed.
     """
 
     world: type[RolloutWorld]
@@ -51,9 +47,6 @@ by its latency, its sensor noise and its ground."""
 
 def kind(name: str) -> WorldKind:
     """Look up the class and the defaults of the world "sim" or "real".
-
-    Raises:
-      UnknownNameError: there is no world of this name.
 
     Example:
       >>> kind("real").options.latency_s
@@ -82,9 +75,6 @@ def make(
 
     Raises:
       GroundwalkError: the world is unknown, or its options do not fit the robot.
-
-    Example:
-      See the beginning of the package `worlds`.
     """
     chosen = kind(name)
     return chosen.world(description, grounds, seeds, options or chosen.options)

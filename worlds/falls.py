@@ -24,10 +24,8 @@ def fallen(
 ) -> BoolArray:
     """(n,) whether robots have fallen, by the rule that all worlds share.
 
-    Args:
-      up_z: (n,) cosine of the angle between the torso's up axis and the vertical.
-      height_m: (n,) height of the torso above the ground below it.
-      start_height_m: a number or (n,), the same height at the start of the rollout.
+    From `up_z` (n,), the cosine of the angle between torso and vertical, and the
+    torso's height above the ground below it, now (n,) and at the start of the rollout.
     """
     low = height_m < FALL_HEIGHT_RATIO * start_height_m
     return np.asarray((up_z < math.cos(FALL_TILT_RAD)) | low)
@@ -46,9 +44,7 @@ class EndRule:
     def __call__(self, truth: Truth, sound: BoolArray) -> Mapping[End, BoolArray]:
         """Masks (n,) of the rollouts that end now, by reason; each ends for one only.
 
-        Args:
-          truth: true motion; any numbers where `sound` is False.
-          sound: (n,) whether all states and measurements of a robot are finite.
+        `sound` (n,) says which robots' states and measurements are all finite.
         """
         with np.errstate(invalid="ignore", over="ignore"):
             height_m, on_ground = self._above_ground(truth)

@@ -60,9 +60,6 @@ class Truth(_PerRobot):
       base_orientation: (n, 4) unit quaternion w, x, y, z from torso to world.
       base_linear_velocity_m_s: (n, 3) world frame.
       base_angular_velocity_rad_s: (n, 3) torso frame.
-
-    Example:
-      `world.truth().base_position_m[:, 0]` is how far each robot has walked.
     """
 
     base_position_m: FloatArray

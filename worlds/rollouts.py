@@ -66,11 +66,7 @@ class RolloutWorld(ABC):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Remember the robot, and grounds and seeds, one for each of n robots.
-
-        Raises:
-          BadValueError: the numbers of grounds and seeds differ or are 0.
-        """
+        """Remember the robot, and grounds and seeds, one for each of n robots."""
         if not grounds or len(grounds) != len(seeds):
             raise BadValueError(
                 f"{len(grounds)} grounds and {len(seeds)} seeds; a world needs one of "

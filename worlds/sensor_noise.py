@@ -24,10 +24,6 @@ class SensorNoise:
       accelerometer_m_s2: standard deviation of white noise along x, y, z.
       joint_quantum_rad: resolution of the joint encoders; 0 for no rounding.
       foot_force_n: standard deviation of white noise of each foot sensor.
-
-    Example:
-      >>> SensorNoise(gyroscope_bias_rad_s=0.0).joint_quantum_rad
-      0.0015339807878856412
     """
 
     gyroscope_rad_s: tuple[float, float, float] = (0.0039, 0.0055, 0.0024)

@@ -184,10 +184,6 @@ def scale_mass(model: Any, data: Any, factor: float, bodies: Sequence[str]) -> N
     Changing masses alone would leave the inertias and MuJoCo's derived constants
     unchanged (MuJoCo issue 609); `mj_setConst` computes the constants again, and also
     puts `data` into the model's reference pose.
-
-    Raises:
-      BadValueError: the factor is not positive.
-      UnknownNameError: there is no such body.
     """
     import mujoco
 

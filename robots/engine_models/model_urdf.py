@@ -33,11 +33,9 @@ def model_urdf(
 ) -> str:
     """Make URDF text of a model's moving bodies, hinges and collision spheres.
 
-    Args:
-      model: a tree of hinges, on a fixed base or with a free joint as its first.
-      name: name of the robot in the URDF.
-      rotor_kg_m2: rotor inertia that is lumped into each link [kg m^2].
-      effort_nm: torque limit that the URDF states for each joint [N m].
+    The model is a tree of hinges, on a fixed base or with a free joint as its first.
+    The rotor inertia is lumped into each link; `effort_nm` is the limit stated for each
+    joint.
     """
     import mujoco
 

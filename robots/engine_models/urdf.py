@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from robots.description import Capsule, Description, Foot, Joint, Link
+from robots.description import Capsule, Description, Foot, Link
 from robots.rigid_body import Inertial
 from robots.sole import CONTACT_RADIUS_M, contact_points
 
@@ -60,13 +60,10 @@ def add_hinge(
 ) -> Element:
     """Add a hinge to the robot.
 
-    Args:
-      robot: the root element of the URDF.
-      names: names of the joint, of the link that carries it and of the link it moves.
-      place_m: (3,) position in the carrying link's frame [m].
-      rpy: roll, pitch and yaw [rad] of the moved link in that frame.
-      axis: (3,) axis in the moved link's frame.
-      limit: lower and upper end [rad], largest torque [N m] and speed [rad/s].
+    `names` are those of the joint, of the link that carries it and of the link it
+    moves, `place_m` (3,) and `rpy` (roll, pitch, yaw [rad]) place the latter in the
+    former, `axis` is in the moved link's frame, and `limit` holds lower and upper end
+    [rad], largest torque [N m] and speed [rad/s].
     """
     name, parent, child = names
     element = SubElement(robot, "joint", name=name, type="revolute")
@@ -96,7 +93,14 @@ def urdf(description: Description) -> str:
         parent = description.root
         if joint.parent >= 0:
             parent = description.links[joint.parent].link
-        element = _add_joint(robot, joint, parent.name)
+        motor = joint.motor
+        limit = (
+            *joint.range_rad,
+            repr(motor.stall_torque_nm),
+            repr(motor.no_load_speed_rad_s),
+        )
+        names = joint.name, parent.name, joint.link.name
+        element = add_hinge(robot, names, joint.origin_m, "0 0 0", joint.axis, limit)
         if i in followers:
             SubElement(element, "mimic", joint=description.joints[followers[i]])
     return text_of(robot, declared=True)
@@ -130,10 +134,3 @@ def _add_capsule(link: Element, shape: Capsule) -> None:
     add_origin(element, (start + end) / 2, numbers((roll, pitch, 0.0)))
     sizes = {"radius": repr(shape.radius_m), "length": repr(length)}
     SubElement(SubElement(element, "geometry"), "cylinder", sizes)
-
-
-def _add_joint(robot: Element, joint: Joint, parent: str) -> Element:
-    effort = repr(joint.motor.stall_torque_nm)
-    limit = (*joint.range_rad, effort, repr(joint.motor.no_load_speed_rad_s))
-    names = joint.name, parent, joint.link.name
-    return add_hinge(robot, names, joint.origin_m, "0 0 0", joint.axis, limit)

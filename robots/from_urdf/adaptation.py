@@ -89,12 +89,7 @@ class Adaptation:
 
 
 def read_adaptation(path: Path) -> Adaptation:
-    """Read an `Adaptation` from a TOML file; keys are the names of its attributes.
-
-    Raises:
-      BadModelError: the file cannot be read, or a value is of the wrong kind.
-      UnknownNameError: the file has a key that is no attribute.
-    """
+    """Read an `Adaptation` from a TOML file; keys are the names of its attributes."""
     try:
         table = tomllib.loads(path.read_text())
         names = [one.name for one in fields(Adaptation)]
@@ -109,11 +104,7 @@ def read_adaptation(path: Path) -> Adaptation:
 
 
 def urdf_path(name: str, folder: Path) -> Path:
-    """Find the URDF that an adaptation names: a path in `folder`, or an example's name.
-
-    Raises:
-      UnknownNameError: there is neither such a file nor such an example.
-    """
+    """Find the URDF with a name: a path in `folder`, or an example of that name."""
     path = folder / name
     if path.is_file():
         return path

@@ -1,7 +1,7 @@
 """Makes the description of a walking robot from its URDF.
 
 Legs, feet, arms and the direction in which the robot faces follow from the kinematics
-(`leg_roles`, `shoulders`), soles from collision shapes (`foot_shapes`), motors
+(`limbs`), soles from collision shapes (`link_shapes`), motors
 from effort and speed limits (`servo_size`), and the scaling of gaits from the leg
 length (`scale`). Joints of legs and shoulders have motors; waist, neck, elbows, wrists
 and fingers are held still, and their links are merged into the links above them.
@@ -18,14 +18,15 @@ from scipy.spatial.transform import Rotation
 from groundwalk.errors import BadModelError, BadValueError
 from robots.description import Description, Foot, Imu, Joint, Link, Motor, VisualMesh
 from robots.from_urdf.adaptation import Adaptation, urdf_path
-from robots.from_urdf.balance import (
+from robots.from_urdf.limbs import (
     HIP_PART,
+    Legs,
     ankles_ahead_m,
     crouch_rad,
+    find_legs,
     find_shoulders,
     hanging_rad,
 )
-from robots.from_urdf.leg_roles import Legs, find_legs
 from robots.from_urdf.link_shapes import foot, round_shapes
 from robots.from_urdf.package_paths import mesh_path
 from robots.from_urdf.posed_tree import PosedTree
@@ -36,15 +37,10 @@ from robots.scale import Scale
 
 
 def adapted(name: str, adaptation: Adaptation, folder: Path) -> Description:
-    """Describe the robot of a URDF, under a name.
+    """Describe the robot of a URDF, which `adaptation` names and completes.
 
-    Args:
-      name: name of the robot in the description.
-      adaptation: names the URDF, and gives facts that do not follow from it.
-      folder: the folder to which a relative path of the URDF refers.
-
-    Raises:
-      GroundwalkError: the URDF is no robot on two legs; the message says why.
+    A relative path of the URDF refers to `folder`. GroundwalkError if the URDF is no
+    robot on two legs; the message says why.
     """
     tree = read_urdf(urdf_path(adaptation.urdf, folder))
     placed = tree.placements({})

@@ -27,17 +27,9 @@ def foot(
 ) -> Foot:
     """Describe a foot, whose sole is given or the bottom of its collision shapes.
 
-    Its four force sensors are at the corners of the rectangle around the sole.
-
-    Args:
-      posed: the robot in a pose with level soles.
-      joint: name of the leg's last joint.
-      index: column of that joint in joint arrays.
-      box: the left sole; None to take it from the shapes.
-      side: 1 left, -1 right.
-
-    Raises:
-      BadModelError: the foot has no shape with a bottom.
+    Its four force sensors are at the corners of the rectangle around the sole. `joint`
+    is the leg's last one, `index` its column in joint arrays; `box` is the left sole,
+    None to take it from the shapes; `side` is 1 left, -1 right.
     """
     if box is None:
         points_m = _points(posed, joint) - posed.origin_m(joint)

@@ -40,9 +40,6 @@ def mesh_path(urdf: Path, name: str) -> Path:
     variable ROS_PACKAGE_PATH, as in ROS; then in the folders above the URDF, one of
     which is usually the package or contains it; last where example-robot-data is
     installed, so that a copy of one of its URDFs works anywhere.
-
-    Raises:
-      BadModelError: there is no such file.
     """
     if not name.startswith(_PACKAGE):
         path = Path(name.removeprefix(_FILE))

@@ -83,9 +83,6 @@ class PosedTree:
         """Inertial of all links that move rigidly with a joint, in the joint's frame.
 
         Links below the next moving joint do not count; "" stands for the root.
-
-        Raises:
-          BadModelError: these links have no mass.
         """
         bodies = self._bodies([joint])
         if not bodies:

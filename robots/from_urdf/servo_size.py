@@ -34,15 +34,12 @@ def servo(
     never less. The rotor inertia is unknown and left out.
 
     Args:
-      effort_nm: effort limit of the joint [N m].
-      speed_rad_s: velocity limit of the joint [rad/s].
-      mass_kg: mass of the robot [kg].
-      height_m: height of its centre of mass above the soles [m].
-      hanging_kg_m2: inertia of the links below the joint about its axis [kg m^2]; None
-        for a joint of a leg.
-
-    Raises:
-      BadValueError: effort or speed is not positive.
+      effort_nm: effort limit of the joint.
+      speed_rad_s: velocity limit of the joint.
+      mass_kg: mass of the robot.
+      height_m: height of its centre of mass above the soles.
+      hanging_kg_m2: inertia of the links below the joint about its axis; None for a
+        joint of a leg.
     """
     if not (effort_nm > 0 and speed_rad_s > 0):
         raise BadValueError(

@@ -39,15 +39,9 @@ class Clock:
     ) -> "Clock":
         """Evenly spaced ticks, each early or late by a random number of physics steps.
 
-        Args:
-          step_s: time step of the physics.
-          rate_hz: ticks per second.
-          spans_s: time before the recording begins, and length of the recording.
-          jitter_s: largest deviation of a tick from its even time, drawn with `rng`.
-          rng: a random generator.
-
-        Raises:
-          BadValueError: the jitter is so large that ticks change their order.
+        `spans_s` are the time before the recording begins and the recording's length;
+        `jitter_s` is the largest deviation of a tick from its even time. BadValueError
+        if it is so large that ticks change their order.
         """
         first = round(spans_s[0] * rate_hz)
         rows = first + round(spans_s[1] * rate_hz) + 1

@@ -26,11 +26,7 @@ class HiddenDrive:
         step_s: float,
         start_rad: FloatArray,
     ) -> None:
-        """Begin with the robot at rest in the (j,) start pose of the engine `world`.
-
-        Raises:
-          GroundwalkError: an effect is at a joint that the robot lacks.
-        """
+        """Begin with the robot at rest in the (j,) start pose of the engine `world`."""
         inertia = least_inertia_kg_m2(plant, start_rad)
         around = surroundings(effects)
         self._world, self._step_s = world, step_s

@@ -12,6 +12,8 @@ from worlds.hidden.plant import HiddenPlant
 
 ENGINES = ("bullet", "mujoco")
 """Names of the physics engines that can simulate robots with hidden physics."""
+ORIGIN_POSE = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+"""Position [m] and quaternion w, x, y, z of a fixed base."""
 WATCH_STEPS = 8
 """Number of physics steps over which sensed forces and accelerations are averaged: 2 to
 4 ms, shorter than any tick and long enough for the noise of contacts to cancel."""
@@ -39,6 +41,18 @@ class BodySense(NamedTuple):
     orientation: FloatArray
     linear_m_s: FloatArray
     angular_rad_s: FloatArray
+
+    @classmethod
+    def of_base(
+        cls, pose: FloatArray, velocity: FloatArray, felt: FloatArray, feet: FloatArray
+    ) -> "BodySense":
+        """Readings at a base with this pose (7,) and velocity (6,), the fields' order.
+
+        The gyroscope shows the turning rate; `felt` is the accelerometer's reading
+        (3,), `feet` the forces on the soles (8,), of which negative ones count as 0.
+        """
+        rate, feet = velocity[3:], np.maximum(feet, 0.0)
+        return cls(rate, felt, feet, pose[:3], pose[3:], velocity[:3], rate)
 
 
 class HiddenEngine(Protocol):
@@ -74,11 +88,7 @@ class HiddenEngine(Protocol):
 
 
 def check_engine(name: str, effects: Sequence[Hidden]) -> None:
-    """Refuse effects that an engine cannot compute.
-
-    Raises:
-      BadValueError: there is no such engine, or it lacks one of the effects.
-    """
+    """Refuse effects that an engine cannot compute."""
     if name not in ENGINES:
         raise BadValueError(f"engine is {name!r}; it must be {' or '.join(ENGINES)}")
     for effect in effects:

@@ -28,9 +28,6 @@ class HiddenJoints:
         """Apply those effects that are at joints to the nominal servos and joints.
 
         `inertia_kg_m2` (j,) is that at each joint with all other joints free.
-
-        Raises:
-          GroundwalkError: a joint is unknown, or has two transmissions.
         """
         self._servos = Servos(plant, step_s)
         self._parts: list[tuple[int, JointTorque]] = []
@@ -80,11 +77,9 @@ class HiddenJoints:
     ) -> FloatArray:
         """(j,) torques [N m] on the joints, constant over the next physics step.
 
-        Args:
-          time_s: time since the recording began, negative before.
-          position_rad: (j,) joint angles from the engine.
-          velocity_rad_s: (j,) joint speeds from the engine, half a step old.
-          command_rad: (j,) position targets that have reached the servos.
+        `time_s` counts from the start of the recording. Angles and speeds (j,) come
+        from the engine; `command_rad` (j,) are the targets that have reached the
+        servos.
         """
         before = velocity_rad_s if self._before is None else self._before
         speed = 1.5 * velocity_rad_s - 0.5 * before

@@ -24,9 +24,6 @@ def hidden_model(
 
     Effects on servos and signals change nothing here; `ground` is None for a fixed
     base.
-
-    Raises:
-      UnknownNameError: the robot has no such body or joint.
     """
     import mujoco
 

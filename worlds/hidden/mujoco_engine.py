@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from worlds.hidden.engine import BodySense
+from worlds.hidden.engine import ORIGIN_POSE, BodySense
 from worlds.hidden.plant import HiddenPlant
 from worlds.sim.model import ROOT_QPOS, ROOT_QVEL, touch_shares
 
@@ -69,21 +69,14 @@ class HiddenMujoco:
         if self._shares is not None:
             mean = self._sensors / max(self._watched, 1)
             touch = len(self._shares)
-            feet = np.maximum(mean[:touch] @ self._shares, 0.0)
+            feet = mean[:touch] @ self._shares
             gyroscope, accelerometer = mean[touch : touch + 3], mean[touch + 3 :]
         self._forget()
-        pose, velocity = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), np.zeros(6)
+        pose, velocity = ORIGIN_POSE, np.zeros(6)
         if self._floating:
             pose, velocity = self._data.qpos[:7].copy(), self._data.qvel[:6].copy()
-        return BodySense(
-            gyroscope_rad_s=gyroscope,
-            accelerometer_m_s2=accelerometer,
-            foot_force_n=feet,
-            position_m=pose[:3],
-            orientation=pose[3:],
-            linear_m_s=velocity[:3],
-            angular_rad_s=velocity[3:],
-        )
+        sense = BodySense.of_base(pose, velocity, accelerometer, feet)
+        return sense._replace(gyroscope_rad_s=gyroscope)
 
     def close(self) -> None:
         """Nothing has to be freed."""

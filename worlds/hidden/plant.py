@@ -60,10 +60,6 @@ class HiddenPlant:
       speed_rad_s: highest speed of commands.
       floating: whether the base is free.
       description: of a robot of `groundwalk list robots`; else None.
-
-    Example:
-      >>> float(hidden_plant("pendulum").max_torque_nm[0])
-      4.0
     """
 
     name: str
@@ -106,69 +102,52 @@ class HiddenPlant:
 def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
     """A nominal robot: "pendulum", "so101", or a name of `groundwalk list robots`.
 
-    Raises:
-      GroundwalkError: there is no such robot, or its base cannot float.
+    GroundwalkError if there is no such robot, or its base cannot float.
 
     Example:
-      >>> hidden_plant("pendulum").joints
-      ('swing',)
+      >>> float(hidden_plant("pendulum").max_torque_nm[0])
+      4.0
     """
     if name in ("pendulum", "so101"):
         if floating:
             raise BadValueError(f"{name} stands on a fixed base")
-        return _pendulum() if name == "pendulum" else _so101()
+        if name == "pendulum":
+            return _arm("pendulum", "nominal.xml", PENDULUM, (8.0, 0.2, 4.0, 6.0))
+        # Gains and highest speed are chosen: the package has none.
+        return _arm(
+            "so101", "nominal.urdf", so101_urdf(), (17.0, 0.6, SO101_TORQUE_NM, 4.0)
+        )
     return described_hidden_plant(robots.get(name), floating)
 
 
-def _pendulum() -> HiddenPlant:
+def _arm(
+    name: str, file: str, text: str, servo: tuple[float, float, float, float]
+) -> HiddenPlant:
+    """A robot of hinges, all with servos of this kp, kd, largest torque and speed."""
     import mujoco
 
-    return HiddenPlant(
-        name="pendulum",
-        file=("nominal.xml", PENDULUM),
-        make_spec=lambda: mujoco.MjSpec.from_string(PENDULUM),
-        joints=("swing",),
-        links=("link",),
-        kp_nm_rad=np.array([8.0]),
-        kd_nm_s_rad=np.array([0.2]),
-        max_torque_nm=np.array([4.0]),
-        back_emf_nm_s_rad=np.zeros(1),
-        range_rad=np.array([[-3.0, 3.0]]),
-        speed_rad_s=np.array([6.0]),
-    )
-
-
-def _so101() -> HiddenPlant:
-    """The SO-101 arm of the package example-robot-data, its gripper fixed to the wrist.
-
-    Gains and highest speed of commands are chosen: the package has none.
-    """
-    import mujoco
-
-    text = so101_urdf()
     model = mujoco.MjModel.from_xml_string(text)
     joints = tuple(model.joint(i).name for i in range(model.njnt))
-    j = len(joints)
+    kp, kd, most, speed = np.tile(servo, (len(joints), 1)).T.copy()
     return HiddenPlant(
-        name="so101",
-        file=("nominal.urdf", text),
+        name=name,
+        file=(file, text),
         make_spec=lambda: mujoco.MjSpec.from_string(text),
         joints=joints,
         links=tuple(model.body(int(i)).name for i in model.jnt_bodyid),
-        kp_nm_rad=np.full(j, 17.0),
-        kd_nm_s_rad=np.full(j, 0.6),
-        max_torque_nm=np.full(j, SO101_TORQUE_NM),
-        back_emf_nm_s_rad=np.zeros(j),
+        kp_nm_rad=kp,
+        kd_nm_s_rad=kd,
+        max_torque_nm=most,
+        back_emf_nm_s_rad=np.zeros(len(joints)),
         range_rad=model.jnt_range.copy(),
-        speed_rad_s=np.full(j, 4.0),
+        speed_rad_s=speed,
     )
 
 
 def so101_urdf() -> str:
-    """URDF of the SO-101 arm without meshes and gripper joint, with rotor inertias.
+    """URDF of example-robot-data's SO-101, with rotors, without meshes, gripper fixed.
 
-    Raises:
-      BadValueError: the files of example-robot-data are not installed.
+    Raises BadValueError if the files of example-robot-data are not installed.
     """
     import mujoco
 

@@ -63,10 +63,6 @@ def run_hidden(
       feed: gives the command of each tick.
       start_rad: (j,) joint angles at the first tick, where the robot is at rest.
       seed: for the random bumps of uneven ground.
-
-    Raises:
-      GroundwalkError: the robot lacks the joint or body of an effect, or the engine
-        cannot simulate an effect.
     """
     around = surroundings(effects)
     ground = around.ground(seed) if plant.floating else None

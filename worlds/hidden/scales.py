@@ -80,18 +80,11 @@ def _views(
     bodies: Sequence[int],
     dofs: IntArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Measure b bodies and j joints of the nominal robot in p poses.
+    """Measure b bodies, first the links of the j joints, in p poses (MuJoCo's `qpos`).
 
-    Args:
-      model: the nominal robot.
-      poses: MuJoCo's `qpos`.
-      bodies: ids of the bodies, first the links of the joints.
-      dofs: (j,) degrees of freedom of the joints.
-
-    Returns:
-      Centres of mass (p, b, 3) [m]; gravity's lever arm on each body about each joint
-      (p, b, j) [m], and on all bodies beyond a joint together (p, j) [m]; whether a
-      joint moves a body (p, b, j).
+    Returns centres of mass (p, b, 3) [m]; gravity's lever arm on each body about each
+    joint (p, b, j) [m], and on all bodies beyond a joint together (p, j) [m]; whether a
+    joint, by its degree of freedom in `dofs`, moves a body (p, b, j).
     """
     import mujoco
 

@@ -15,11 +15,8 @@ def servo_torque_nm(
 ) -> FloatArray:
     """Joint torques (..., j) [N m] of servos: clip(kp e - kd v, +-max) - back_emf v.
 
-    Args:
-      gains: kp [N m/rad], kd [N m s/rad], back-EMF [N m s/rad] and largest torque
-        [N m], each (j,).
-      error_rad: (..., j) servo error e: set-point minus joint position.
-      speed_rad_s: (..., j) joint speed v.
+    From the gains (j,) kp [N m/rad], kd [N m s/rad], back-EMF [N m s/rad] and largest
+    torque [N m]; errors e (..., j), set-point minus position; and joint speeds v.
     """
     kp, kd, back_emf, most = gains
     torque = kp * error_rad - kd * speed_rad_s

@@ -140,12 +140,7 @@ class Setting:
         return float(self.rng.choice([-1.0, 1.0]))
 
     def part(self, easy: float, hard: float) -> float:
-        """The effect's size, interpolated logarithmically by `ease`.
-
-        Args:
-          easy: size of an effect that is easy to detect (ease 1).
-          hard: size of an effect that is hard to detect (ease 0).
-        """
+        """Size between those of ease 1 and ease 0, interpolated logarithmically."""
         return float(hard * (easy / hard) ** self.ease)
 
     @property

@@ -38,12 +38,8 @@ class Transmission:
     ) -> float:
         """Torque [N m] on the joint for the next step; moves the motor by one step.
 
-        Args:
-          angle_rad: angle of the joint.
-          speed_rad_s: speed of the joint.
-          command_rad: set-point for the motor's angle.
-          servo: kp [N m/rad], kd [N m s/rad], largest torque [N m] and back-EMF
-            [N m s/rad].
+        The set-point `command_rad` is that of the motor's angle; `servo` holds kp [N
+        m/rad], kd [N m s/rad], largest torque [N m] and back-EMF [N m s/rad].
         """
         kp, kd, most, back_emf = servo
         before = angle_rad if self.motor_rad is None else self.motor_rad

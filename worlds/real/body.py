@@ -70,17 +70,11 @@ class BulletBody:
     ) -> None:
         """Connect a PyBullet client, and load the robot and its ground into it.
 
-        Args:
-          urdf: text of the robot's URDF; besides the base, a link for each joint.
-          joints: names of the joints, in the order of all arrays.
-          description: gives the feet, the inertial sensor and the joints that share a
-            motor; None for a robot without them, such as an arm.
-          floating: whether the base can move.
-          step_s: physics step.
-          gravity_m_s2: (3,) gravity in the world frame, which may be tilted.
-          friction: coefficient between soles and ground.
-          spring: soft ground under a whole foot; None for hard ground.
-          ground: the ground under a floating robot; None for no ground.
+        Besides the base, `urdf` (text) has a link for each of the `joints`, whose order
+        is that of all arrays. The description gives feet, inertial sensor and joints
+        that share a motor; None for a robot without them. Gravity (3,) may be tilted.
+        `friction` acts between soles and ground, `spring` is soft ground under a whole
+        foot.
         """
         self.bullet = bullet = bullet_client()
         self._description, self._floating = description, floating
@@ -215,13 +209,9 @@ class BulletBody:
         )
 
     def base_motion(self) -> tuple[FloatArray, FloatArray]:
-        """Pose (7,) and velocity (6,) of the torso frame.
+        """Pose (7,) and velocity (6,) of the torso frame, as `BodySense` has them.
 
         PyBullet's own are those of the torso's centre of mass and principal axes.
-
-        Returns:
-          Position [m] and quaternion w, x, y, z; linear velocity [m/s] in the world
-          frame and angular velocity [rad/s] in the torso frame.
         """
         place, turn = self.bullet.getBasePositionAndOrientation(self.number)
         linear, angular = self.bullet.getBaseVelocity(self.number)
@@ -291,7 +281,7 @@ _QUARTER_TURN = (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))
 
 
 def load_ground(bullet: Any, field: Heightfield) -> int:
-    """Load ground into a PyBullet client as a static body, a plane if it is flat.
+    """Load ground into a client of PyBullet as a static body; returns the body's id.
 
     PyBullet cuts a cell of a heightfield into triangles along the diagonal from
     [row, column + 1] to [row + 1, column], MuJoCo and `Heightfield` along the other
@@ -299,13 +289,6 @@ def load_ground(bullet: Any, field: Heightfield) -> int:
     place, diagonals change. PyBullet counts samples along its x axis as "rows" and puts
     the middle between the lowest and the highest sample at the body's origin. Ray casts
     agree with `field.height_at` to 1e-8 m.
-
-    Args:
-      bullet: a `pybullet_utils.bullet_client.BulletClient`.
-      field: heights in the world frame.
-
-    Returns:
-      PyBullet's id of the body.
     """
     (x_low, x_high), (y_low, y_high) = field.x_range_m, field.y_range_m
     lowest_m, highest_m = float(field.heights_m.min()), float(field.heights_m.max())

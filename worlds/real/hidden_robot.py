@@ -12,7 +12,7 @@ from robots.engine_models.model_urdf import model_urdf
 from terrain import Heightfield
 from worlds.hidden.drive import HiddenDrive
 from worlds.hidden.effects.placed import Hidden, surroundings
-from worlds.hidden.engine import BodySense, HiddenEngine, check_engine
+from worlds.hidden.engine import ORIGIN_POSE, BodySense, HiddenEngine, check_engine
 from worlds.hidden.joints import HiddenJoints
 from worlds.hidden.model import hidden_model
 from worlds.hidden.mujoco_engine import HiddenMujoco
@@ -35,10 +35,6 @@ def hidden_engine(
     """Make the engine "bullet" or "mujoco" and load a robot with effects into it.
 
     `ground` is that under a floating robot; None for a fixed base.
-
-    Raises:
-      GroundwalkError: the engine cannot compute an effect, or the robot does not have
-        an effect's place.
     """
     check_engine(name, effects)
     model = hidden_model(plant, effects, step_s, ground)
@@ -97,16 +93,15 @@ class HiddenBullet(BulletBody):
     def sense(self) -> BodySense:
         """Read the sensors, averaged over the watched steps; forget those steps."""
         if not self._floating:
-            zero, up = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
-            felt = -self._gravity_m_s2 if self._description else zero
-            return BodySense(zero, felt, np.zeros(8), zero, up, zero, zero)
+            felt = -self._gravity_m_s2 if self._description else np.zeros(3)
+            return BodySense.of_base(ORIGIN_POSE, np.zeros(6), felt, np.zeros(8))
         pose, now = self.base_motion()
         earlier = now if self._earlier is None else self._earlier
         seconds = max(self._watched - 1, 1) * self._step_s
         felt = self.specific_force(pose, earlier, now, seconds)
-        feet = np.maximum(self._feet / max(self._watched, 1), 0.0)
+        feet = self._feet / max(self._watched, 1)
         self._forget()
-        return BodySense(now[3:], felt, feet, pose[:3], pose[3:], now[:3], now[3:])
+        return BodySense.of_base(pose, now, felt, feet)
 
 
 FINE_STEP_S = 0.0005
@@ -120,12 +115,7 @@ class HiddenRobot:
     def __init__(
         self, description: Description, ground: Heightfield, options: WorldOptions
     ) -> None:
-        """Connect a PyBullet client of its own, and load robot and ground into it.
-
-        Raises:
-          GroundwalkError: the robot does not have a hidden effect's place, or PyBullet
-            cannot compute an effect.
-        """
+        """Connect a PyBullet client of its own, and load robot and ground into it."""
         self._plant = described_hidden_plant(description, not options.fixed_base)
         self._fine = ceil(options.timestep_s / FINE_STEP_S - 1e-9)
         self._step_s = options.timestep_s / self._fine
@@ -161,24 +151,13 @@ class HiddenRobot:
         self._world.close()
 
     def _state(self, sense: BodySense) -> BulletState:
-        return BulletState(
-            base_pose=np.concatenate([sense.position_m, sense.orientation]),
-            base_velocity=np.concatenate([sense.linear_m_s, sense.angular_rad_s]),
-            gyroscope_rad_s=sense.gyroscope_rad_s + self._bias_rad_s,
-            accelerometer_m_s2=sense.accelerometer_m_s2,
-            foot_force_n=sense.foot_force_n,
-            position_rad=self._drive.encoders(),
-            velocity_rad_s=self._world.velocity_rad_s.copy(),
-        )
+        rate = sense.gyroscope_rad_s + self._bias_rad_s
+        joints = self._drive.encoders(), self._world.velocity_rad_s
+        return (*sense._replace(gyroscope_rad_s=rate), *joints)
 
 
 def check_hidden(description: Description, options: WorldOptions) -> None:
-    """Refuse hidden effects that a robot cannot have, before any process starts.
-
-    Raises:
-      GroundwalkError: the robot does not have an effect's place, or PyBullet cannot
-        compute an effect.
-    """
+    """Refuse hidden effects that a robot cannot have, before any process starts."""
     if not options.hidden:
         return
     plant, effects = described_hidden_plant(description, False), _effects(options)

@@ -13,9 +13,10 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
 from robots.description import Description
 from terrain import Heightfield
+from worlds.hidden.engine import BodySense
 from worlds.observation import Observation, Truth
 from worlds.real.hidden_robot import HiddenRobot, check_hidden
-from worlds.real.robot import BulletRobot, BulletState
+from worlds.real.robot import BulletRobot
 from worlds.rollouts import RolloutWorld, Schedule
 from worlds.sim.model import StartHeight
 from worlds.world import TICK_S, WorldOptions
@@ -23,8 +24,9 @@ from worlds.world import TICK_S, WorldOptions
 
 def state_columns(joints: int) -> dict[str, slice]:
     """Columns of each field of `BulletState` in the array that a worker sends back."""
-    widths = (7, 6, 3, 3, 8, joints, joints)
-    ends = zip(BulletState._fields, widths, np.cumsum(widths), strict=True)
+    names = (*BodySense._fields, "position_rad", "velocity_rad_s")
+    widths = (3, 3, 8, 3, 4, 3, 3, joints, joints)
+    ends = zip(names, widths, np.cumsum(widths), strict=True)
     return {name: slice(end - width, end) for name, width, end in ends}
 
 
@@ -94,12 +96,7 @@ class RealWorld(RolloutWorld):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Start the worker processes and send them their robots and grounds.
-
-        Raises:
-          GroundwalkError: the robot cannot have a hidden effect, the numbers of
-            grounds and seeds differ or are 0, or a process ended.
-        """
+        """Start the worker processes and send them their robots and grounds."""
         check_hidden(description, options)
         super().__init__(description, grounds, seeds, options)
         workers = min(options.threads or os.cpu_count() or 1, self.n)
@@ -171,10 +168,10 @@ class RealWorld(RolloutWorld):
     def _read(self) -> tuple[Truth, Observation]:
         part = {name: self._rows[:, at].copy() for name, at in self._columns.items()}
         truth = Truth(
-            base_position_m=part["base_pose"][:, :3],
-            base_orientation=part["base_pose"][:, 3:],
-            base_linear_velocity_m_s=part["base_velocity"][:, :3],
-            base_angular_velocity_rad_s=part["base_velocity"][:, 3:],
+            base_position_m=part["position_m"],
+            base_orientation=part["orientation"],
+            base_linear_velocity_m_s=part["linear_m_s"],
+            base_angular_velocity_rad_s=part["angular_rad_s"],
         )
         observation = Observation(
             time_s=self._ticks * TICK_S,

@@ -50,11 +50,7 @@ def joints_with(quantity: str, names: Iterable[str]) -> tuple[str, ...]:
 
 
 def check_names(names: Sequence[str]) -> None:
-    """Check that columns with these names can make up a recording.
-
-    Raises:
-      BadRecordingError: a column is unknown, there twice or missing.
-    """
+    """Check that columns with these names can make up a recording."""
     _check_each(names)
     _check_required(names)
     _check_joints(names)
@@ -132,10 +128,6 @@ def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray
     """Turn columns into read-only arrays of floats, all of the same length.
 
     An array that can be written to is copied.
-
-    Raises:
-      BadRecordingError: a column holds no numbers, is not one-dimensional, or its
-        length differs from that of the first column.
     """
     frozen = {name: _frozen(name, values) for name, values in columns.items()}
     lengths = {name: values.size for name, values in frozen.items()}
@@ -151,10 +143,9 @@ def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray
 def check_values(columns: Mapping[str, FloatArray]) -> None:
     """Check the values of a recording's columns; NaN is a missing value.
 
-    Raises:
-      BadRecordingError: there are no rows; a time is missing or not later than the
-        one before; a value is infinite, a quaternion not of unit length, or a value of
-        `support` none of -1, 0, 1.
+    Times must be there and increase, values be finite, quaternions have unit length,
+    and `support` be -1, 0 or 1; BadRecordingError tells column and row of the first
+    fault.
     """
     if not columns[TIME].size:
         raise BadRecordingError("no rows")

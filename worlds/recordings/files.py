@@ -21,16 +21,10 @@ _KEY = b"groundwalk"
 
 
 def read_parquet(path: Path) -> tuple[dict[str, FloatArray], bytes | None]:
-    """Read the columns and the metadata of a recording from a Parquet file.
+    """Columns (rows,) by name of a recording, and its metadata as JSON text, if any.
 
-    Returns:
-      Values (rows,) by column name, NaN where one is missing; and the metadata as JSON
-      text, None if the file has none.
-
-    Raises:
-      BadRecordingError: the file is damaged or no Parquet file, or its columns are not
-        those of a recording.
-      OSError: the file cannot be read.
+    A missing value is NaN. Raises BadRecordingError if the file is damaged, is no
+    Parquet file or lacks columns, and OSError if it cannot be read.
     """
     with path.open("rb") as file:
         try:
@@ -88,13 +82,9 @@ _OTHER_SEPARATORS = (";", "\t", "|")
 def read_csv(path: Path) -> dict[str, FloatArray]:
     """Read columns (rows,) by name; missing values, empty cells or `nan`, become NaN.
 
-    Args:
-      path: a CSV file in UTF-8, with commas and with column names in the first line.
-
-    Raises:
-      BadRecordingError: the text is no such CSV, its columns are not those of a
-        recording, or a cell holds no number.
-      OSError: the file cannot be read.
+    The file is UTF-8, has commas, and column names in its first line. Raises
+    BadRecordingError if it is no such CSV or no recording, OSError if it cannot be
+    read.
     """
     names = _header(path)
     separator = next((one for one in _OTHER_SEPARATORS if one in "".join(names)), "")

@@ -89,11 +89,7 @@ class RecordingMetadata:
     """Why the rollout ended, such as "fall" or "left the ground"."""
 
     def __post_init__(self) -> None:
-        """Check all fields, and copy the mappings so that later changes do not matter.
-
-        Raises:
-          BadRecordingError: a field has a wrong type or value.
-        """
+        """Check all fields; copy the mappings, so that later changes do not matter."""
         for key in ("robot", "base", "source", "world", "end"):
             value = getattr(self, key)
             if not isinstance(value, str) and (key in _REQUIRED or value is not None):
@@ -122,14 +118,9 @@ class RecordingMetadata:
 
     @classmethod
     def from_json(cls, text: str | bytes) -> "RecordingMetadata":
-        """Read metadata from the JSON of a recording of format 1.
+        """Read metadata from a JSON object of format 1; a key that is null is left out.
 
-        Args:
-          text: a JSON object; a key with the value null counts as left out.
-
-        Raises:
-          BadRecordingError: the text is no JSON object, its `format` is not 1, or a key
-            is missing, unknown or has a wrong value.
+        BadRecordingError if a key is missing, unknown or has a wrong value.
         """
         try:
             plain = parse_object(text, "metadata", FORMAT)

@@ -102,27 +102,16 @@ class Recording:
         return self.joints_with(POSITION)
 
     def joints_with(self, quantity: str) -> tuple[str, ...]:
-        """The joints that have a column of a quantity, in the order of the columns.
+        """The joints with a column of a quantity, in the order of the columns.
 
         Quantities are position, velocity, command, command_torque and torque.
-
-        Raises:
-          UnknownNameError: there is no such quantity.
         """
         if quantity not in JOINT_QUANTITIES:
             raise UnknownNameError("joint quantity", quantity, JOINT_QUANTITIES)
         return joints_with(quantity, self.columns)
 
     def joint_values(self, quantity: str, joints: Sequence[str]) -> FloatArray:
-        """(ticks, joints) values of a quantity of some joints, in SI units.
-
-        Args:
-          quantity: as in `joints_with`.
-          joints: names of joints, in the order of the result's columns.
-
-        Raises:
-          UnknownNameError: a joint has no column "<quantity>.<joint>".
-        """
+        """(ticks, joints) values of a quantity of some joints, in SI units."""
         known = self.joints_with(quantity)
         for joint in joints:
             if joint not in known:
@@ -132,21 +121,13 @@ class Recording:
         return np.stack([self.columns[f"{quantity}.{joint}"] for joint in joints], 1)
 
     def has(self, vector: str) -> bool:
-        """Whether a vector, such as "foot_force", was recorded.
-
-        Raises:
-          UnknownNameError: format 1 has no such vector.
-        """
+        """Whether a vector, such as "foot_force", was recorded."""
         if vector not in VECTORS:
             raise UnknownNameError("vector", vector, VECTORS)
         return vector_columns(vector)[0] in self.columns
 
     def vector(self, vector: str) -> FloatArray:
-        """(ticks, components) values of a vector, such as "gyroscope", in SI units.
-
-        Raises:
-          UnknownNameError: there is no such vector, or it was not recorded.
-        """
+        """(ticks, components) values of a vector, such as "gyroscope", in SI units."""
         if not self.has(vector):
             raise UnknownNameError(
                 "vector of this recording", vector, filter(self.has, VECTORS)

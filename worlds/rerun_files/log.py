@@ -46,10 +46,6 @@ def write_rrd(
       pages: further curves by the name of their tab. They are below the robots, two in
         a row, instead of the scenes' own curves.
 
-    Raises:
-      BadValueError: there are neither scenes nor pages, or a scene's name is another
-        one's or the start of its path.
-
     Example:
       >>> write_rrd(Path("walk.rrd"), [Scene("sim", recording, robots.get("nao"))])
     """

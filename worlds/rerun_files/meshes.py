@@ -5,7 +5,7 @@ at the first pose and the second one at the second.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -29,23 +29,7 @@ _CAPSULE_SECTIONS = (6, 16)
 """Number of sections of a capsule's mesh from pole to pole, and around its axis."""
 
 
-class LinkMesh(NamedTuple):
-    """Triangles of one colour in the frame of a link's joint, as Rerun takes them.
-
-    Attributes:
-      vertex_positions: (points, 3) places [m].
-      triangle_indices: (triangles, 3) indices of the triangles' points.
-      vertex_normals: (points, 3) unit normals; without them Rerun draws no shading.
-      albedo_factor: the colour.
-    """
-
-    vertex_positions: FloatArray
-    triangle_indices: IntArray
-    vertex_normals: FloatArray
-    albedo_factor: Colour
-
-
-def link_mesh(link: Link, colour: Colour) -> LinkMesh | None:
+def link_mesh(link: Link, colour: Colour) -> Mesh | None:
     """Join all readable mesh files of a link, without details below `CELL_M`.
 
     None if there are no triangles, so that the link's capsules must be drawn.
@@ -54,7 +38,7 @@ def link_mesh(link: Link, colour: Colour) -> LinkMesh | None:
     whole = coarse(joined(found))
     if not len(whole.faces):
         return None
-    return LinkMesh(*_shaded(whole), colour)
+    return Mesh(*_shaded(whole), albedo_factor=colour)
 
 
 def coarse(mesh: "Trimesh", cell_m: float = CELL_M) -> "Trimesh":

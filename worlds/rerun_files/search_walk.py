@@ -20,7 +20,7 @@ from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Link
 from terrain import Heightfield
 from worlds.rerun_files.columns import ColumnLog
-from worlds.rerun_files.meshes import LinkMesh, capsule_mesh, link_mesh
+from worlds.rerun_files.meshes import capsule_mesh, link_mesh
 from worlds.rerun_files.search_history import SearchWalk
 from worlds.scenes import colours
 from worlds.scenes.balance import balance
@@ -76,7 +76,7 @@ def _write_robot(
         log.send_rows(f"robot/{link.name}/sole", poses[link.name])
 
 
-def _look(link: Link, colour: colours.Colour) -> LinkMesh | Mesh | None:
+def _look(link: Link, colour: colours.Colour) -> Mesh | None:
     mesh = link_mesh(link, colours.pale(colour))
     if mesh is None and link.shapes:
         return capsule_mesh(link.shapes, colour)

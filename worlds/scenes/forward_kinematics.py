@@ -41,18 +41,11 @@ class LinkPoses(NamedTuple):
 def link_poses(
     description: Description, position_rad: FloatArray, base: LinkPoses
 ) -> dict[str, LinkPoses]:
-    """Compute the poses of all links from joint positions and the root's poses.
+    """Poses of all links by name, the root first, from joint positions and root poses.
 
-    T_link = T_parent * translation(origin) * rotation(axis, angle). A NaN in a joint
-    or in the base makes the poses of exactly the links after it NaN.
-
-    Args:
-      description: the robot.
-      position_rad: (ticks, joints) in the description's order; [m] of sliding joints.
-      base: poses of the root link; its quaternions are normalised here.
-
-    Returns:
-      Poses by link name, the root first.
+    T_link = T_parent * translation(origin) * rotation(axis, angle). A NaN in a joint or
+    in the base makes the poses of exactly the links after it NaN. Positions (ticks,
+    joints) are in the description's order, in m where a joint slides.
     """
     norm = np.linalg.norm(base.orientation, axis=1, keepdims=True)
     root = LinkPoses(base.position_m, base.orientation / norm)

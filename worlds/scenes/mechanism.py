@@ -28,13 +28,9 @@ _NO_MOTOR = Motor(0.0, 0.0, 0.0, 0.0, 0.0)
 def mechanism(model: "mujoco.MjModel", name: str) -> Description:
     """Describe a MuJoCo model without feet for pictures only; no world can step it.
 
-    Each shape (geom) of the model becomes a capsule along its longest side. Links
+    The model is a tree of hinge and slide joints, with or without a free joint at its
+    root. Each of its shapes (geoms) becomes a capsule along its longest side. Links
     without shapes become thin rods from joint to joint.
-
-    Args:
-      model: a compiled tree of hinge and slide joints, with or without a free joint
-        at its root.
-      name: the robot's name.
     """
     import mujoco
 

@@ -36,9 +36,6 @@ class SceneCamera:
 
     Attributes:
       parts: names of the robot's links, and capsules that draw them, in their frames.
-
-    Example:
-      >>> camera = SceneCamera(scene, accent, size_px=(640, 480))
     """
 
     def __init__(
@@ -50,12 +47,8 @@ class SceneCamera:
     ) -> None:
         """Compute the link poses and the camera's target at each tick.
 
-        Args:
-          scene: robot, ground and recording.
-          accent: the colour that marks this robot.
-          size_px: width and height of the pictures.
-          with_balance: whether to draw the forces at the feet, the support polygon, the
-            zero-moment point, the centre of mass and its path, too.
+        The colour `accent` marks this robot. `with_balance` draws the forces at the
+        feet, support polygon, zero-moment point, centre of mass and its path, too.
         """
         self._scene, self._size_px = scene, size_px
         self._poses = scene.link_poses()

@@ -34,9 +34,6 @@ class Scene:
       recording: the motion of the robot.
       description: the robot; it must have all joints of the recording.
       ground: the ground on which it walked; None if there was none or it is unknown.
-
-    Example:
-      >>> scene = Scene("sim", recording, robots.get("nao"), ground)
     """
 
     name: str
@@ -92,10 +89,9 @@ class Scene:
     def sensor_forces_n(self, side: str) -> tuple[FloatArray, FloatArray] | None:
         """Places and forces of the force sensors of the foot "left" or "right".
 
-        Returns:
-          (k, 3) points of the sole in the foot's frame [m] and (ticks, k) forces [N] of
-          the four sensors; one point in their middle if only the sum of the forces was
-          recorded; None if none were.
+        The points (k, 3) are on the sole, in the foot's frame [m], the forces (ticks,
+        k) in N. There is one point in the middle if only the sum of the four sensors'
+        forces was recorded, and None if no forces were.
         """
         foot = self.description.feet[SIDES.index(side)]
         points_xy_m = foot.sensors_m

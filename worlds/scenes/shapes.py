@@ -30,13 +30,15 @@ class Mesh(NamedTuple):
     """Triangles between vertices, as Rerun takes them.
 
     Positions [m] and normals are (vertices, 3), colours red, green, blue (vertices, 3),
-    and the indices of the triangles' vertices (triangles, 3).
+    and the indices of the triangles' vertices (triangles, 3). `albedo_factor` is the
+    colour of a mesh of one colour.
     """
 
     vertex_positions: FloatArray
     triangle_indices: IntArray
     vertex_normals: FloatArray
-    vertex_colors: npt.NDArray[np.uint8]
+    vertex_colors: npt.NDArray[np.uint8] | None = None
+    albedo_factor: Colour | None = None
 
 
 def shape_colours(shapes: Sequence[Capsule], accent: Colour) -> npt.NDArray[np.uint8]:

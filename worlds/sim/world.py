@@ -41,12 +41,7 @@ class SimWorld(RolloutWorld):
         seeds: Sequence[np.random.SeedSequence],
         options: WorldOptions,
     ) -> None:
-        """Compile a model for each distinct ground, and make the batch of n robots.
-
-        Raises:
-          BadValueError: the options have hidden effects, or the numbers of grounds and
-            seeds differ or are 0.
-        """
+        """Compile a model for each distinct ground, and make the batch of n robots."""
         if options.hidden:
             raise BadValueError("a sim has no hidden physics; only the real world can")
         super().__init__(description, grounds, seeds, options)

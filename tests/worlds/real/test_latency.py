@@ -78,7 +78,7 @@ def plain_bullet(nao, kick, late_steps, flat):
     try:
         robot.reset(kick[0], 1.0)
         parts = held(coupled(nao, kick), late_steps)
-        return np.array([robot.step(part).position_rad for part in parts])
+        return np.array([robot.step(part)[-2] for part in parts])
     finally:
         robot.close()
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from worlds import WorldOptions
-from worlds.real.servo_twin import ServoTwin
+from worlds.real.robot import ServoTwin
 from worlds.sim.model import mujoco_model
 
 TICKS = 200

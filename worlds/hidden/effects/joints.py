@@ -107,6 +107,12 @@ class EndStop(HiddenKind):
         }
 
 
+def _ripple(values: Values, rate: float, along: int) -> JointTorque:
+    """The torque `torque` sin(rate x + phase); x is the time (0) or the angle (1)."""
+    amplitude, phase = values["torque"], values["phase"]
+    return lambda *state: amplitude * math.sin(rate * state[along] + phase)
+
+
 class Cogging(HiddenKind):
     """Torque ripple that repeats with the joint's angle."""
 
@@ -121,11 +127,7 @@ class Cogging(HiddenKind):
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Law of the ripple: `torque` sin(per_turn q + phase) at joint angle q."""
-        amplitude, per_turn = values["torque"], values["per_turn"]
-        phase = values["phase"]
-        return lambda time_s, angle, speed, servo: (
-            amplitude * math.sin(per_turn * angle + phase)
-        )
+        return _ripple(values, values["per_turn"], along=1)
 
     def size(self, s: Setting) -> dict[str, float]:
         """Torque of 3 % (hard to detect) to 30 % (easy) of the servo's usual torque."""
@@ -150,11 +152,7 @@ class PeriodicTorque(HiddenKind):
 
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Law of the torque: `torque` sin(2 pi frequency t + phase) at time t."""
-        amplitude, frequency = values["torque"], values["frequency"]
-        phase = values["phase"]
-        return lambda time_s, angle, speed, servo: (
-            amplitude * math.sin(2 * math.pi * frequency * time_s + phase)
-        )
+        return _ripple(values, 2 * math.pi * values["frequency"], along=0)
 
     def size(self, s: Setting) -> dict[str, float]:
         """Torque of 2 % (hard to detect) to 20 % (easy) of the servo's usual torque."""

@@ -12,6 +12,14 @@ from worlds.hidden.surroundings import Surroundings
 from worlds.soft_ground import DAMPING_RATIO, FootSpring
 
 
+class _OnFeet(HiddenKind):
+    """Hidden physics that only a robot standing on its feet can have."""
+
+    def possible(self, plant: HiddenPlant) -> bool:
+        """Whether the base is free."""
+        return plant.floating
+
+
 class CommandLatency(HiddenKind):
     """Commands reach all servos late, by a constant delay."""
 
@@ -26,7 +34,7 @@ class CommandLatency(HiddenKind):
         surroundings.command_delay_s += values["delay"]
 
 
-class SensorDelay(HiddenKind):
+class SensorDelay(_OnFeet):  # on a fixed base, late commands look the same
     """The readings of all encoders are late, by a constant delay."""
 
     name = "sensor_delay"
@@ -38,10 +46,6 @@ class SensorDelay(HiddenKind):
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
         """Add this delay to that of the encoders' readings."""
         surroundings.encoder_delay_s += values["delay"]
-
-    def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the base is free; on a fixed one, late commands look the same."""
-        return plant.floating
 
 
 class GyroBias(HiddenKind):
@@ -66,15 +70,7 @@ class GyroBias(HiddenKind):
         return plant.description is not None
 
 
-class _UnderFeet(HiddenKind):
-    """Hidden physics that only a robot standing on its feet can have."""
-
-    def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the base is free."""
-        return plant.floating
-
-
-class ContactFriction(_UnderFeet):
+class ContactFriction(_OnFeet):
     """A friction coefficient between soles and ground other than the nominal one."""
 
     name = "contact_friction"
@@ -88,7 +84,7 @@ class ContactFriction(_UnderFeet):
         surroundings.friction = values["coefficient"]
 
 
-class ContactCompliance(_UnderFeet):
+class ContactCompliance(_OnFeet):
     """Soft ground: a spring and damper under each foot."""
 
     name = "contact_compliance"
@@ -138,7 +134,7 @@ class GroundSlope(HiddenKind):
         return len(plant.joints) > 1
 
 
-class UnevenGround(_UnderFeet):
+class UnevenGround(_OnFeet):
     """The ground has bumps."""
 
     name = "uneven_ground"

@@ -101,11 +101,7 @@ class Hidden:
 
     @classmethod
     def parse(cls, text: str) -> "Hidden":
-        """Read an effect from text `name@place:parameter=value,...`.
-
-        Raises:
-          GroundwalkError: the text is not of this form, or a name in it is unknown.
-        """
+        """Read an effect from text `name@place:parameter=value,...`."""
         head, _, tail = text.partition(":")
         name, at, place = head.partition("@")
         if name not in KINDS:

@@ -144,11 +144,7 @@ class JointCrosstalk(HiddenKind):
     outside = True
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
-        """Add a share of the command of the joint whose index is `source`.
-
-        Raises:
-          BadValueError: `source` is not the index of another joint.
-        """
+        """Add a share of the command of the joint whose index is `source`."""
         source, joints = int(values["source"]), len(servos.kp_nm_rad)
         if not (0 <= source < joints and source != joint):
             raise BadValueError(f"joint_crosstalk: {source} is no other joint")
