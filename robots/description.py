@@ -25,11 +25,9 @@ SHAPE_COLOURS = ("shell", "dark", "accent")
 class Capsule:
     """A visual capsule or sphere of a link; it has no collisions.
 
-    Attributes:
-      start_m, end_m: ends of the axis in the joint's frame [m]; equal for a sphere.
-      radius_m: radius [m].
-      colour: "shell", "dark" or "accent"; "accent" differs from robot to robot when
-        several are shown.
+    The axis is in the joint's frame, its ends equal for a sphere. The colour is
+    "shell", "dark" or "accent", which differs from robot to robot when several are
+    shown.
     """
 
     start_m: tuple[float, float, float]
@@ -47,11 +45,8 @@ class Capsule:
 class VisualMesh:
     """A mesh file that shows a part of a link; it has no collisions.
 
-    Attributes:
-      path: STL, OBJ or COLLADA file.
-      position_m: origin of the mesh's frame in the joint's frame [m].
-      orientation: unit quaternion w, x, y, z from the mesh's frame to the joint's.
-      scale: factors along the mesh's x, y and z axes.
+    The file is STL, OBJ or COLLADA. Its frame's origin and unit quaternion w, x, y, z
+    are in the joint's frame; `scale` holds factors along the mesh's x, y and z axes.
     """
 
     path: Path
@@ -65,16 +60,11 @@ class Motor:
     """A geared position servo with a torque-speed line.
 
     Its torque is `kp * (command - position) - kd * velocity`, clipped to the range from
-    `stall * (-1 - velocity / no_load)` to `stall * (1 - velocity / no_load)`.
-    If the motor board sets the duty cycle in proportion to the position error, the only
-    damping is the motor's back-EMF: kd = stall / no_load.
-
-    Attributes:
-      stall_torque_nm: torque [N m] at full voltage and speed zero.
-      no_load_speed_rad_s: speed [rad/s] at full voltage without load.
-      kp_nm_rad: stiffness [N m/rad].
-      kd_nm_s_rad: damping [N m s/rad], back-EMF included.
-      rotor_kg_m2: rotor inertia [kg m^2] times the gear ratio squared.
+    `stall * (-1 - velocity / no_load)` to `stall * (1 - velocity / no_load)`. If the
+    motor board sets the duty cycle in proportion to the position error, the only
+    damping is the motor's back-EMF: kd = stall / no_load. Stall torque is at full
+    voltage, no-load speed, too; kd includes the back-EMF, the rotor inertia the squared
+    gear ratio.
     """
 
     stall_torque_nm: float
@@ -117,11 +107,8 @@ class Motor:
 class Link:
     """A rigid body, with all bodies that are fixed to it merged in.
 
-    Attributes:
-      name: the link's name.
-      inertial: mass and inertia in the frame of the link's joint, without rotors.
-      shapes: capsules and spheres to draw.
-      meshes: mesh files to draw instead of `shapes`, if there are any.
+    The inertial is in the frame of the link's joint, without rotors. Shapes (capsules
+    and spheres) are drawn unless there are mesh files.
     """
 
     name: str
@@ -135,16 +122,15 @@ class Joint:
     """A hinge with a motor, and the link that it moves.
 
     Attributes:
-      name: the joint's name, as in commands and recordings.
+      name: as in commands and recordings.
       parent: index of the joint whose link carries this one, -1 for the root.
-      origin_m: (3,) position in the frame of the parent joint [m].
+      origin_m: (3,) position in the frame of the parent joint.
       axis: (3,) unit vector of the joint's axis.
-      range_rad: lower and upper end of the joint's range [rad].
-      motor: the motor; for a coupled pair, half of the shared motor in each joint.
+      range_rad: lower and upper end of the joint's range.
+      motor: for a coupled pair, half of the shared motor in each joint.
       link: the body that the joint moves.
-      slides: whether it slides along its axis instead of turning about it. Only robot
-        models that are shown have such joints (`worlds.scenes.mechanism`); positions
-        are then in m.
+      slides: whether it slides along its axis, its position in m, instead of turning
+        about it, as only in models that are shown (`worlds.scenes.mechanism`).
     """
 
     name: str
@@ -169,12 +155,10 @@ class Joint:
 class Foot:
     """A foot: its sole and its force sensors.
 
-    Attributes:
-      joint: index of the joint whose link is the foot.
-      sole_height_m: z of the sole in that joint's frame [m]; negative.
-      outline_m: (points, 2) x and y [m] of the corners of the sole, which is convex.
-      sensors_m: (4, 2) x and y [m] of the force sensors: front left, front right, rear
-        left, rear right.
+    The link of joint number `joint` is the foot; the sole is at height z in its frame,
+    which is negative. The outline holds x and y of the sole's corners (points, 2),
+    which is convex, the sensors those of four sensors (4, 2): front left, front right,
+    rear left, rear right.
     """
 
     joint: int
@@ -196,18 +180,16 @@ class Description:
     """A robot as data, from which its MuJoCo model and its URDF are generated.
 
     Attributes:
-      name: the robot's name.
       root: the floating link; its frame is the torso frame.
       links: the joints, each with its link, in the order of columns of joint arrays.
       coupled: pairs of joint indices that one motor holds at the same angle.
       feet: left and right foot; none for a robot that is only shown, such as an arm.
-      imu: positions of the inertial sensors.
       scale: size relative to the NAO.
-      legs: columns of the left and the right leg's yaw, roll, pitch, knee, ankle
-        pitch and ankle roll; None if they follow from the joints' axes.
-      hanging_rad: left and right shoulder pitch [rad] at which the arms hang down.
-      ankles_ahead_m: distance of the ankles ahead of the hips [m] when the gait
-        parameter `com_offset` is zero.
+      legs: columns of the left and the right leg's yaw, roll, pitch, knee, ankle pitch
+        and ankle roll; None if they follow from the joints' axes.
+      hanging_rad: left and right shoulder pitch at which the arms hang down.
+      ankles_ahead_m: distance of the ankles ahead of the hips when the gait parameter
+        `com_offset` is zero.
 
     Example:
       >>> robots.get("nao").joints[:2]

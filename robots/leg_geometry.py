@@ -54,13 +54,13 @@ class LegChain:
     straight down and the sole is level.
 
     Attributes:
-      origins_m: (6, 3) position of each joint relative to the joint above it, of the
-        first one in the torso's frame [m].
+      origins_m: (6, 3) position of each joint relative to the one above it (or the
+        torso).
       axes: (6, 3) unit vectors of the joints' axes.
       order: (6,) index in the chain of the joint of each role.
       signs: (6,) by role: -1 if the joint's angle counts the other way, else 1.
-      zero_rad: (6,) angles by role with all joints at zero [rad].
-      foot_m: (3,) vector from the ankle pitch joint to the last joint [m].
+      zero_rad: (6,) angles by role with all joints at zero.
+      foot_m: (3,) vector from the ankle pitch joint to the last joint.
     """
 
     origins_m: FloatArray
@@ -75,18 +75,14 @@ class LegChain:
 class LegGeometry:
     """Geometry of the left leg for closed inverse kinematics; the right leg mirrors it.
 
-    Six hinges: yaw, roll (axis +x), pitch, knee, ankle pitch (axes +y) and ankle
-    roll (axis +x), all axes given with the leg straight. The three at the hip meet
-    in one point, the two at the ankle in another. Mirror image means that equal yaw,
-    pitch, knee and ankle pitch angles, and opposite roll angles, mirror the pose.
-
-    Attributes:
-      hip_m: point where the hip axes meet, in the torso frame (x forward, y left, z up)
-        [m].
-      yaw_axis: unit vector of the first joint's axis; on NAO it leans by 45 degrees.
-      thigh_m: length from hip to knee [m].
-      tibia_m: length from knee to ankle [m].
-      ankle_height_m: height of the ankle axes above the sole [m].
+    Six hinges: yaw, roll (axis +x), pitch, knee, ankle pitch (axes +y) and ankle roll
+      (axis
+    +x), all axes given with the leg straight. The three at the hip meet in the point
+    `hip_m` of the torso frame (x forward, y left, z up), the two at the ankle in
+    another, at `ankle_height_m` above the sole; the knee divides thigh and tibia. The
+    unit vector of the yaw axis leans by 45 degrees on the NAO. Mirror image means that
+    equal yaw, pitch, knee and ankle pitch angles, and opposite roll angles, mirror the
+    pose.
     """
 
     hip_m: tuple[float, float, float]

@@ -13,11 +13,8 @@ from groundwalk.errors import BadValueError
 class Inertial:
     """Mass, centre of mass and rotational inertia of a rigid body.
 
-    Attributes:
-      mass_kg: mass [kg].
-      com_m: (3,) centre of mass in the frame of the body's joint [m].
-      inertia_kg_m2: (3, 3) inertia about the centre of mass [kg m^2], axes of the joint
-        frame.
+    The centre of mass (3,) is in the frame of the body's joint; the inertia (3, 3) is
+    about the centre of mass, along the axes of that frame.
     """
 
     mass_kg: float

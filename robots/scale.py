@@ -19,10 +19,8 @@ are above the soles with straight legs and hanging arms."""
 class Scale:
     """A robot's size as ratios to the NAO's.
 
-    Attributes:
-      length: ratio of the hips' heights above the sole, legs straight.
-      time: square root of the ratio of the heights of the centre of mass.
-      weight: ratio of the weights.
+    The ratio of lengths is that of the hips' heights above the sole, legs straight;
+    that of times is the square root of the ratio of the heights of the centre of mass.
     """
 
     length: float = 1.0

@@ -34,13 +34,10 @@ class _PerRobot:
 class Observation(_PerRobot):
     """Measurements of n robots at a tick; `World.reset` and `World.step` return them.
 
-    Attributes:
-      time_s: (n,) time since the start of the rollout.
-      position_rad, velocity_rad_s: (n, joints) in the description's order.
-      gyroscope_rad_s: (n, 3) torso frame.
-      accelerometer_m_s2: (n, 3) torso frame; +9.81 upward when at rest.
-      foot_force_n: (n, 8) force on the front left, front right, rear left and rear
-        right sensor of the left foot, then the same of the right foot.
+    Joint arrays (n, joints) are in the description's order. Gyroscope and accelerometer
+    (n, 3) are in the torso frame; the latter shows +9.81 upward at rest. The forces (n,
+    8) are those on the front left, front right, rear left and rear right sensor of the
+    left foot, then of the right foot. Times (n,) count from the start of the rollout.
     """
 
     time_s: FloatArray
@@ -55,11 +52,9 @@ class Observation(_PerRobot):
 class Truth(_PerRobot):
     """True motion of n robots, which `World.truth` returns and no gait sees.
 
-    Attributes:
-      base_position_m: (n, 3) position of the torso frame in the world frame.
-      base_orientation: (n, 4) unit quaternion w, x, y, z from torso to world.
-      base_linear_velocity_m_s: (n, 3) world frame.
-      base_angular_velocity_rad_s: (n, 3) torso frame.
+    The torso's position and linear velocity (n, 3) are in the world frame, its angular
+    velocity (n, 3) in the torso frame; unit quaternions w, x, y, z (n, 4) turn torso to
+    world.
     """
 
     base_position_m: FloatArray

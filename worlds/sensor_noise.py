@@ -12,18 +12,15 @@ from worlds.observation import Observation
 
 @dataclass(frozen=True)
 class SensorNoise:
-    """Noise of a robot's sensors; the defaults are those of a NAO.
+    """Standard deviations of the noise of a robot's sensors; by default those of a NAO.
+
+    White noise is added about or along x, y, z and to each foot sensor; the gyroscope's
+    bias is constant in a rollout. Encoders round to `joint_quantum_rad`; 0 for no
+    rounding.
 
     Sources: gyroscope and accelerometer: the NAO simulator of the RoboCup team HULKs
     (2025); gyroscope bias: the team rUNSWift's configurations of single robots, up to
     0.023 rad/s; joints, 12 bit per turn, and feet, sensitivity 40 g: datasheet.
-
-    Attributes:
-      gyroscope_rad_s: standard deviation of white noise about x, y, z.
-      gyroscope_bias_rad_s: standard deviation of an offset, constant in a rollout.
-      accelerometer_m_s2: standard deviation of white noise along x, y, z.
-      joint_quantum_rad: resolution of the joint encoders; 0 for no rounding.
-      foot_force_n: standard deviation of white noise of each foot sensor.
     """
 
     gyroscope_rad_s: tuple[float, float, float] = (0.0039, 0.0055, 0.0024)

@@ -31,11 +31,9 @@ sticking foot creeps at tangential force / damping; at 100 a hundredth as fast."
 
 @dataclass(frozen=True)
 class FootSpring:
-    """Stiffness and damping of soft ground under one whole foot.
+    """Stiffness K and damping B of soft ground under one whole foot.
 
-    Attributes:
-      stiffness_n_m: K in the normal force K r + B r' on a foot that has sunk in by r.
-      damping_n_s_m: B in the same formula.
+    The normal force on a foot that has sunk in by r is K r + B r'.
     """
 
     stiffness_n_m: float

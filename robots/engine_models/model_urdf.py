@@ -42,32 +42,19 @@ def model_urdf(
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     robot = Element("robot", name=name)
-    root = free_body(model)
-    if root is None:
-        SubElement(robot, "link", name=BASE)
-    else:
+    hinges = range(model.njnt)
+    if model.njnt and model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE:
+        hinges, root = hinges[1:], int(model.jnt_bodyid[0])
         _add_link(robot, model, root, _inertial(model, root))
-    for joint in hinges(model):
+    else:
+        SubElement(robot, "link", name=BASE)
+    for joint in hinges:
         body = int(model.jnt_bodyid[joint])
         inertial = _inertial(model, body).with_rotor(model.jnt_axis[joint], rotor_kg_m2)
         _add_link(robot, model, body, inertial)
-    for joint in hinges(model):
+    for joint in hinges:
         _add_joint(robot, model, data, joint, effort_nm)
     return text_of(robot, declared=False)
-
-
-def free_body(model: "mujoco.MjModel") -> int | None:
-    """Index of the body with the free joint; None if the base is fixed."""
-    import mujoco
-
-    if model.njnt and model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE:
-        return int(model.jnt_bodyid[0])
-    return None
-
-
-def hinges(model: "mujoco.MjModel") -> range:
-    """Indices of the model's hinge joints: all joints but a first free one."""
-    return range(0 if free_body(model) is None else 1, model.njnt)
 
 
 def _inertial(model: "mujoco.MjModel", body: int) -> Inertial:

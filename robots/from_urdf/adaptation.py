@@ -17,12 +17,9 @@ FORWARD = ("x", "-x", "y", "-y")
 class SoleBox:
     """A rectangular sole for a foot whose URDF has none.
 
-    Coordinates are in the frame of the leg's last joint, x forward, z up.
-
-    Attributes:
-      height_m: z of the sole [m]; negative.
-      x_m: x of heel and of toe [m].
-      y_m: y of the inner and of the outer edge [m]; positive is outward.
+    Coordinates are in the frame of the leg's last joint, x forward, z up: z of the
+    sole, negative; x of heel and toe; y of the inner and the outer edge, positive
+    outward.
     """
 
     height_m: float

@@ -25,11 +25,9 @@ _CLEAR = 0.9
 
 
 class Legs(NamedTuple):
-    """The legs of a robot.
+    """Names of both legs' joints from hip to foot, and the robot's rotation.
 
-    Attributes:
-      left, right: names of the leg's joints from the hip to the foot.
-      turn: (3, 3) rotation from the root link's frame to x forward, y left, z up.
+    It leads (3, 3) from the root link's frame to x forward, y left, z up.
     """
 
     left: tuple[str, ...]

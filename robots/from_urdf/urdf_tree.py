@@ -21,13 +21,9 @@ from robots.rigid_body import Inertial, inertia_matrix
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Placement of an inner frame in an outer one.
+    """Placement of an inner frame in an outer one: rotation (3, 3) and origin (3,) [m].
 
     Points transform as p_outer = rotation @ p_inner + position_m.
-
-    Attributes:
-      rotation: (3, 3) rotation from the inner frame to the outer one.
-      position_m: (3,) origin of the inner frame in the outer one [m].
     """
 
     rotation: FloatArray
@@ -62,12 +58,10 @@ _AXES = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 @dataclass(frozen=True, eq=False)
 class UrdfShape:
-    """A visual or collision shape of a link in a URDF.
+    """A visual or collision shape of a link in a URDF, placed in the link's frame.
 
-    Attributes:
-      kind: "box", "cylinder", "sphere" or "mesh".
-      values: the XML attributes as text, such as size, radius, length, filename, scale.
-      placement: placement of the shape in the link's frame.
+    It is a "box", "cylinder", "sphere" or "mesh"; `values` are the XML attributes as
+    text, such as size, radius, length, filename and scale.
     """
 
     kind: str
@@ -87,17 +81,12 @@ class UrdfLink:
 
 @dataclass(frozen=True, eq=False)
 class UrdfJoint:
-    """A joint of a URDF.
+    """A joint of a URDF that connects the links `parent` and `child`.
 
-    Attributes:
-      name: the joint's name.
-      moving: whether it is a hinge that moves by itself, no `mimic` of another joint.
-      parent, child: names of the links that the joint connects.
-      placement: placement of the child's frame in the parent's, the joint at zero.
-      axis: (3,) unit vector of the joint's axis in the child's frame.
-      range_rad: lower and upper end [rad]; -2 pi and 2 pi if the file has no limits.
-      effort_nm: the motor's largest torque [N m]; None if the file does not say.
-      speed_rad_s: the motor's largest speed [rad/s]; None if the file does not say.
+    It is `moving` if it is a hinge that moves by itself, no `mimic` of another joint.
+    The placement is that of the child's frame in the parent's with the joint at zero;
+    the axis is a unit vector (3,) in the child's frame. The range is -2 pi to 2 pi if
+    the file has no limits; effort and speed limits are None if the file does not say.
     """
 
     name: str

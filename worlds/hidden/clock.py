@@ -11,12 +11,10 @@ from groundwalk.errors import BadValueError
 
 @dataclass(frozen=True, eq=False)
 class Clock:
-    """The control ticks of a recorded run, as numbers of physics steps.
+    """The control ticks of a recorded run, as numbers of physics steps of `step_s`.
 
-    Attributes:
-      step_s: time step of the physics.
-      ticks: (rows,) number of the physics step at which each tick happens; 0 first.
-      first: index of the tick at which the recording begins; its time is 0.
+    The physics step at which each tick happens is in `ticks` (rows,), 0 first. The
+    recording begins at tick number `first`, whose time is 0.
     """
 
     step_s: float

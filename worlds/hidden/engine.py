@@ -22,16 +22,11 @@ WATCH_STEPS = 8
 class BodySense(NamedTuple):
     """Readings of a robot's noiseless sensors, and the pose and velocity of its base.
 
-    The ground's frame is that of the ground or of a fixed base's mount, even if tilted.
-    Values are zero where a robot lacks the sensor.
-
-    Attributes:
-      gyroscope_rad_s, accelerometer_m_s2: (3,) base frame.
-      foot_force_n: (8,) at four points of the left, then of the right sole.
-      position_m: (3,) of the base, ground frame.
-      orientation: (4,) quaternion w, x, y, z of the base, ground frame.
-      linear_m_s: (3,) velocity of the base, ground frame.
-      angular_rad_s: (3,) turning rate of the base, base frame.
+    Vectors are (3,), zero where a robot lacks the sensor. Gyroscope, accelerometer and
+    turning rate are in the base's frame; position and linear velocity in that of the
+    ground or of a fixed base's mount, even if tilted, into which the quaternion w, x,
+    y, z `orientation` turns. `foot_force_n` (8,) is that at four points of the left,
+    then of the right sole.
     """
 
     gyroscope_rad_s: FloatArray

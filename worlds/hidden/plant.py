@@ -52,13 +52,11 @@ class HiddenPlant:
       name: "pendulum", "so101" or the name of a robot of `groundwalk list robots`.
       file: (name, text) of its model file; None for a robot of that list.
       make_spec: makes a new `mujoco.MjSpec` without actuators and ground.
-      joints: names of the joints, which all have servos.
-      links: name of the body that each joint moves.
+      joints, links: names of the joints, which all have servos, and of their bodies.
       kp_nm_rad, kd_nm_s_rad, max_torque_nm, back_emf_nm_s_rad: the servos,
         torque = clip(kp (command - position) - kd v, +-max) - back_emf v.
       range_rad: (j, 2) lowest and highest angle.
       speed_rad_s: highest speed of commands.
-      floating: whether the base is free.
       description: of a robot of `groundwalk list robots`; else None.
     """
 

@@ -20,17 +20,10 @@ from worlds.recordings.recording import Recording
 class HiddenSensors:
     """Standard deviations of the sensors' noise, and their resolution.
 
-    Attributes:
-      quantum_rad: resolution of the encoders, to which they round; default 12 bits per
-        turn, 0 for none.
-      encoder_rad: noise of the encoders, before they round.
-      gyroscope_rad_s: noise of each axis.
-      accelerometer_m_s2: noise of each axis.
-      foot_force_n: noise of each foot's total force.
-      place_m: noise of each coordinate of the base, as from motion capture.
-      turn_rad: noise of the base's orientation about each axis.
-      linear_m_s: noise of each component of the base's velocity.
-      angular_rad_s: noise of each component of the base's turning rate.
+    The encoders have noise before they round to a multiple of `quantum_rad`, which is
+    12 bits per turn by default; 0 for no rounding. `foot_force_n` is the noise of each
+    foot's total force, `place_m`, `turn_rad`, `linear_m_s` and `angular_rad_s` that of
+    the base, as from motion capture; all others are those of each component or axis.
     """
 
     quantum_rad: float = 2 * math.pi / 4096

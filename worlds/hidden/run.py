@@ -26,14 +26,11 @@ returns the position targets (j,) [rad] to send."""
 class Run:
     """True motion of a simulated robot, without noise; one row per control tick.
 
-    Attributes:
-      clock: times of the ticks.
-      command_rad: (rows, j) position targets sent.
-      encoder_rad: (rows, j) readings of noiseless encoders with offsets and delays.
-      position_rad: (rows, j) true joint angles.
-      sense: arrays (rows, ...) by attribute name of `BodySense`, but with the motion of
-        the base in a frame whose z axis is the true vertical.
-      ok: whether all numbers are finite and a floating base has not fallen.
+    Commands sent, joint angles and readings of noiseless encoders with offsets and
+    delays are (rows, j). `sense` holds arrays (rows, ...) by attribute name of
+    `BodySense`, but the motion of the base is in a frame whose z axis is the true
+    vertical. `ok` says whether all numbers are finite and a floating base has not
+    fallen.
     """
 
     clock: Clock

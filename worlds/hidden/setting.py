@@ -31,11 +31,9 @@ class Scales:
     drawn as shares of them.
 
     Attributes:
-      torque_nm: (j,) usual torque of each servo: 95th percentile of its absolute value.
-      peak_nm: (j,) largest absolute torque of each servo.
-      peak_rad_s: (j,) highest speed of the commands.
+      torque_nm, peak_nm: (j,) absolute torque of each servo: 95th percentile, largest.
+      peak_rad_s, asked_rad: (j,) highest speed and range of the commands.
       reach_rad: (j, 2) lowest and highest position.
-      asked_rad: (j,) highest minus lowest command.
       inertia_kg_m2: (j,) inertia seen by a torque at the joint, all others free.
       carried_kg: (j,) mass of all bodies beyond a joint.
       axis: (j, 3) each joint's axis in the frame of its link.
@@ -43,11 +41,9 @@ class Scales:
       bodies: link of each joint in their order, then the trunk if it is free.
       moved_m: (b,) diagonal of the smallest box that holds the centre of mass.
       carried_by: (b, j) whether a joint moves the body relative to the base.
-      lever_m: (b, j) largest lever arm of the body's weight about a joint's axis in the
-        motion; 0 where the axis is vertical.
+      lever_m: (b, j) largest lever arm of the body's weight about a joint's axis.
       branch_lever_m: (j,) the same for the weight of all bodies beyond a joint.
-      arm_m: (j, 3) shortest vector from a joint's axis to its link's centre of mass,
-        link frame.
+      arm_m: (j, 3) from a joint's axis to its link's centre of mass, link frame.
     """
 
     torque_nm: FloatArray
@@ -102,13 +98,10 @@ class Spot(NamedTuple):
 class Setting:
     """All that decides the size of a hidden effect drawn for a test case.
 
-    Attributes:
-      plant: the nominal robot.
-      scales: torques, speeds and masses of its motion without effects.
-      spot: joint and body where the effect is.
-      ease: how easy the effect is to detect, from 0 (hard) to 1 (easy), or below 0.
-      duration_s: length of each recording.
-      rng: draws signs, directions and times.
+    From the nominal robot, the scales of its motion without effects, the spot of the
+    effect and the length of each recording. `ease` says how easy the effect is to
+    detect, from 0 (hard) to 1 (easy), or below 0; `rng` draws signs, directions and
+    times.
     """
 
     plant: HiddenPlant

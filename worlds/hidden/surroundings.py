@@ -20,14 +20,11 @@ _BUMP_BLEND_M = 0.05
 class Surroundings:
     """Signal delays, gyroscope bias and ground of a robot; all zero without effects.
 
-    Attributes:
-      command_delay_s: time from sending a command until it reaches the servos.
-      encoder_delay_s: age of the encoders' readings.
-      gyroscope_bias_rad_s: (3,) constant error of the gyroscope, base frame.
-      pitch_rad: dip of the ground, or of a fixed base's mount, towards the front (x).
-      roll_rad: rise of the ground or mount towards the left (y).
-      bumps_m: height of the bumps under a floating robot.
-      friction: coefficient between soles and ground; None for the nominal one.
+    Commands reach the servos, and encoders are read, with a delay; the gyroscope's bias
+    (3,) is in the base's frame. The ground, or a fixed base's mount, dips towards the
+    front (x) by the pitch and rises towards the left (y) by the roll. `bumps_m` is the
+    height of bumps under a floating robot, `friction` that of its soles; None for the
+    nominal one.
     """
 
     command_delay_s: float = 0.0

@@ -10,12 +10,10 @@ from groundwalk.arrays import FloatArray
 from robots.description import Description
 from robots.engine_models.model_urdf import model_urdf
 from terrain import Heightfield
-from worlds.hidden.drive import HiddenDrive
+from worlds.hidden.drive import HiddenDrive, HiddenJoints
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.engine import ORIGIN_POSE, BodySense, HiddenEngine, check_engine
-from worlds.hidden.joints import HiddenJoints
-from worlds.hidden.model import hidden_model
-from worlds.hidden.mujoco_engine import HiddenMujoco
+from worlds.hidden.mujoco_engine import HiddenMujoco, hidden_model
 from worlds.hidden.plant import HiddenPlant, described_hidden_plant
 from worlds.real.body import BulletBody
 from worlds.real.robot import BulletState, restart

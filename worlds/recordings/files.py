@@ -1,7 +1,7 @@
 """Reads and writes recordings: Parquet, or CSV with metadata in a .json file beside."""
 
 import csv
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -35,26 +35,10 @@ def read_parquet(path: Path) -> tuple[dict[str, FloatArray], bytes | None]:
         except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
             reason = str(error).splitlines()[0]
             raise BadRecordingError(f"cannot be read as Parquet: {reason}") from error
-    return from_table(table), (schema.metadata or {}).get(_KEY)
+    return _from_table(table), (schema.metadata or {}).get(_KEY)
 
 
-def parquet_bytes(columns: Mapping[str, FloatArray], metadata: str) -> bytes:
-    """Turn columns (rows,) and metadata, a JSON text, into a Parquet file's content."""
-    table = to_table(columns).replace_schema_metadata({_KEY: metadata})
-    sink = pa.BufferOutputStream()
-    pq.write_table(table, sink, compression="zstd", write_page_checksum=True)
-    content: bytes = sink.getvalue().to_pybytes()
-    return content
-
-
-def to_table(columns: Mapping[str, FloatArray]) -> pa.Table:
-    """Turn columns (rows,) by name into an Arrow table; a NaN becomes a null."""
-    return pa.table(
-        {name: pa.array(values, from_pandas=True) for name, values in columns.items()}
-    )
-
-
-def from_table(table: pa.Table) -> dict[str, FloatArray]:
+def _from_table(table: pa.Table) -> dict[str, FloatArray]:
     """Turn an Arrow table of numbers into float columns (rows,) by name.
 
     A null becomes a NaN; an integer that no float equals is rounded.
@@ -96,15 +80,7 @@ def read_csv(path: Path) -> dict[str, FloatArray]:
     check_names(names)
     schema = pa.schema([(name, pa.float64()) for name in names])
     with path.open("rb") as file:
-        return from_table(pa.Table.from_batches(_batches(file, names), schema))
-
-
-def csv_bytes(columns: Mapping[str, FloatArray]) -> bytes:
-    """Turn columns (rows,) into CSV, with enough digits to read back equal floats."""
-    sink = pa.BufferOutputStream()
-    pa.csv.write_csv(to_table(columns), sink)
-    content: bytes = sink.getvalue().to_pybytes()
-    return content
+        return _from_table(pa.Table.from_batches(_batches(file, names), schema))
 
 
 def _header(path: Path) -> list[str]:
@@ -215,12 +191,18 @@ def write_recording(recording: Recording, path: Path) -> None:
     Example:
       >>> write_recording(recording, Path("swing.parquet"))
     """
-    if _is_csv(path):
-        write_text(path.with_suffix(".json"), recording.metadata.to_json() + "\n")
-        write_bytes(path, csv_bytes(recording.columns))
+    is_csv, text = _is_csv(path), recording.metadata.to_json()
+    columns = recording.columns.items()
+    # A NaN becomes a null.
+    table = pa.table({name: pa.array(v, from_pandas=True) for name, v in columns})
+    sink = pa.BufferOutputStream()
+    if is_csv:
+        write_text(path.with_suffix(".json"), text + "\n")
+        pa.csv.write_csv(table, sink)
     else:
-        text = recording.metadata.to_json()
-        write_bytes(path, parquet_bytes(recording.columns, text))
+        table = table.replace_schema_metadata({_KEY: text})
+        pq.write_table(table, sink, compression="zstd", write_page_checksum=True)
+    write_bytes(path, sink.getvalue().to_pybytes())
 
 
 def _is_csv(path: Path) -> bool:

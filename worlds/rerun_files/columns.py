@@ -54,6 +54,11 @@ class ColumnLog:
         if rows.size:
             self.send_rows(path, kind.columns(**known), rows)
 
+    def show(self, path: str, look: Any, columns: Any, rows: Any = None) -> None:
+        """Write columns of a Rerun archetype at `rows`, and its constant `look`."""
+        self.log(path, look)
+        self.send_rows(path, columns, rows)
+
     def send_rows(self, path: str, columns: Any, rows: IntArray | None = None) -> None:
         """Write columns of a Rerun archetype at the times numbered `rows`, or all."""
         rows = self._all if rows is None else rows

@@ -9,7 +9,7 @@ import rerun.blueprint as rrb
 from groundwalk.arrays import FloatArray
 from worlds.recordings.columns import SUPPORT
 from worlds.scenes.balance import loaded_feet
-from worlds.scenes.curves import MEASURED_SUPPORT, Curve, Plot, plots
+from worlds.scenes.curves import MEASURED_SUPPORT, Curve, plots
 from worlds.scenes.scene import Scene
 
 MOST_ABREAST = 2
@@ -135,9 +135,17 @@ def _scene_tab(scene: Scene) -> rrb.Horizontal | rrb.Spatial3DView:
 def _traces(scene: Scene) -> tuple[list[rrb.Horizontal | rrb.View], list[int]]:
     """Rows of plots, the last for the supporting legs, and their relative heights."""
     at = f"/{scene.name}"
-    rows: list[rrb.Horizontal | rrb.View] = [
-        rrb.Horizontal(*(_plot_view(at, plot) for plot in row)) for row in plots(scene)
-    ]
+    rows: list[rrb.Horizontal | rrb.View] = []
+    for row in plots(scene):
+        views = [
+            rrb.TimeSeriesView(
+                name=plot.name,
+                contents=[f"{at}/{path}" for path in plot.paths],
+                axis_x=_window(),
+            )
+            for plot in row
+        ]
+        rows.append(rrb.Horizontal(*views))
     shares = [4] * len(rows)
     lanes = [SUPPORT] if SUPPORT in scene.recording.columns else []
     lanes += [MEASURED_SUPPORT] if loaded_feet(scene) else []
@@ -151,14 +159,6 @@ def _traces(scene: Scene) -> tuple[list[rrb.Horizontal | rrb.View], list[int]]:
         rows.append(view)
         shares.append(3)
     return rows, shares
-
-
-def _plot_view(at: str, plot: Plot) -> rrb.TimeSeriesView:
-    return rrb.TimeSeriesView(
-        name=plot.name,
-        contents=[f"{at}/{path}" for path in plot.paths],
-        axis_x=_window(),
-    )
 
 
 def _window() -> rrb.TimeAxis:

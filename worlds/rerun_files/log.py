@@ -12,7 +12,14 @@ All paths of a scene begin with its name, so that one file can have several scen
 | `<scene>/imu/{gyroscope,accelerometer}` | x, y, z [rad/s, m/s^2] |
 | `<scene>/support` | leg on which the gait means to stand: left, right or both |
 | `<scene>/events` | why the rollout ended |
-| `<scene>/{balance,fall}`, `<scene>/contact/support` | see `rerun_files.balance` |
+| `<scene>/balance/centre_of_mass` | a point, and its whole path (`.../track`) |
+| `<scene>/balance/below` | that point, moved down to the lowest sole's height |
+| `<scene>/balance/pressure` | the centre of pressure that the force sensors measure |
+| `<scene>/balance/zmp` | the zero-moment point that follows from the motion |
+| `<scene>/balance/polygon` | the support polygon: the hull of the loaded soles |
+| `<scene>/balance/sideways/...` | y [m] of these points but `below`, over time |
+| `<scene>/contact/support` | loaded feet, as measured: left, right, both, none |
+| `<scene>/fall` | a ring where the robot fell, labelled with the time |
 
 A file may also hold further curves, each at a path of its own.
 

@@ -84,10 +84,7 @@ def _write_feet(log: ColumnLog, scene: Scene, accent: colours.Colour) -> None:
 
 
 def _write_states(log: ColumnLog, scene: Scene) -> None:
-    rows, legs = support_changes(scene)
-    if legs:
-        log.log(SUPPORT, support_look())
-        log.send_rows(SUPPORT, rr.StateChange.columns(state=legs), rows)
+    _write_support(log, SUPPORT, *support_changes(scene))
     end = scene.recording.metadata.end
     if end:
         level = "WARN" if end in tuple(End) else "INFO"
@@ -106,7 +103,7 @@ def write_balance(log: ColumnLog, scene: Scene) -> None:
     _write_points(log, found, scene.recording.has("base.position"))
     if found.polygons_m is not None:
         _write_polygons(log, found.polygons_m)
-    _write_support(log, scene)
+    _write_support(log, MEASURED_SUPPORT, *_measured_support(scene))
     _write_fall(log, scene, found)
 
 
@@ -122,20 +119,15 @@ def _write_points(log: ColumnLog, found: Balance, is_placed: bool) -> None:
             look = rr.Points3D.from_fields(
                 radii=_POINT_M, colors=colour, labels=[name], show_labels=False
             )
-            log.log(f"balance/{name}", look)
             lift_m = np.array([0.0, 0.0, 0.0 if name == "centre_of_mass" else _LIFT_M])
             # At a tick without the point show nothing, not the last known point.
             known = np.isfinite(place_m[:, 0])
             columns = rr.Points3D.columns(positions=(place_m + lift_m)[known])
-            log.send_rows(f"balance/{name}", columns.partition(known.astype(int)))
+            shown = columns.partition(known.astype(int))
+            log.show(f"balance/{name}", look, shown)
             if is_placed and name != "below":
                 trace = [name.replace("_", " ")], place_m[:, 1], [colour]
                 log.trace(Trace(f"{SIDEWAYS}/{name}", *trace))
-    _write_track(log, found)
-
-
-def _write_track(log: ColumnLog, found: Balance) -> None:
-    """Write the whole path of the centre of mass as a line."""
     is_known = np.isfinite(found.centre_of_mass_m).all(axis=1)
     track = rr.LineStrips3D(
         [found.centre_of_mass_m[is_known]], radii=_LINE_M / 2, colors=colours.MASS
@@ -145,26 +137,20 @@ def _write_track(log: ColumnLog, found: Balance) -> None:
 
 def _write_polygons(log: ColumnLog, polygons_m: list[FloatArray]) -> None:
     look = rr.LineStrips3D.from_fields(radii=_LINE_M, colors=colours.SUPPORT_POLYGON)
-    log.log("balance/polygon", look)
     lift_m = np.array([0.0, 0.0, _LIFT_M])
     strips = [np.vstack([corners, corners[:1]]) + lift_m for corners in polygons_m]
-    log.send_rows("balance/polygon", rr.LineStrips3D.columns(strips=strips))
+    log.show("balance/polygon", look, rr.LineStrips3D.columns(strips=strips))
 
 
-def _write_support(log: ColumnLog, scene: Scene) -> None:
-    rows, legs = measured_support(scene)
+def _write_support(log: ColumnLog, path: str, rows: IntArray, legs: list[str]) -> None:
+    """Write the supporting legs ("left", "right", "both", "none") from some rows on."""
     if legs:
-        log.log(MEASURED_SUPPORT, support_look())
-        log.send_rows(MEASURED_SUPPORT, rr.StateChange.columns(state=legs), rows)
+        lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE, "none": colours.FALL}
+        look = rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
+        log.show(path, look, rr.StateChange.columns(state=legs), rows)
 
 
-def support_look() -> rr.StateConfiguration:
-    """Colours of the supporting legs ("left", "right", "both", "none") in Rerun."""
-    lanes = {**colours.SIDES, "both": colours.NEITHER_SIDE, "none": colours.FALL}
-    return rr.StateConfiguration(values=[*lanes], colors=[*lanes.values()])
-
-
-def measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
+def _measured_support(scene: Scene) -> tuple[IntArray, list[str]]:
     """Rows where the loaded feet change, and the new: left, right, both or none."""
     loaded = loaded_feet(scene)
     if loaded is None:

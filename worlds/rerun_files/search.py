@@ -117,8 +117,7 @@ def _write_generations(
 
 def _send(log: ColumnLog, path: str, values: FloatArray, look: Any) -> None:
     """Write (generations,) or (generations, lines) values, drawn as `look` says."""
-    log.log(path, look)
-    log.send_rows(path, rr.Scalars.columns(scalars=values))
+    log.show(path, look, rr.Scalars.columns(scalars=values))
 
 
 def _line(name: str, colour: colours.Colour) -> rr.SeriesLines:

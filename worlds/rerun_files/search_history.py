@@ -13,11 +13,7 @@ from worlds.world import FALLS
 class SearchWalk(NamedTuple):
     """A walk of one generation's best gait, repeated in order to be shown.
 
-    Attributes:
-      scene: robot, ground and recording of the walk.
-      distance_m: distance walked forward.
-      time_s: duration of the walk.
-      reward: in the unit of the search's rewards.
+    The reward is in the unit of the search's rewards, the distance that walked forward.
     """
 
     scene: Scene

@@ -67,13 +67,12 @@ def _write_robot(
     for link in (robot.root, *(joint.link for joint in robot.links)):
         mesh = _look(link, colour)
         if mesh is not None:
-            log.log(f"robot/{link.name}", rr.Mesh3D(**mesh._asdict()))
-            log.send_rows(f"robot/{link.name}", poses[link.name])
+            look = rr.Mesh3D(**mesh._asdict())
+            log.show(f"robot/{link.name}", look, poses[link.name])
     for foot in robot.feet:
         link = robot.links[foot.joint].link
-        sole = sole_mesh(foot, colour)
-        log.log(f"robot/{link.name}/sole", rr.Mesh3D(**sole._asdict()))
-        log.send_rows(f"robot/{link.name}/sole", poses[link.name])
+        sole = rr.Mesh3D(**sole_mesh(foot, colour)._asdict())
+        log.show(f"robot/{link.name}/sole", sole, poses[link.name])
 
 
 def _look(link: Link, colour: colours.Colour) -> Mesh | None:
@@ -104,8 +103,7 @@ def _write_tracks(log: ColumnLog, walks: Sequence[SearchWalk]) -> None:
     found = [balance(walk.scene) for walk in walks]
     tracks_m = [one.centre_of_mass_m for one in found]
     look = rr.LineStrips3D.from_fields(radii=_TRACK_M, colors=colours.MASS)
-    log.log("track", look)
-    log.send_rows("track", rr.LineStrips3D.columns(strips=tracks_m))
+    log.show("track", look, rr.LineStrips3D.columns(strips=tracks_m))
     fell = [walk.fell for walk in walks]
     if not any(fell):
         return
@@ -116,10 +114,9 @@ def _write_tracks(log: ColumnLog, walks: Sequence[SearchWalk]) -> None:
             end = walk.scene.recording.metadata.end
             texts.append(f"{end} at {walk.time_s:.2f} s")
     look = rr.LineStrips3D.from_fields(radii=_RING_M, colors=colours.FALL)
-    log.log("fall", look)
     columns = rr.LineStrips3D.columns(strips=rings_m, labels=texts)
     # A walk without a fall removes the ring of the walk before.
-    log.send_rows("fall", columns.partition(np.array(fell, int)))
+    log.show("fall", look, columns.partition(np.array(fell, int)))
 
 
 def _write_ground(log: ColumnLog, walks: Sequence[SearchWalk]) -> None:
@@ -141,13 +138,12 @@ def _write_ground(log: ColumnLog, walks: Sequence[SearchWalk]) -> None:
         triangle_indices=meshes[0].triangle_indices,
         vertex_colors=meshes[0].vertex_colors,
     )
-    log.log("ground", look)
     columns = rr.Mesh3D.columns(
         vertex_positions=np.vstack([mesh.vertex_positions for mesh in meshes]),
         vertex_normals=np.vstack([mesh.vertex_normals for mesh in meshes]),
     )
     sizes = [ground.heights_m.size for ground in grounds]
-    log.send_rows("ground", columns.partition(sizes))
+    log.show("ground", look, columns.partition(sizes))
 
 
 def _reached(walks: Sequence[SearchWalk]) -> FloatArray:

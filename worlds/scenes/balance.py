@@ -38,15 +38,12 @@ computed; its formula divides by that force."""
 
 
 class Balance(NamedTuple):
-    """Centre of mass and other balance points at each tick; NaN where unknown.
+    """Balance points (ticks, 3) of a robot in the world frame; NaN where unknown.
 
-    Attributes:
-      centre_of_mass_m: (ticks, 3) in the world frame.
-      below_m: (ticks, 3) centre of mass, moved down to the height of the lowest sole.
-      pressure_m: (ticks, 3) measured centre of pressure; None without force sensors.
-      zmp_m: (ticks, 3) zero-moment point; None without a recorded base position.
-      polygons_m: support polygon (corners, 3) of each tick, without corners while no
-        foot is loaded; None without force sensors.
+    The point `below_m` is the centre of mass, moved down to the height of the lowest
+    sole. Measured centre of pressure and support polygons (corners, 3), which have no
+    corners while no foot is loaded, are None without force sensors; the zero-moment
+    point is None without a recorded base position.
     """
 
     centre_of_mass_m: FloatArray

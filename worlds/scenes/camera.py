@@ -48,13 +48,10 @@ _PER_PIXEL = 2
 
 @dataclass(frozen=True)
 class Camera:
-    """Position and direction of a camera, and the size of its pictures.
+    """A camera at `eye_m` in the world, with `target_m` in the middle of its pictures.
 
-    Attributes:
-      eye_m: place of the camera in the world frame.
-      target_m: place that is in the middle of the picture.
-      size_px: width and height of the picture.
-      view_rad: angle of view from the lower to the upper edge of the picture.
+    The pictures have a width and height in `size_px`; the angle of view is that from
+    their lower to their upper edge.
     """
 
     eye_m: tuple[float, float, float]

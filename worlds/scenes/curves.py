@@ -22,11 +22,9 @@ _SUPPORT_NAMES = {-1: "right", 0: "both", 1: "left"}
 class Trace(NamedTuple):
     """Lines over the times of a recording, at one path of a viewer's file.
 
-    Attributes:
-      path: below the scene's name, such as "imu/gyroscope".
-      names: of each line, for the legend.
-      values: (ticks,) or (ticks, lines); NaN where one is missing.
-      lines: colour of each line; None lets the viewer choose.
+    The path is below the scene's name, such as "imu/gyroscope". Values are (ticks,) or
+    (ticks, lines), NaN where one is missing; `names` are for the legend, and `lines`
+    are the colours, None to let the viewer choose.
     """
 
     path: str

@@ -16,12 +16,9 @@ PENUMBRA_M = 0.006
 class Rounds(NamedTuple):
     """The n capsules of a picture; one whose two ends coincide is a sphere.
 
-    Attributes:
-      start_m, end_m: (n, 3) ends of the axes in the world frame.
-      radius_m: (n,) radii.
-      colour: (n, 3) red, green, blue from 0 to 255.
-      glows: (n,) True for marks such as a force's arrow, which have the same colour in
-        any light, are never hidden by other shapes and cast no shadow.
+    Axes go from start to end (n, 3) in the world frame; colours (n, 3) are red, green,
+    blue from 0 to 255. Marks that glow, such as a force's arrow, have the same colour
+    in any light, are never hidden by other shapes and cast no shadow.
     """
 
     start_m: FloatArray

@@ -26,14 +26,9 @@ _NAME = re.compile(r"[A-Za-z0-9][\w.-]*(/[A-Za-z0-9][\w.-]*)*", re.ASCII)
 class Scene:
     """A recording with its robot and its ground, ready to be drawn.
 
-    The constructor raises `BadValueError` if the name is no path of letters, digits,
-    `_`, `-` and `.`, and `BadRecordingError` if the robot lacks a recorded joint.
-
-    Attributes:
-      name: name in a viewer, such as "sim" or "start/real"; all paths begin with it.
-      recording: the motion of the robot.
-      description: the robot; it must have all joints of the recording.
-      ground: the ground on which it walked; None if there was none or it is unknown.
+    The name, such as "sim" or "start/real", begins all paths in a viewer; BadValueError
+    if it is no path of letters, digits, `_`, `-` and `.`. The ground is None if there
+    was none or it is unknown. BadRecordingError if the robot lacks a recorded joint.
     """
 
     name: str

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from worlds.hidden.transmission import Transmission
+from worlds.hidden.servos import Transmission
 
 STEP_S = 0.0001
 STRONG = (1e5, 1.0, math.inf, 0.0)

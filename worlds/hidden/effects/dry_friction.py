@@ -21,16 +21,11 @@ torque of 3 N m they yield by 0.001 rad, less than an encoder's resolution."""
 class DryFriction:
     """Friction torque at a joint that sticks below a limit and slides at it.
 
-    A very stiff bristle between the two surfaces bends with the motion until it
-    carries the sliding torque, and then slips (elastic-plastic return mapping;
-    Dupont, Hayward, Armstrong, Altpeter 2002, with the plastic branch entered at
-    once). While it sticks, the bristle is critically damped so that it does not ring.
-
-    Attributes:
-      stiffness_nm_rad, damping_nm_s_rad: of the bristle.
-      coulomb_nm: constant part of the sliding torque.
-      extra_nm, speed_rad_s: Stribeck part extra exp(-(v / speed)^2) at joint speed v.
-      load_share: share of the servo's absolute torque that is added.
+    A very stiff bristle between the two surfaces bends with the motion until it carries
+    the sliding torque, and then slips (elastic-plastic return mapping; Dupont, Hayward,
+    Armstrong, Altpeter 2002, with the plastic branch entered at once). While it sticks,
+    the bristle is critically damped so that it does not ring. The sliding torque is
+    coulomb + extra exp(-(v / speed)^2) + load_share |servo torque| at joint speed v.
     """
 
     stiffness_nm_rad: float
@@ -139,12 +134,7 @@ class SoftBristles:
     """LuGre friction without damping (Canudas de Wit, Olsson, Astrom, Lischinsky 1995).
 
     The bristles' bend z at joint speed v follows dz/dt = v - stiffness |v| z / F; the
-    friction torque is stiffness z.
-
-    Attributes:
-      torque_nm: F, the friction torque after long sliding.
-      stiffness_nm_rad: stiffness of the bristles.
-      step_s: time step of the physics.
+    friction torque is stiffness z, and F = `torque_nm` after long sliding.
     """
 
     torque_nm: float

@@ -11,8 +11,8 @@ from worlds.hidden.effects.kind import (
     Values,
 )
 from worlds.hidden.plant import HiddenPlant
+from worlds.hidden.servos import Transmission
 from worlds.hidden.setting import Setting
-from worlds.hidden.transmission import Transmission
 
 _STOP_NM_RAD = 500.0
 """Stiffness of an end stop [N m/rad]: hard rubber at a radius of some centimetres. A

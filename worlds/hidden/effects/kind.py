@@ -8,10 +8,9 @@ from typing import Any, ClassVar
 from groundwalk.arrays import FloatArray
 from robots.description import Description
 from worlds.hidden.plant import HiddenPlant
-from worlds.hidden.servos import Servos
+from worlds.hidden.servos import Servos, Transmission
 from worlds.hidden.setting import Scales, Setting, Spot
 from worlds.hidden.surroundings import Surroundings
-from worlds.hidden.transmission import Transmission
 from worlds.soft_ground import FootSpring
 
 Values = Mapping[str, float]
@@ -32,13 +31,10 @@ stable up to 4; this is far below, so that the contact's motion is resolved, too
 
 @dataclass(frozen=True)
 class Quantity:
-    """One parameter of a kind of hidden physics.
+    """One parameter of a kind of hidden physics, `name` in the text of an effect.
 
-    Attributes:
-      name: the `parameter` in an effect's text `name@place:parameter=value`.
-      unit: such as "N m"; "1" for a plain number.
-      low, high: sensible range; values outside of it are refused.
-      default: value where none is given; None if one must be given.
+    The unit of a plain number is "1". Values outside of the range from `low` to `high`
+    are refused; without a default a value must be given.
     """
 
     name: str
@@ -61,9 +57,7 @@ class Quantity:
 class StiffContact:
     """Limits the stiffness of a contact at a joint to what the time step can resolve.
 
-    Attributes:
-      inertia_kg_m2: inertia seen by a torque at the joint, all other joints free.
-      step_s: time step of the physics.
+    The inertia is that seen by a torque at the joint, with all other joints free.
     """
 
     inertia_kg_m2: float

@@ -36,10 +36,9 @@ KINDS: Mapping[str, HiddenKind] = {
 class Hidden:
     """A hidden effect at its place, such as 0.02 rad of play in the left knee.
 
-    Attributes:
-      name: a key of `KINDS`.
-      place: name of a joint or body, or the kind's only place, such as "gyroscope".
-      parameters: values in SI units by name; optional ones may be missing.
+    The name is a key of `KINDS`; the place is that of a joint or body, or the kind's
+    only one, such as "gyroscope". Parameters are in SI units; optional ones may be
+    missing.
 
     Example:
       >>> Hidden("backlash", "LKneePitch", {"gap": 0.02}).to_text()
