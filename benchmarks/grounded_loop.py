@@ -19,10 +19,9 @@ from benchmarks.ratios import judged, seconds
 from experiments.grounded_walks.courses import SimPlace
 from experiments.grounded_walks.data import walk
 from experiments.walking import TrialRules, walk_trials
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.models.network_config import NetworkConfig
 from sgat.noise import BlockNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.walks.gait_cloud import GaitCloud

@@ -10,9 +10,8 @@ import robots
 from experiments.command_line import run_verb
 from experiments.reports.tables import print_table
 from groundwalk.errors import UnknownNameError
-from terrain.bounds import Parameter
 from terrain.catalog import FAMILIES
-from terrain.ground import Ground
+from terrain.ground import Ground, Parameter
 from walk_engine import PARAMETERS, gaits
 from worlds.hidden import KINDS
 

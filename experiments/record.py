@@ -8,9 +8,10 @@ import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, table_feed
-from experiments.motions.in_the_air import MOTIONS, Excitation
-from experiments.motions.on_feet import (
+from experiments.motions import (
+    MOTIONS,
     STANDING_MOTIONS,
+    Excitation,
     standing_commands,
     walking_feed,
 )

@@ -1,31 +1,187 @@
-"""Converts frozen dataclasses to JSON and back, checking every key and value.
+"""cattrs hooks for the kinds of values that `groundwalk.json_data` reads and writes.
 
-The fields of such a dataclass may be numbers, text, true or false, paths, tuples,
-mappings with text as keys, words of a `Literal`, other dataclasses, or any of
-these or None. An error message says in one line what is wrong and names the key.
-
-Example:
-  >>> from dataclasses import dataclass
-  >>> @dataclass(frozen=True)
-  ... class Size:
-  ...     value: float
-  ...     unit: str
-  >>> to_plain(Size(2, "N"))
-  {'value': 2.0, 'unit': 'N'}
-  >>> from_plain(Size, {"value": 2, "unit": "N"}, "size")
-  Size(value=2.0, unit='N')
+cattrs converts between dataclasses and plain values, but silently coerces values of a
+wrong kind, such as the text "2" to a number. The hooks here check each value first.
 """
 
 import json
 import math
-from collections.abc import Mapping
-from typing import Any, NoReturn, TypeVar
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields, is_dataclass
+from functools import cache, partial
+from numbers import Integral, Real
+from pathlib import Path
+from types import UnionType
+from typing import Any, Literal, NoReturn, TypeVar, Union, get_args, get_origin
 
-from cattrs import AttributeValidationNote, IterableValidationNote
+from cattrs import AttributeValidationNote, Converter, IterableValidationNote
+from cattrs.cols import (
+    homogenous_tuple_structure_factory,
+    is_mapping,
+    mapping_structure_factory,
+)
 from cattrs.errors import BaseValidationError
+from cattrs.gen import (
+    make_dict_structure_fn,
+    make_dict_unstructure_fn,
+    make_hetero_tuple_structure_fn,
+    override,
+)
 
-from groundwalk.errors import BadValueError, GroundwalkError
-from groundwalk.json_kinds import WrongPartError, converter, is_number
+from groundwalk.errors import BadValueError, GroundwalkError, UnknownNameError
+
+Hook = Callable[[Any, Any], Any]
+"""Type of a cattrs hook: takes a plain JSON value and a type, returns a value of it."""
+
+
+class WrongPartError(BadValueError):
+    """A part of a JSON value is wrong; the message lacks the name of its key.
+
+    The message is, for example, "must be text, not 3"; `json_data` puts the key first.
+    """
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a finite real number; True and False do not count as one."""
+    try:
+        is_real = isinstance(value, Real) and not isinstance(value, bool)
+        return is_real and math.isfinite(value)
+    except OverflowError:  # a whole number beyond all floats
+        return False
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number; True and False do not count as one."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+_SCALARS: Mapping[type, tuple[str, Callable[[Any], bool]]] = {
+    float: ("a finite number", is_number),
+    int: ("a whole number", is_whole),
+    str: ("text", lambda value: isinstance(value, str)),
+    bool: ("true or false", lambda value: isinstance(value, bool)),
+    Path: ("text", lambda value: isinstance(value, str)),
+}
+"""For each type of a single value: its name in error messages, and the test whether a
+plain JSON value may become one."""
+
+
+@cache
+def converter(complete: bool) -> Converter:
+    """Make the cattrs converter whose hooks check the kinds of values and the keys.
+
+    Args:
+      complete: refuse a missing key even if its field has a default.
+    """
+    made = Converter(unstruct_collection_overrides={tuple: list})
+    made.register_unstructure_hook(float, float)
+    made.register_unstructure_hook(Path, str)
+    made.register_unstructure_hook_factory(is_dataclass, _unstructure_hook)
+    for scalar, (wanted, is_right) in _SCALARS.items():
+        check = partial(_check, wanted=wanted, is_right=is_right)
+        made.register_structure_hook(scalar, _checked(check, _call))
+    for matches, factory in (
+        (_is_choice, lambda kind, _: lambda value, _: value),
+        (_is_literal, _literal_hook),
+        (_is_tuple, _tuple_hook),
+        (is_mapping, _mapping_hook),
+        (is_dataclass, partial(_dataclass_hook, complete)),
+    ):
+        made.register_structure_hook_factory(matches, factory)
+    return made
+
+
+def _is_choice(kind: Any) -> bool:
+    """Whether a type is `object` or a union: the dataclass that holds it checks it."""
+    parts = set(get_args(kind)) - {type(None)}
+    return kind is object or (get_origin(kind) in (Union, UnionType) and len(parts) > 1)
+
+
+def _is_literal(kind: Any) -> bool:
+    return get_origin(kind) is Literal
+
+
+def _is_tuple(kind: Any) -> bool:
+    return get_origin(kind) is tuple
+
+
+def _literal_hook(kind: Any, _: Converter) -> Hook:
+    words = get_args(kind)
+    return _checked(
+        partial(_check, wanted=" or ".join(words), is_right=lambda one: one in words),
+        lambda value, _: value,
+    )
+
+
+def _mapping_hook(kind: Any, converter: Converter) -> Hook:
+    return _checked(_check_object, mapping_structure_factory(kind, converter))
+
+
+def _tuple_hook(kind: Any, converter: Converter) -> Hook:
+    parts = get_args(kind)
+
+    def check(value: Any) -> None:
+        _check(value, "a list", lambda one: isinstance(one, list))
+        if parts[-1] is not ...:
+            wanted = f"a list of {len(parts)}"
+            _check(value, wanted, lambda one: len(one) == len(parts))
+
+    if parts[-1] is ...:
+        return _checked(check, homogenous_tuple_structure_factory(kind, converter))
+    return _checked(check, make_hetero_tuple_structure_fn(kind, converter))
+
+
+def _dataclass_hook(complete: bool, kind: Any, converter: Converter) -> Hook:
+    held = [field for field in fields(kind) if field.metadata.get("json", True)]
+    known = [field.name for field in held]
+    needed = [
+        field.name
+        for field in held
+        if complete or (field.default is MISSING and field.default_factory is MISSING)
+    ]
+
+    def check(value: Any) -> None:
+        _check_object(value)
+        for key in value:
+            if key not in known:
+                raise WrongPartError(f"has an {UnknownNameError('key', key, known)}")
+        for key in needed:
+            if key not in value:
+                raise WrongPartError(f"has no {key!r}")
+
+    return _checked(check, make_dict_structure_fn(kind, converter, **_left_out(kind)))
+
+
+def _left_out(kind: Any) -> dict[str, Any]:
+    """Arguments for cattrs that leave out a dataclass' fields marked `NOT_IN_JSON`."""
+    some = (field for field in fields(kind) if not field.metadata.get("json", True))
+    return {field.name: override(omit=True) for field in some}
+
+
+def _unstructure_hook(kind: Any, converter: Converter) -> Callable[[Any], Any]:
+    return make_dict_unstructure_fn(kind, converter, **_left_out(kind))
+
+
+def _checked(check: Callable[[Any], None], convert: Hook) -> Hook:
+    def hook(value: Any, kind: Any) -> Any:
+        check(value)
+        return convert(value, kind)
+
+    return hook
+
+
+def _call(value: Any, kind: Any) -> Any:
+    return kind(value)
+
+
+def _check(value: Any, wanted: str, is_right: Callable[[Any], bool]) -> None:
+    if not is_right(value):
+        raise WrongPartError(f"must be {wanted}, not {value!r}")
+
+
+def _check_object(value: Any) -> None:
+    _check(value, "an object", lambda one: isinstance(one, dict))
+
 
 Kind = TypeVar("Kind")
 

@@ -10,11 +10,10 @@ Example:
   (161, 241)
 """
 
-from terrain.catalog import configuration, make, names
+from terrain.catalog import TerrainSpec, configuration, make, names, parse
 from terrain.heightfield import Heightfield
-from terrain.lumps import Lumps
 from terrain.regular import Flat
-from terrain.spec import TerrainSpec, parse
+from terrain.rough import Lumps
 
 __all__ = [
     "Flat",

@@ -1,18 +1,54 @@
-"""Base class of all families of terrain: the ground's extent and its flat start."""
+"""Base class of all families of terrain: bounded parameters, extent and flat start."""
 
 import dataclasses
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from terrain.bounds import bounded, checked
+from groundwalk.json_data import is_number, is_whole
 from terrain.heightfield import Heightfield
+
+Parameter = float | int | tuple[float, float]
+T = TypeVar("T", float, int, tuple[float, float])
+
+
+def bounded(default: T, low: float, high: float) -> T:
+    """Declare a dataclass field with a default and inclusive bounds.
+
+    The default's type decides which values `checked` accepts for the field: a whole
+    number (int), any number (float), or two increasing numbers (tuple).
+    """
+    return dataclasses.field(default=default, metadata={"bounds": (low, high)})
+
+
+def checked(field: dataclasses.Field[Any], value: Any) -> Parameter:
+    """Convert a value to the Python type of a dataclass field declared with `bounded`.
+
+    Raises:
+      BadValueError: the value has another type, or lies outside of the bounds.
+    """
+    low, high = field.metadata["bounds"]
+    span = f"from {low:g} to {high:g}, not {value!r}"
+    if isinstance(field.default, tuple):
+        pair = tuple(value) if isinstance(value, tuple | list) else ()
+        are_two = len(pair) == 2 and all(map(is_number, pair))
+        if not (are_two and low <= pair[0] < pair[1] <= high):
+            raise BadValueError(f"{field.name} must be two increasing numbers {span}")
+        return float(pair[0]), float(pair[1])
+    if isinstance(field.default, int):
+        if not is_whole(value) or not low <= value <= high:
+            raise BadValueError(f"{field.name} must be a whole number {span}")
+        return int(value)
+    if not is_number(value) or not low <= value <= high:
+        raise BadValueError(f"{field.name} must be a number {span}")
+    return float(value)
+
 
 MOST_SAMPLES = 1_000_000
 """Largest number of height samples of one ground. PyBullet 3.2.7 silently loads nothing

@@ -7,8 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from terrain.bounds import bounded
-from terrain.ground import Ground, Ladder
+from terrain.ground import Ground, Ladder, bounded
 
 
 @dataclass(frozen=True, kw_only=True)

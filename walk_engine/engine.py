@@ -14,8 +14,8 @@ from walk_engine.engine_config import WALK2014_CONFIG, EngineConfig
 from walk_engine.feet import resting_feet
 from walk_engine.gait import PARAMETERS, Gait, stack
 from walk_engine.posture import Limits, Posture
+from walk_engine.step_plan import Velocity
 from walk_engine.stepper import Progress, Stepper, select
-from walk_engine.velocity import Velocity
 from walk_engine.walk_state import StateArray
 
 

@@ -12,6 +12,7 @@ from walk_engine.step_plan import (
     GaitColumns,
     Speeds,
     StepPlan,
+    Velocity,
     plan_step,
     within_limits,
 )
@@ -24,7 +25,6 @@ from walk_engine.support import (
     sensor_lateral_m,
     step_is_over,
 )
-from walk_engine.velocity import Velocity
 from walk_engine.walk_state import (
     StateArray,
     WalkState,

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.motions.in_the_air import MOTIONS, Excitation
-from experiments.motions.on_feet import standing_commands, walking_feed
+from experiments.motions import MOTIONS, Excitation, standing_commands, walking_feed
 from groundwalk.arrays import BoolArray, FloatArray
 from worlds.hidden.clock import Clock
 from worlds.hidden.plant import HiddenPlant, hidden_plant

@@ -12,11 +12,10 @@ from diagnosis import Verdict
 from diagnosis.verdict import Found
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, CASES
-from experiments.concealed.scoring.figure import draw_score
 from experiments.concealed.scoring.marks import NAMED_KINDS, mark
 from experiments.concealed.scoring.measures import measures
 from experiments.concealed.scoring.oracle import Oracle, answer_key, consult
-from experiments.concealed.scoring.page import score_report, score_rows
+from experiments.concealed.scoring.page import draw_score, score_report, score_rows
 from experiments.concealed.scoring.truth import (
     TrueCase,
     Truth,

@@ -21,7 +21,7 @@ from experiments.walking.trials import TrialRules, Trials, walk_trials
 from groundwalk.arrays import BoolArray, FloatArray
 from robots import Description
 from sgat.noise import child_of
-from sgat.transformers.transformer import Transformer
+from sgat.transformers.catalogue import Transformer
 from sgat.transitions import Transitions
 from sgat.walks.walk_senses import leg_senses
 from sgat.walks.wrapped_worlds import GroundedWorld, WatchedWorld

@@ -21,7 +21,7 @@ from experiments.grounded_walks.data import (
 from experiments.grounded_walks.raters import rate_in_sim
 from experiments.walking.search import Rater
 from groundwalk.arrays import FloatArray
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig
 from sgat.noise import child_of
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.catalogue import grounding

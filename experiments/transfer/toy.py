@@ -15,8 +15,7 @@ from experiments.runs.progress import progress
 from experiments.transfer.claims import Claim, print_study, write_transfer_page
 from groundwalk.arrays import FloatArray
 from sgat.tabular.grounding import counted_forward_model, grounded_sim
-from sgat.tabular.mdp import FiniteMdp, roll_out
-from sgat.tabular.planning import action_values, policy_iteration
+from sgat.tabular.mdp import FiniteMdp, action_values, policy_iteration, roll_out
 
 VERB = "transfer-toy"
 TITLE = "Toy worlds: does planning in a grounded sim find the best action?"

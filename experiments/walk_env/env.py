@@ -24,7 +24,7 @@ from walk_engine.gait import from_unit
 from worlds import FALLS, TICK_S, World, WorldOptions
 
 if TYPE_CHECKING:
-    from sgat.transformers.transformer import Transformer
+    from sgat.transformers.catalogue import Transformer
 
 ActionKind = Literal["residual", "gait"]
 Info = dict[str, Any]

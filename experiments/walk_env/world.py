@@ -13,7 +13,7 @@ from terrain import Heightfield, TerrainSpec, parse
 from worlds import World, WorldOptions
 
 if TYPE_CHECKING:
-    from sgat.transformers.transformer import Transformer
+    from sgat.transformers.catalogue import Transformer
 
 WorldName = Literal["sim", "real", "grounded"]
 

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from groundwalk.arrays import FloatArray, IntArray
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig
 from sgat.models.heads import Head
 from sgat.models.network import Float32Array, Scaling
 from sgat.models.scaled_network import (

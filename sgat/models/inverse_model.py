@@ -6,7 +6,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from sgat.measures import r_squared
-from sgat.models.network_config import NetworkConfig
+from sgat.models.config import NetworkConfig
 from sgat.models.scaled_network import (
     NetworkModel,
     ScaledNetwork,

@@ -18,8 +18,8 @@ from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.errors import BadModelError, BadValueError
 from groundwalk.files import write_bytes
 from groundwalk.json_data import from_plain
+from sgat.models.config import NetworkConfig
 from sgat.models.network import Float32Array, Network, Scaling
-from sgat.models.network_config import NetworkConfig
 from sgat.models.training import Examples, Stage, train
 from sgat.transitions import held_out_rows
 

@@ -9,8 +9,8 @@ import torch
 from torch import Tensor
 
 from groundwalk.arrays import FloatArray
+from sgat.models.config import NetworkConfig
 from sgat.models.network import Network
-from sgat.models.network_config import NetworkConfig
 
 Loss = Callable[[Tensor, Tensor], Tensor]
 """A function of raw outputs (members, n, outputs) and targets (n, d) that gives losses

@@ -11,10 +11,9 @@ from torch import Tensor
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.network import Scaling
-from sgat.models.network_config import NetworkConfig
 from sgat.models.scaled_network import (
     ScaledNetwork,
     read_model,

@@ -8,11 +8,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from groundwalk.arrays import FloatArray
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
 from sgat.noise import child_of
-from sgat.transformers.transformer import KeptTransformer
+from sgat.transformers.catalogue import KeptTransformer
 from sgat.transitions import Transitions
 
 T = TypeVar("T")

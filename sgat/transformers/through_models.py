@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from sgat.models.forward_config import HeadName
+from sgat.models.config import HeadName
 from sgat.models.forward_model import ForwardModel
 from sgat.noise import BlockNoise, NoiseLaw, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer

@@ -7,7 +7,7 @@ import numpy as np
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots import Description
-from sgat.transformers.transformer import Transformer
+from sgat.transformers.catalogue import Transformer
 from sgat.transitions import Transitions
 from sgat.walks.walk_senses import WalkSenses
 from worlds import End, Observation, Truth, World, WorldOptions

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from known_dynamics import LIGHT, bent, linear, noisy_actions, roll
 
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.models.network_config import NetworkConfig
 
 NOISE = 0.3
 

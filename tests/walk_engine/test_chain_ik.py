@@ -8,8 +8,7 @@ from robots import biped
 from walk_engine import EngineConfig, Velocity, WalkEngine, gaits
 from walk_engine.chain_ik import ChainLegs
 from walk_engine.engine_config import WALK2014_CONFIG
-from walk_engine.leg_ik import inverse
-from walk_engine.legs import Legs
+from walk_engine.legs import Legs, inverse
 
 N = 40
 SIGNS = {"left": 1.0, "right": -1.0}

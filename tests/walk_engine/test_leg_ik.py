@@ -8,7 +8,7 @@ from leg_fk import forward
 from scipy.spatial.transform import Rotation
 
 from robots.leg_geometry import LegGeometry
-from walk_engine.leg_ik import inverse
+from walk_engine.legs import inverse
 
 SLANT = math.sqrt(0.5)
 NAO = LegGeometry((0.0, 0.05, -0.085), (0.0, SLANT, -SLANT), 0.1, 0.1029, 0.04519)

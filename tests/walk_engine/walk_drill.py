@@ -4,7 +4,7 @@ import numpy as np
 from leg_fk import forward
 
 from walk_engine import Velocity
-from walk_engine.leg_ik import MIRROR
+from walk_engine.legs import MIRROR
 
 LEFT, RIGHT = 1, -1
 

@@ -15,7 +15,7 @@ from experiments.transfer.cliff_study.study import (
     Row,
     TransferCliff,
 )
-from sgat.tabular.loop import TabularLoop
+from sgat.tabular.grounding import TabularLoop
 from sgat.tabular.mdp import STEP_LIMIT
 
 ROUNDING = 1e-9

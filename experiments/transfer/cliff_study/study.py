@@ -8,9 +8,8 @@ import numpy as np
 from experiments.runs.options import RunOptions
 from experiments.transfer.cliff_study.grid import cliff_walking, intended_path
 from groundwalk.errors import BadValueError
-from sgat.tabular.loop import TabularLoop, ground_until_calm
-from sgat.tabular.mdp import STEP_LIMIT, roll_out
-from sgat.tabular.planning import expected_return, policy_iteration
+from sgat.tabular.grounding import TabularLoop, ground_until_calm
+from sgat.tabular.mdp import STEP_LIMIT, expected_return, policy_iteration, roll_out
 
 UNGROUNDED, GAT, SGAT, OPTIMUM = METHODS = ("no grounding", "GAT", "SGAT", "optimum")
 """Methods: planning in the sim, in the sim grounded by GAT or by SGAT, and in the real

@@ -9,12 +9,11 @@ import numpy as np
 
 from experiments.transfer.gym_studies.environments import Domain, Environment
 from groundwalk.arrays import FloatArray
-from sgat.gym.collect import collect
+from sgat.gym import collect
 from sgat.models.inverse_model import InverseModel
 from sgat.transformers.action_transformer import ActionTransformer
-from sgat.transformers.catalogue import grounding
+from sgat.transformers.catalogue import KeptTransformer, Transformer, grounding
 from sgat.transformers.grounding_base import GroundingData
-from sgat.transformers.transformer import KeptTransformer, Transformer
 from sgat.transitions import Transitions
 
 if TYPE_CHECKING:

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 import robots
-from experiments.motions.in_the_air import MOTIONS, Excitation
-from experiments.motions.on_feet import (
+from experiments.motions import (
+    MOTIONS,
     STANDING_MOTIONS,
+    Excitation,
     standing_commands,
     walking_feed,
 )

@@ -17,8 +17,8 @@ from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.runs.folder import RunFolder
 from experiments.runs.repeat_command import repeat_command
+from experiments.seeing.run_pictures import draw_search
 from experiments.seeing.score_page import score_answer, write_page
-from experiments.seeing.search_figure import draw_search
 from experiments.transfer.claims import Claim, claims_answer, write_transfer_page
 from experiments.transfer.nao_studies.page import answer_of
 from experiments.transfer.nao_studies.study import TransferNao

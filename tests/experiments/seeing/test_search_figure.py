@@ -3,7 +3,7 @@ import pytest
 from made_up_runs import history
 from matplotlib.image import imread
 
-from experiments.seeing.search_figure import draw_search, search_figure
+from experiments.seeing.run_pictures import draw_search, search_figure
 from groundwalk.errors import BadValueError
 
 

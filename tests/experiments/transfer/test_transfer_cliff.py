@@ -12,7 +12,7 @@ from experiments.transfer.cliff_study.grid import MOVES, cliff_walking, intended
 from experiments.transfer.cliff_study.page import check_claims
 from experiments.transfer.cliff_study.study import TransferCliff
 from groundwalk.errors import BadValueError
-from sgat.tabular.planning import expected_return, policy_iteration
+from sgat.tabular.mdp import expected_return, policy_iteration
 
 SMALL = {
     "rows": 3,

@@ -6,7 +6,7 @@ from experiments.transfer.gym_studies.grounding import (
     in_stretches,
     noise_ratio,
 )
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
 from sgat.noise import WhiteNoise

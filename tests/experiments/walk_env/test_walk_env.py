@@ -22,10 +22,9 @@ from experiments.walk_env.ids import IDS, register_envs
 from experiments.walk_env.world import episode_seeds
 from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from groundwalk.errors import BadValueError, UnknownNameError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.models.network_config import NetworkConfig
 from sgat.noise import WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import write_transformer

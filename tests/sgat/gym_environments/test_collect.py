@@ -10,7 +10,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import DummyVecEnv
 
 from groundwalk.errors import BadValueError
-from sgat.gym.collect import collect
+from sgat.gym import collect
 from sgat.transitions import Transitions
 
 LENGTHS = [3, 4, 5, 6]

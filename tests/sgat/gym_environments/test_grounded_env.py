@@ -7,7 +7,7 @@ from falling_env import FallingEnv
 from gymnasium.utils.env_checker import check_env
 
 from groundwalk.errors import BadValueError
-from sgat.gym.grounded_env import GroundedEnv
+from sgat.gym import GroundedEnv
 from sgat.transformers.action_noise import ActionNoise
 
 

@@ -6,7 +6,7 @@ from known_dynamics import LIGHT, linear, noisy_actions, noisy_states, roll, see
 from scipy import stats
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.noise import NoiseStream, WhiteNoise
 from sgat.transitions import Transitions

@@ -5,8 +5,8 @@ import pytest
 from known_dynamics import HIGH, LOW, bent, linear, noisy_actions, roll
 
 from groundwalk.errors import BadValueError
+from sgat.models.config import NetworkConfig
 from sgat.models.inverse_model import InverseModel
-from sgat.models.network_config import NetworkConfig
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 import torch
 
 from groundwalk.errors import BadValueError
-from sgat.models.network_config import NetworkConfig
+from sgat.models.config import NetworkConfig
 from sgat.models.training import Examples, Stage, one_thread, squared_error, train
 
 RNG = np.random.default_rng(0)

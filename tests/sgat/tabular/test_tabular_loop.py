@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError
-from sgat.tabular.loop import TabularLoop, ground_until_calm
+from sgat.tabular.grounding import TabularLoop, ground_until_calm
 from sgat.tabular.mdp import FiniteMdp
 
 SHORT, LONG, GOAL, HOLE = 1, 2, 4, 5

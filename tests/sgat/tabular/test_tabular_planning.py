@@ -3,8 +3,8 @@ import itertools
 import numpy as np
 import pytest
 
-from sgat.tabular.mdp import FiniteMdp
-from sgat.tabular.planning import (
+from sgat.tabular.mdp import (
+    FiniteMdp,
     action_values,
     expected_return,
     policy_iteration,

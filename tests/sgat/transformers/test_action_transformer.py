@@ -13,10 +13,9 @@ from known_dynamics import (
 )
 
 from groundwalk.errors import BadValueError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.models.network_config import NetworkConfig
 from sgat.noise import BlockNoise, WhiteNoise
 from sgat.transformers.action_noise import ActionNoise
 from sgat.transformers.action_transformer import ActionTransformer

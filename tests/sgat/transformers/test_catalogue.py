@@ -10,7 +10,7 @@ import pytest
 
 import sgat.transformers
 from groundwalk.errors import BadValueError, UnknownNameError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig
 from sgat.noise import WhiteNoise
 from sgat.transformers.catalogue import (
     add_grounding,

@@ -5,9 +5,8 @@ import pytest
 from known_dynamics import HIGH, LIGHT, LOW, linear
 
 from groundwalk.errors import BadModelError, BadValueError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
-from sgat.models.network_config import NetworkConfig
 from sgat.transformers.direct_transformer import DIRECT, DirectTransformer
 from sgat.transitions import Transitions
 

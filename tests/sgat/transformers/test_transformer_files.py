@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadModelError, BadValueError
-from sgat.models.forward_config import ForwardConfig
+from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel
 from sgat.models.inverse_model import InverseModel
-from sgat.models.network_config import NetworkConfig
 from sgat.noise import BlockNoise, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import read_transformer, write_transformer

@@ -1,1 +1,0 @@
-"""Motions that excite a robot's physics: in the air, and standing or walking."""

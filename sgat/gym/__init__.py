@@ -1,1 +1,0 @@
-"""Gymnasium environments: recording transitions, and transforming actions."""
