@@ -21,18 +21,13 @@ class UnknownNameError(GroundwalkError):
     """A name is unknown; the message lists the known ones and suggests the nearest."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
-        """Compose the message from the kind of thing that the name should stand for.
-
-        `kind` is for example "robot"; `known` are all names that would have been right.
-        """
+        """Compose the message; `kind` is what the name should be, such as "robot"."""
         names = sorted(known)
         close = nearest_name(str(name), names)
         nearest = "" if close is None else f"did you mean {close!r}? "
         super().__init__(
             f"unknown {kind} {name!r}: {nearest}known are {', '.join(names)}"
         )
-        self.name = name
-        self.known = names
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:

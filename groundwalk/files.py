@@ -19,8 +19,5 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def write_text(path: Path, content: str) -> None:
-    """Write a UTF-8 text file atomically: to a temporary file, which is then renamed.
-
-    The file's folder is made if it does not exist.
-    """
+    """Write a UTF-8 text file atomically; its folder is made if it does not exist."""
     write_bytes(path, content.encode())

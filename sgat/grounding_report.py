@@ -1,6 +1,5 @@
 """All measures of a grounding's forward model, before a policy is trained with it."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -38,8 +37,8 @@ def grounding_report(
         state has all columns of a state.
 
     Returns:
-      Numbers and lists by name, None where undefined or infinite. p is the number of
-      columns of a next state; errors are in the state's units:
+      Numbers and lists by name, None where undefined or infinite. Errors are in the
+      state's units, p is the number of columns of a next state:
 
       - `one_step_error` (p,) and `multi_step_error` (HORIZON, p): root mean squares 1
         tick, and 1, 2 ... ticks ahead, if the model predicts from its own predictions;
@@ -69,12 +68,8 @@ def grounding_report(
         "cross_correlation": cross_correlation(residuals),
         "excess_kurtosis": excess_kurtosis(residuals),
     }
+    arrays = {name: np.asarray(value) for name, value in measures.items()}
     return {
-        name: _plain(np.asarray(value).tolist()) for name, value in measures.items()
+        name: np.where(np.isfinite(array), array, np.array(None)).tolist()
+        for name, array in arrays.items()
     }
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    return value if math.isfinite(value) else None

@@ -14,6 +14,9 @@ from sgat.transitions import Transitions
 
 Policy = Callable[[FloatArray], FloatArray]
 """A function of an observation (o,) that gives an action (a,)."""
+RewardOf = Callable[[float, FloatArray, FloatArray], float]
+"""A function that gives a corrected reward, from the environment's reward, the
+policy's action (a,) and the transformed action (a,)."""
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
 
 
@@ -22,27 +25,29 @@ def collect(
 ) -> Transitions:
     """Run a policy for an exact number of steps, and return the transitions.
 
+    An environment that resets itself returns, for an episode's last step, the first
+    observation of the next one. Here each episode ends with its true last state.
+
     Args:
-      env: plain or wrapped. It is reset here after each episode, even if a wrapper
-        resets it as well.
+      env: plain or wrapped, with a Box of one axis as action space; reset here after
+        each episode, even if a wrapper resets it as well.
       policy: gives the actions; they are clipped to the action space, also in the data.
       steps: number of transitions; the last episode may be incomplete.
       rng: gives the seed of the first episode, from which the others follow.
-
-    Raises:
-      BadValueError: the action space is not a Box with one axis.
 
     Example:
       >>> env = gymnasium.make("InvertedPendulum-v5")
       >>> collect(env, lambda observation: np.zeros(1), 100, np.random.default_rng(1)).n
       100
     """
-    low, high = _bounds(env.action_space)
+    space = env.action_space
+    if not isinstance(space, Box) or len(space.shape) != 1:
+        raise BadValueError(f"the actions are {space}; they must be a Box of one axis")
     rows, episode = [], 0
     observation, _ = env.reset(seed=int(rng.integers(2**31)))
     for _ in range(steps):
         before = np.array(observation, float)
-        action = np.clip(policy(observation), low, high)
+        action = np.clip(policy(observation), space.low, space.high)
         after, _, terminated, truncated, _ = env.step(action)
         end = bool(terminated or truncated)
         rows.append((before, action.astype(float), np.array(after, float), episode))
@@ -52,23 +57,13 @@ def collect(
     return Transitions(state, taken, after, episodes)
 
 
-def _bounds(space: gym.Space[Any]) -> tuple[FloatArray, FloatArray]:
-    if not isinstance(space, Box) or len(space.shape) != 1:
-        raise BadValueError(f"the actions are {space}; they must be a Box of one axis")
-    return space.low, space.high
-
-
 Wrapper: TypeAlias = gym.Wrapper[FloatArray, FloatArray, FloatArray, FloatArray]
-Environment: TypeAlias = gym.Env[FloatArray, FloatArray]
-RewardOf = Callable[[float, FloatArray, FloatArray], float]
-"""A function that gives a corrected reward, from the environment's reward, the
-policy's action (a,) and the transformed action (a,)."""
 
 
 class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     """An environment's wrapper that passes each action through an action transformer.
 
-    The transformer sees the observation as the state. `info["transformed_action"]` is
+    The transformer sees the observation as the state; `info["transformed_action"]` is
     the action (a,) that the environment was given.
 
     Example:
@@ -83,16 +78,10 @@ class GroundedEnv(Wrapper, gym.utils.RecordConstructorArgs):
     ) -> None:
         """Wrap an environment with Box actions and Box observations of one axis each.
 
-        Args:
-          env: the environment.
-          transformer: changes the actions. No other environment may use it; an
-            environment that is made again from its `spec` gets a copy.
-          reward_of: corrects the reward. If None, the reward is the environment's own,
-            which charges control costs for the transformed action; the SGAT paper
-            charges them for the policy's action.
-
-        Raises:
-          BadValueError: the actions or observations are no Box with one axis.
+        No other environment may use the transformer; an environment that is made again
+        from its `spec` gets a copy. Without `reward_of`, the reward is the
+        environment's own, which charges control costs for the transformed action; the
+        SGAT paper charges them for the policy's action.
         """
         gym.utils.RecordConstructorArgs.__init__(
             self, transformer=transformer, reward_of=reward_of

@@ -8,7 +8,7 @@ draws the numbers of an episode from a law.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TypeAlias
 
 import numpy as np
 
@@ -19,21 +19,6 @@ CHUNK_TICKS = 64
 """Ticks of noise drawn in one call, which is far cheaper than a call for each tick."""
 
 Generators = Sequence[np.random.Generator]
-
-
-class NoiseLaw(Protocol):
-    """Distribution of one robot's noise; a new law needs `dimensions` and `chunk`."""
-
-    @property
-    def dimensions(self) -> int:
-        """d, how many numbers are drawn for a robot at each tick."""
-
-    def chunk(self, generators: Generators) -> FloatArray:
-        """(ticks, n, d) noise of the next ticks, for n robots with a generator each.
-
-        The law chooses the number of ticks. To the last bit, a robot's noise depends
-        only on its own generator, not on the other robots.
-        """
 
 
 @dataclass(frozen=True)
@@ -58,6 +43,10 @@ class WhiteNoise:
         """(CHUNK_TICKS, n, d) noise of the next ticks."""
         shape = (CHUNK_TICKS, self.dimensions)
         return np.stack([g.standard_normal(shape) for g in generators], axis=1)
+
+
+NoiseLaw: TypeAlias = "WhiteNoise | BlockNoise"
+"""Distribution of one robot's noise, which depends only on its own generator."""
 
 
 class NoiseStream:
@@ -102,10 +91,6 @@ def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
     """A child seed for one use; the same parent and number always give the same child.
 
     `SeedSequence.spawn` changes its parent, and so gives another child at each call.
-
-    Example:
-      >>> child_of(np.random.SeedSequence(1), 2).spawn_key
-      (2,)
     """
     return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, use))
 
@@ -122,11 +107,7 @@ class BlockNoise:
     """
 
     def __init__(self, residuals: FloatArray, episode: IntArray, ticks: int) -> None:
-        """Find all blocks of residuals (N, d) within episodes, numbered by (N,).
-
-        Raises:
-          BadValueError: no episode is as long as a block.
-        """
+        """Find all blocks of residuals (N, d) within episodes, numbered by (N,)."""
         starts = np.arange(max(len(residuals) - ticks + 1, 0))
         if ticks >= 1:
             starts = starts[episode[starts] == episode[starts + ticks - 1]]

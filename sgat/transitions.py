@@ -1,6 +1,6 @@
 """Transitions of a world: states, actions, and the states that they led to."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -70,28 +70,18 @@ class Transitions:
         """(N, p) change of the state's first p columns in one tick."""
         return self.next_state - self.state[:, : self.outcomes]
 
-    def joined(self, other: Self) -> "Transitions":
+    def joined(self, other: Self) -> Self:
         """These transitions, then those of `other`, whose episodes get new numbers."""
         theirs = other.episode - other.episode.min() + self.episode.max() + 1
-        return Transitions(
-            np.concatenate([self.state, other.state]),
-            np.concatenate([self.action, other.action]),
-            np.concatenate([self.next_state, other.next_state]),
-            np.concatenate([self.episode, theirs]),
-        )
+        other = replace(other, episode=theirs)
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        return type(self)(*map(np.concatenate, pairs))
 
-    def subset(self, mask: BoolArray) -> "Transitions":
+    def subset(self, mask: BoolArray) -> Self:
         """The transitions that a mask (N,) selects, in the same order."""
-        return Transitions(
-            self.state[mask],
-            self.action[mask],
-            self.next_state[mask],
-            self.episode[mask],
-        )
+        return type(self)(*(array[mask] for array in vars(self).values()))
 
-    def split(
-        self, share: float, rng: np.random.Generator
-    ) -> tuple["Transitions", "Transitions"]:
+    def split(self, share: float, rng: np.random.Generator) -> tuple[Self, Self]:
         """Transitions to learn from, and those of a random share of episodes, held out.
 
         The share is between 0 and 1; at least one episode is on either side.
@@ -107,10 +97,6 @@ def held_out_rows(
 
     Whole episodes (their numbers: (N,)) are held out, because rows of the same episode
     are too similar to separate what is learned from what is tested.
-
-    Raises:
-      BadValueError: there are fewer than two episodes, or the share is not between 0
-        and 1.
     """
     names = np.unique(episode)
     if not 0 < share < 1:

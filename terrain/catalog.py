@@ -36,9 +36,7 @@ def names() -> tuple[str, ...]:
 def configuration(name: str, /, **parameters: object) -> Ground:
     """Choose a family of terrain by name and its parameters, without heights yet.
 
-    Raises:
-      UnknownNameError: there is no such family, or it has no such parameter.
-      BadValueError: a parameter has a value that it cannot take.
+    UnknownNameError for another name or parameter, BadValueError for another value.
 
     Example:
       >>> terrain.configuration("stairs", steps=3).steps
@@ -58,11 +56,8 @@ def make(name: str, /, seed: Seed, **parameters: object) -> Heightfield:
     """Make the ground of a family of terrain; the same seed makes the same ground.
 
     The seed is a whole number of 0 or more, or a NumPy `SeedSequence`; parameters that
-    are not given keep their defaults.
-
-    Raises:
-      UnknownNameError: there is no such family, or it has no such parameter.
-      BadValueError: a parameter or the seed has a value that it cannot take.
+    are not given keep their defaults. UnknownNameError for another name or parameter,
+    BadValueError for another value.
 
     Example:
       >>> terrain.make("lumps", 7, amplitude_m=0.012).heights_m.shape
@@ -80,10 +75,6 @@ class TerrainSpec:
       parameters: parameters of the family of terrain. Defaults are filled in when the
         spec is made, so that it means the same ground even if they change later.
       seed: a whole number of 0 or more.
-
-    Raises:
-      UnknownNameError: there is no such family, or it has no such parameter.
-      BadValueError: a parameter or the seed has a value that it cannot take.
 
     Example:
       >>> spec = TerrainSpec("stairs", {"steps": 3}, seed=1)
@@ -112,23 +103,15 @@ class TerrainSpec:
 
     @classmethod
     def from_json(cls, data: object) -> "TerrainSpec":
-        """Make a spec from an object that `TerrainSpec.to_json` returned.
-
-        Raises:
-          UnknownNameError: there is no such family, or it has no such parameter.
-          BadValueError: the data has another shape, or holds an impossible value.
-        """
+        """Make a spec from an object that `to_json` returned; else GroundwalkError."""
         return from_plain(cls, data, "terrain")
 
 
 def parse(text: str) -> tuple[str, dict[str, Parameter]]:
     """Read a terrain such as `lumps:amplitude_m=0.012,x_range_m=-1:8`.
 
-    The result is the name, and the parameters for `terrain.make` and `TerrainSpec`.
-
-    Raises:
-      UnknownNameError: there is no such terrain, or it has no such parameter.
-      BadValueError: the text has another form, or holds an impossible value.
+    The result is the name, and the parameters for `terrain.make` and `TerrainSpec`;
+    UnknownNameError for another name or parameter, BadValueError for another value.
 
     Example:
       >>> terrain.parse("stairs:steps=3")

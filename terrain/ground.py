@@ -28,11 +28,7 @@ def bounded(default: T, low: float, high: float) -> T:
 
 
 def checked(field: dataclasses.Field[Any], value: Any) -> Parameter:
-    """Convert a value to the Python type of a dataclass field declared with `bounded`.
-
-    Raises:
-      BadValueError: the value has another type, or lies outside of the bounds.
-    """
+    """Convert a value to the type of a field declared with `bounded`, or refuse it."""
     low, high = field.metadata["bounds"]
     span = f"from {low:g} to {high:g}, not {value!r}"
     if isinstance(field.default, tuple):
@@ -64,13 +60,12 @@ class Ladder:
     """A quantity that makes ground hard to walk on, with its mildest and hardest value.
 
     Attributes:
-      quantity: the quantity's name, such as "step height".
-      unit: the quantity's unit: "m", "rad" or "1".
+      quantity: its name, such as "step height".
+      unit: "m", "rad" or "1".
       mildest: mildest value; if the unit is "m", as a share of the robot's leg length.
-      hardest: hardest value, given like `mildest`; smaller than it for quantities such
-        as friction.
-      parameters: function of a value of the quantity (SI units) and the robot's leg
-        length [m] that returns the parameters of the terrain.
+      hardest: hardest value, given like `mildest`; smaller for such as friction.
+      parameters: gives the terrain's parameters from a value of the quantity (SI units)
+        and the robot's leg length [m].
     """
 
     quantity: str
@@ -98,12 +93,8 @@ class Ground(ABC):
       spacing_m: distance between the grid's samples [m].
       start_radius_m: radius of the flat start area [m].
       blend_m: width of the transition from flat ground to the terrain [m].
-      ladders: (class attribute) for the terrain-stress command: ways to make this
-        ground harder step by step, by name; empty for ground that it does not use.
-
-    Raises:
-      BadValueError: a parameter is no number or out of its bounds, the origin is
-        not on the ground, or there would be more than a million samples.
+      ladders: for the terrain-stress command: ways to make this ground harder step by
+        step, by name; empty for ground that it does not use.
 
     Example:
       >>> Waves(amplitude_m=0.02).make(seed=0).x_range_m
@@ -140,32 +131,26 @@ class Ground(ABC):
     def heights(
         self, x_m: FloatArray, y_m: FloatArray, generator: np.random.Generator
     ) -> FloatArray:
-        """Heights (rows, columns) on a grid [m], flat where robots start.
+        """Heights (rows, columns) [m] at world x (1, columns) and y (rows, 1) [m].
 
-        Args:
-          x_m: (1, columns) world x [m].
-          y_m: (rows, 1) world y [m].
-          generator: source of all randomness.
+        They are flat where robots start; all randomness comes from the generator.
         """
 
     def make(self, seed: Seed) -> Heightfield:
-        """Make the heightfield; the same seed makes the same bits every time.
-
-        Raises:
-          BadValueError: the seed is neither a whole number of 0 or more, nor a NumPy
-            `SeedSequence`.
-        """
+        """Make the heightfield; the same seed makes the same bits every time."""
+        if not isinstance(seed, np.random.SeedSequence):
+            seed = np.random.SeedSequence(checked_seed(seed))
+        generator = np.random.Generator(np.random.PCG64(seed))
         x_m, y_m = self._line(self.x_range_m), self._line(self.y_range_m)
-        heights_m = self.heights(x_m[None, :], y_m[:, None], generator_of(seed))
+        heights_m = self.heights(x_m[None, :], y_m[:, None], generator)
         origin_m = (self.x_range_m[0], self.y_range_m[0])
         return Heightfield(heights_m, origin_m, self.spacing_m)
 
     def past_start(self, distance_m: FloatArray) -> FloatArray:
         """Factor from 0 to 1 for the terrain's heights that leaves the start area flat.
 
-        At distances from the world's origin [m], any shape: 0 up to `start_radius_m`, 1
-        from `blend_m` further on, between them the cubic t^2 (3 - 2 t), t = 0 to 1,
-        whose slope is 0 at both ends.
+        By distance from the world's origin [m]: 0 up to `start_radius_m`, 1 from
+        `blend_m` further on, between them the cubic t^2 (3 - 2 t), t = 0 to 1.
         """
         t = np.clip((distance_m - self.start_radius_m) / self.blend_m, 0.0, 1.0)
         return t * t * (3.0 - 2.0 * t)
@@ -189,13 +174,6 @@ class Ground(ABC):
         """Number of grid samples, 2 or more, that cover a range [m] along one axis."""
         cells = math.ceil((range_m[1] - range_m[0]) / self.spacing_m - 1e-6)
         return max(cells, 1) + 1
-
-
-def generator_of(seed: Seed) -> np.random.Generator:
-    """Make a PCG64 generator from a seed, which is checked and not changed."""
-    if not isinstance(seed, np.random.SeedSequence):
-        seed = np.random.SeedSequence(checked_seed(seed))
-    return np.random.Generator(np.random.PCG64(seed))
 
 
 def checked_seed(seed: object) -> int:

@@ -26,10 +26,6 @@ class Heightfield:
       origin_m: world (x, y) of `heights_m[0, 0]` [m].
       spacing_m: distance between neighbouring samples, along x and y [m].
 
-    Raises:
-      BadValueError: there are fewer than 2 x 2 samples, a number is not finite, or the
-        spacing is not positive.
-
     Example:
       >>> Heightfield(np.eye(2), (0.0, 0.0), 0.1).height_at(0.05, 0.0)
       array(0.5)
@@ -87,8 +83,7 @@ class Heightfield:
     def triangles(self) -> IntArray:
         """Corners of all triangles as rows of `vertices_m`, shape (triangles, 3).
 
-        The corners run counter-clockwise seen from above. Each cell has two triangles,
-        divided by the diagonal from its lowest x and y to its highest x and y.
+        The corners run counter-clockwise seen from above.
         """
         rows, columns = self.heights_m.shape
         index = np.arange(rows * columns).reshape(rows, columns)

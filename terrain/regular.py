@@ -44,8 +44,8 @@ class Slope(Ground):
 
     Attributes:
       angle_rad: steepness [rad].
-      heading_rad: direction in which the ground climbs, seen from above, from +x
-        to the left [rad]: 0 is uphill, pi downhill, pi / 2 climbs to the left.
+      heading_rad: direction in which the ground climbs, from +x to the left [rad]: 0 is
+        uphill, pi downhill, pi / 2 climbs to the left.
 
     Example:
       >>> Slope(angle_rad=0.1, heading_rad=math.pi).make(seed=0).height_at(5, 0) < 0
@@ -68,15 +68,11 @@ class Slope(Ground):
         beyond_m = x_m - self.start_radius_m
         within_m = np.clip(beyond_m, 0.0, self.blend_m)
         # The integral of a gradient that grows linearly over the blend.
-        forward_m = within_m**2 / (2.0 * self.blend_m) + np.maximum(
-            beyond_m - self.blend_m, 0.0
-        )
+        level_m = np.maximum(beyond_m - self.blend_m, 0.0)
+        forward_m = within_m**2 / (2.0 * self.blend_m) + level_m
         sideways_m = self.past_start(x_m) * y_m
-        climb_m = (
-            math.cos(self.heading_rad) * forward_m
-            + math.sin(self.heading_rad) * sideways_m
-        )
-        return math.tan(self.angle_rad) * climb_m
+        cosine, sine = math.cos(self.heading_rad), math.sin(self.heading_rad)
+        return math.tan(self.angle_rad) * (cosine * forward_m + sine * sideways_m)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,8 +125,7 @@ class Waves(Ground):
     Attributes:
       amplitude_m: height of the crests and depth of the troughs [m].
       wavelength_m: distance from crest to crest [m]; at least 4 grid spacings.
-      heading_rad: direction from crest to crest, seen from above, from +x to the left
-        [rad]; at 0 the crests lie across the walking direction.
+      heading_rad: direction from crest to crest, from +x to the left [rad].
 
     Example:
       >>> Waves(amplitude_m=0.02, wavelength_m=0.5).make(seed=0).heights_m.max() <= 0.02
@@ -140,10 +135,7 @@ class Waves(Ground):
     ladders: ClassVar[dict[str, Ladder]] = {
         "waves": Ladder(
             *("amplitude", "m", 0.008, 0.12),
-            lambda height_m, leg_m: {
-                "amplitude_m": height_m,
-                "wavelength_m": 1.6 * leg_m,
-            },
+            lambda top_m, leg_m: {"amplitude_m": top_m, "wavelength_m": 1.6 * leg_m},
         )
     }
 

@@ -15,9 +15,8 @@ class Bumps(Ground):
     """Terrain of round bumps at random places, with flat ground between them.
 
     The centres are a Poisson process over the ground. A bump of height h is
-    h (1 - (r / radius_m)^2)^2 at distance r from its centre: level at its top and
-    at its foot. Where bumps overlap the higher one counts: no point is lower
-    than 0 or higher than `height_m`.
+    h (1 - (r / radius_m)^2)^2 at distance r from its centre. Where bumps overlap the
+    higher one counts.
 
     Attributes:
       height_m: largest height of a bump [m]; heights are uniform from 0 to this.
@@ -83,11 +82,10 @@ DEVIATIONS_WITHIN_99_PERCENT = 2.5758293035489004  # +- these hold 99 % of a Gau
 class Lumps(Ground):
     """Terrain of smooth lumps: a Gaussian random field of wavelengths in one octave.
 
-    The field is isotropic: the sum of 256 plane waves of equal amplitude with random
-    directions, phases and wave numbers (the spectral representation of a random field:
-    Shinozuka and Jan, Journal of Sound and Vibration 25, 1972). The sum is a function
-    of x and y, not of the grid: a seed gives the same lumps at any extent and spacing.
-    No lump can be higher than sqrt(2 * 256) rms = 9 amplitudes; in practice 2.
+    The field is the sum of 256 plane waves of equal amplitude with random directions,
+    phases and wave numbers (the spectral representation of a random field: Shinozuka
+    and Jan, Journal of Sound and Vibration 25, 1972). It is a function of x and y, not
+    of the grid: a seed gives the same lumps at any extent and spacing.
 
     The defaults are as hard as the foam under turf of the SGAT paper (section on the
     NAO: 14.66 cm/s, always falls): the gait of the rUNSWift 2014 release (Walk2014) is
@@ -97,9 +95,8 @@ class Lumps(Ground):
     Attributes:
       amplitude_m: 99 % of the ground lies within plus or minus this height [m];
         the rms height is amplitude_m / 2.576.
-      wavelength_m: the middle of the octave [m]: wavelengths reach from
-        wavelength_m / sqrt(2) to wavelength_m * sqrt(2), uniform in their
-        logarithm. At least 4 grid spacings.
+      wavelength_m: the middle of the octave [m], at least 4 grid spacings; wavelengths
+        are uniform in their logarithm.
 
     Example:
       >>> ground = Lumps(amplitude_m=0.012).make(seed=7)
@@ -108,10 +105,7 @@ class Lumps(Ground):
     ladders: ClassVar[dict[str, Ladder]] = {
         "lumps": Ladder(
             *("amplitude", "m", 0.008, 0.08),
-            lambda height_m, leg_m: {
-                "amplitude_m": height_m,
-                "wavelength_m": 0.8 * leg_m,
-            },
+            lambda top_m, leg_m: {"amplitude_m": top_m, "wavelength_m": 0.8 * leg_m},
         )
     }
 

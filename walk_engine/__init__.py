@@ -9,14 +9,12 @@ Example:
 """
 
 from walk_engine.engine import WalkEngine
-from walk_engine.engine_config import EngineConfig
 from walk_engine.gait import PARAMETERS, Gait, Parameter
 from walk_engine.step_plan import Velocity
 from walk_engine.walk_state import WalkState
 
 __all__ = [
     "PARAMETERS",
-    "EngineConfig",
     "Gait",
     "Parameter",
     "Velocity",

@@ -20,12 +20,10 @@ from groundwalk.arrays import FloatArray
 from robots.leg_geometry import LEG_JOINTS, LegChain
 
 STEPS = 5
-"""Number of Gauss-Newton steps, the same for all robots; they start near the solution,
-so that few are enough."""
+"""Number of Gauss-Newton steps, the same for all robots."""
 
 DAMPING = 0.003
-"""Damping d of the Gauss-Newton steps, in leg lengths per radian; it keeps steps finite
-when the leg is straight."""
+"""Damping d of the Gauss-Newton steps, in leg lengths per radian."""
 
 LONGEST_RAD = 0.5
 """Largest change of a joint angle in one Gauss-Newton step [rad]."""
@@ -58,35 +56,26 @@ class ChainLegs:
           (6, 2, n) angles [rad] of yaw, roll, pitch, knee, ankle pitch and ankle roll,
           in the signs and zeros of the robot's joints.
         """
-        start = np.stack(
-            [
-                self._in_chain(chain, by_role_rad[:, side])
-                for side, chain in enumerate(self._chains)
-            ],
-            axis=1,
-        )
+        q = np.empty(by_role_rad.shape)
+        for side, chain in enumerate(self._chains):
+            off = by_role_rad[:, side] - chain.zero_rad[:, None]
+            q[chain.order, side] = chain.signs[:, None] * off
         shift = np.stack([chain.foot_m for chain in self._chains])
         target = ankle_m + (foot @ shift[:, None, :, None])[..., 0]
-        q = start
         for _ in range(STEPS):
             q = q + self._step(q, target, foot)
         return np.stack(
             [q[chain.order, side] for side, chain in enumerate(self._chains)], axis=1
         )
 
-    def _in_chain(self, chain: LegChain, by_role_rad: FloatArray) -> FloatArray:
-        """Angles (6, n) [rad] by role as the joints' own, in the chain's order."""
-        own = chain.signs[:, None] * (by_role_rad - chain.zero_rad[:, None])
-        angles = np.empty_like(own)
-        angles[chain.order] = own
-        return angles
-
     def _step(
         self, q: FloatArray, target_m: FloatArray, foot: FloatArray
     ) -> FloatArray:
         """Change (6, 2, n) of the angles [rad] in one Gauss-Newton step."""
         places, rotations, axes = self._forward(q)
-        error = self._error(places[-1], rotations, target_m, foot)
+        shift = (target_m - places[-1]) / self._length_m
+        turn = np.cross(rotations, foot, axis=-2).sum(axis=-1) / 2
+        error = np.concatenate([shift, turn], axis=-1)
         arms = (places[-1] - places) / self._length_m
         jacobian = np.concatenate([np.cross(axes, arms), axes], axis=-1)
         jacobian = np.moveaxis(jacobian, 0, -1)  # (2, n, 6, joints)
@@ -95,17 +84,6 @@ class ChainLegs:
         step = across @ np.linalg.solve(square, error[..., None])
         step = np.clip(step[..., 0], -LONGEST_RAD, LONGEST_RAD)
         return np.moveaxis(step, -1, 0)
-
-    def _error(
-        self,
-        place_m: FloatArray,
-        rotation: FloatArray,
-        target_m: FloatArray,
-        foot: FloatArray,
-    ) -> FloatArray:
-        shift = (target_m - place_m) / self._length_m
-        turn = np.cross(rotation, foot, axis=-2).sum(axis=-1) / 2
-        return np.concatenate([shift, turn], axis=-1)
 
     def _forward(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Joints (6, 2, n, 3) [m], feet's rotations (2, n, 3, 3), axes (6, 2, n, 3)."""

@@ -1,4 +1,12 @@
-"""The walk engine: turns velocity requests and sensor readings into joint commands."""
+"""The walk engine: turns velocity requests and sensor readings into joint commands.
+
+Gyroscope feedback to the ankles balances the robots. Turning rates are positive about
+the torso's axes (x forward, y left, z up), ankle angles about the same axes when the
+leg is straight. A torso that pitches forward has a positive rate about y; a positive
+ankle pitch turns the toes down, so that the pressure moves forward under the foot and
+pushes back. A torso that rolls to its right has a positive rate about x, and a positive
+ankle roll turns the foot's right edge down. Both terms therefore have a positive sign.
+"""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
@@ -9,14 +17,13 @@ import numpy.typing as npt
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadValueError
 from robots.leg_geometry import FOOT_SENSORS, Biped
-from walk_engine.balance import feedback_share, low_pass, weight_of_new
-from walk_engine.engine_config import WALK2014_CONFIG, EngineConfig
+from walk_engine.engine_config import EngineConfig
 from walk_engine.feet import resting_feet
 from walk_engine.gait import PARAMETERS, Gait, stack
 from walk_engine.posture import Limits, Posture
 from walk_engine.step_plan import Velocity
 from walk_engine.stepper import Progress, Stepper, select
-from walk_engine.walk_state import StateArray
+from walk_engine.walk_state import StateArray, WalkState
 
 
 class _Memory(NamedTuple):
@@ -47,7 +54,6 @@ class WalkEngine:
         tick_s: float = 0.01,
         *,
         first_swing: Literal["left", "right"] = "left",
-        config: EngineConfig = WALK2014_CONFIG,
     ) -> None:
         """Make an engine whose robots are crouched and ready to walk.
 
@@ -57,11 +63,6 @@ class WalkEngine:
             they are scaled to the robot's size.
           tick_s: time between two calls of `step` [s].
           first_swing: the foot that swings first.
-          config: constants that are the same for all gaits, for the NAO; scaled, too.
-
-        Raises:
-          BadValueError: no gait is given, a gait is out of bounds, the tick is not
-            positive, or `first_swing` is neither "left" nor "right".
         """
         if not (np.isfinite(tick_s) and tick_s > 0):
             raise BadValueError(f"the tick is {tick_s} s; it must be positive")
@@ -69,7 +70,7 @@ class WalkEngine:
             raise BadValueError(
                 f"first_swing is {first_swing!r}; use 'left' or 'right'"
             )
-        config = config.scaled(biped.scale)
+        config = EngineConfig().scaled(biped.scale)
         self._gait = {
             parameter.name: values * biped.scale.of(parameter.unit)
             for parameter, values in zip(PARAMETERS, stack(gaits).T.copy(), strict=True)
@@ -79,10 +80,11 @@ class WalkEngine:
         self._stepper = Stepper(biped, self._gait, tick_s, config)
         self._posture = Posture(biped, self._gait, config)
         self._limits = Limits(biped, tick_s, config.speed_fraction)
-        self._gain_s = np.stack(
-            (self._gait["gyro_sagittal"], self._gait["gyro_coronal"])
-        )
-        self._new_rate_weight = weight_of_new(self._gait, tick_s, config)
+        gains_s = self._gait["gyro_sagittal"], self._gait["gyro_coronal"]
+        self._gain_s = np.stack(gains_s)
+        # The low-pass filter has the same time constant whatever the tick.
+        kept = 1.0 - self._gait["gyro_filter"]
+        self._new_rate_weight = 1.0 - kept ** (tick_s / config.gyro_filter_tick_s)
         self.reset()
 
     @property
@@ -131,17 +133,14 @@ class WalkEngine:
         Args:
           request: requested velocities; they are read when a step begins.
           gyroscope_rad_s: (n, 3) turning rates of the torso about its x (forward),
-            y (left) and z (up) axes [rad/s].
-          foot_force_n: (n, 8) readings of the force sensors [N]: left foot front left,
+            y (left) and z (up) axes.
+          foot_force_n: (n, 8) readings of the force sensors: left foot front left,
             front right, rear left, rear right, then the right foot.
           active: (n,) whether a robot takes part; by default all do. Time stands still
             for the others, whose last command is repeated.
 
         Returns:
           (n, joints) joint position commands [rad], a new array.
-
-        Raises:
-          BadValueError: an array does not have its shape.
         """
         self._check_shapes(request, gyroscope_rad_s, foot_force_n, active)
         before = self._memory
@@ -149,9 +148,10 @@ class WalkEngine:
             before.progress, request, foot_force_n.T.copy()
         )
         measured = np.stack((gyroscope_rad_s[:, 1], gyroscope_rad_s[:, 0]))
-        rate = low_pass(before.rate_rad_s, measured, self._new_rate_weight)
-        share = feedback_share(progress.state, progress.support)
-        ankle_rad = (self._gain_s * rate)[:, None] * share
+        rate = before.rate_rad_s + self._new_rate_weight * (
+            measured - before.rate_rad_s
+        )
+        ankle_rad = (self._gain_s * rate)[:, None] * _feedback_share(progress)
         target = self._posture.targets(feet, down, ankle_rad)
         command = self._limits.towards(before.command_rad, target)
         now = _Memory(progress, rate, command)
@@ -175,6 +175,15 @@ class WalkEngine:
         given = vars(request).items()
         wanted += [(name, value, robots) for name, value in given if np.ndim(value)]
         for name, array, shape in wanted:
-            if np.shape(array) != shape:
-                found = np.shape(array)
+            if (found := np.shape(array)) != shape:
                 raise BadValueError(f"{name} has shape {found}; it must be {shape}")
+
+
+def _feedback_share(now: Progress) -> FloatArray:
+    """Factor (2, n), 0 or 1, of the gyroscope feedback to each ankle: left, then right.
+
+    During a step only the ankle of the support foot gets feedback, in the state READY
+    none, in all other states both.
+    """
+    both, support = np.where(now.state == WalkState.READY, 0.0, 1.0), now.support
+    return np.where(support == 0, both, np.stack((support > 0, support < 0)))

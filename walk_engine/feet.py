@@ -65,16 +65,10 @@ def feet_in_step(
     leg_height_m: FloatArray,
     config: EngineConfig,
 ) -> Feet:
-    """Positions of the feet at times (n,) [s] since the step began.
+    """Positions of the feet at times (n,) [s] since the step began at `origin`.
 
-    Args:
-      time_s: (n,) time since the step began [s].
-      plan: the planned step.
-      origin: positions of the feet when the step began.
-      left_swings: (n,) whether the left foot swings.
-      gait: values of the n robots by gait parameter.
-      leg_height_m: (n,) height of the hip above the ankle with both feet down [m].
-      config: the engine's constants.
+    `left_swings` (n,) says whether the left foot swings; `leg_height_m` (n,) is the
+    height of the hip above the ankle with both feet down [m].
     """
     swings = np.stack((left_swings, ~left_swings))
     progress = parabolic_step(time_s, plan.period_s)
@@ -85,22 +79,16 @@ def feet_in_step(
     quarter_m = np.where(swings, -plan.forward_m, plan.forward_m) / 4
     rise = parabolic_return(warped_phase(phase, gait["lift_apex_phase"]))
     side = np.where(left_swings, 1.0, -1.0)
+    outward_m = np.maximum(side * plan.left_m, 0.0)
+    step = np.arctan(outward_m * progress / leg_height_m)
     return Feet(
         behind_m=origin.behind_m + (quarter_m - origin.behind_m) * travel,
         lift_m=np.where(swings, plan.lift_m * rise, 0.0),
-        opening_rad=_opening(side * plan.left_m, progress, origin, leg_height_m),
+        opening_rad=0.5 * step + origin.opening_rad * (1.0 - progress),
         toe_out_rad=_toe_out(side * plan.turn_rad, progress, origin, config),
         com_offset_m=origin.com_offset_m
         + (plan.com_offset_m - origin.com_offset_m) * phase,
     )
-
-
-def _opening(
-    outward_m: FloatArray, progress: FloatArray, origin: Feet, leg_height_m: FloatArray
-) -> FloatArray:
-    """Outward turn (n,) of the legs [rad]; `outward_m` is a cycle's side step."""
-    step = np.arctan(np.maximum(outward_m, 0.0) * progress / leg_height_m)
-    return 0.5 * step + origin.opening_rad * (1.0 - progress)
 
 
 def _toe_out(

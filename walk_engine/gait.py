@@ -26,8 +26,7 @@ class Parameter:
       name: its name in a `Gait` and in JSON.
       unit: SI unit, "1" for a plain number.
       default: the value of Walk2014, or the value that leaves Walk2014 unchanged.
-      low: smallest value that a gait may have.
-      high: largest value that a gait may have.
+      low, high: smallest and largest value that a gait may have.
       meaning: its effect on the walk.
       source: origin of the default and the bounds.
 
@@ -127,18 +126,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         source="none in Walk2014; 0.025 and 0.055 in HULKs",
     ),
 )
-"""The 16 parameters of a gait, in the order of the values in a gait's vector.
-
-Example:
-  >>> PARAMETERS[0].name
-  'step_period'
-"""
+"""The 16 parameters of a gait, in the order of the values in a gait's vector."""
 
 NAMES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS)
 """Names of the 16 gait parameters, in the order of `PARAMETERS`."""
 
-
-__all__ = ["NAMES", "PARAMETERS", "Gait", "Parameter", "from_unit", "stack", "to_unit"]
 
 _LOW = np.array([parameter.low for parameter in PARAMETERS])
 _HIGH = np.array([parameter.high for parameter in PARAMETERS])
@@ -172,12 +164,7 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def from_vector(cls, vector: npt.ArrayLike) -> "Gait":
-        """Make a gait from an array (16,) of its values in the order of `PARAMETERS`.
-
-        Raises:
-          BadValueError: the number of values is wrong or a value is out of bounds; the
-            message names the first such parameter.
-        """
+        """Make a gait from an array (16,) of values in the order of `PARAMETERS`."""
         values = np.asarray(vector, dtype=np.float64)
         if values.ndim != 1:
             raise BadValueError(f"a gait vector has 1 axis, {values.ndim} were given")
@@ -185,12 +172,7 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, float]) -> "Gait":
-        """Make a gait from the values of all parameters, by name.
-
-        Raises:
-          UnknownNameError: no parameter has one of the names.
-          BadValueError: a parameter is missing, not a number or out of bounds.
-        """
+        """Make a gait from the values of all parameters, by name."""
         for name in values:
             if name not in NAMES:
                 raise UnknownNameError("gait parameter", name, NAMES)
@@ -201,11 +183,7 @@ class Gait(Mapping[str, float]):
 
     @classmethod
     def load(cls, path: Path) -> "Gait":
-        """Read a gait from a JSON file: `{"gait": {name: value}}` or `{name: value}`.
-
-        Raises:
-          BadValueError: the file cannot be read or holds no gait; the message says why.
-        """
+        """Read a JSON file with `{"gait": {name: value}}` or `{name: value}`."""
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
@@ -246,11 +224,7 @@ class Gait(Mapping[str, float]):
 
 
 def stack(gaits: Sequence[Gait] | FloatArray) -> FloatArray:
-    """Put n gaits, or rows of values to be checked, into one (n, 16) array.
-
-    Raises:
-      BadValueError: no gait is given, or a value is out of bounds.
-    """
+    """Put n gaits, or rows of values to be checked, into one (n, 16) array."""
     rows = [
         gait if isinstance(gait, Gait) else Gait.from_vector(gait) for gait in gaits
     ]

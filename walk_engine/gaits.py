@@ -19,10 +19,7 @@ def names() -> tuple[str, ...]:
 
 
 def get(name: str) -> Gait:
-    """Look up a built-in gait by its name.
-
-    Raises:
-      UnknownNameError: no gait has this name.
+    """Look up a built-in gait by its name; else UnknownNameError.
 
     Example:
       >>> get("start")["max_forward"]

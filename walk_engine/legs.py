@@ -1,4 +1,4 @@
-"""Inverse kinematics, in closed form, of a leg whose joint axes meet.
+"""Inverse kinematics of both legs, in closed form if a leg's joint axes meet.
 
 The equations are for the left leg. For the right one, mirror y of the target and both
 roll angles (`MIRROR`).
@@ -41,9 +41,9 @@ def inverse(
 
     Args:
       leg: lengths and axes of the left leg.
-      yaw_rad: (...) angle of the yaw joint [rad].
-      ankle_m: (3, ...) target of the ankle in the torso's frame [m].
-      tilt_rad: (...) forward lean of the torso relative to the level sole [rad].
+      yaw_rad: (...) angle of the yaw joint.
+      ankle_m: (3, ...) target of the ankle in the torso's frame.
+      tilt_rad: (...) forward lean of the torso relative to the level sole.
 
     Returns:
       (6, ...) yaw, roll, pitch, knee, ankle pitch and ankle roll [rad].

@@ -21,9 +21,8 @@ class Posture:
         self._legs = Legs(biped)
         self._shoulder_roll_rad = config.shoulder_roll_rad
         self._below_hip_m = leg.hip_m[0] + biped.ankles_ahead_m
-        self._standing_m = leg.ankle_height_m + config.stretch * (
-            leg.thigh_m + leg.tibia_m
-        )
+        straight_m = leg.thigh_m + leg.tibia_m
+        self._standing_m = leg.ankle_height_m + config.stretch * straight_m
         low, high = biped.joint_range_rad.T
         self._rest_rad = np.clip(0.0, low, high)
 
@@ -95,9 +94,6 @@ class Limits:
         return np.clip(target_rad, self._low_rad, self._high_rad)
 
     def towards(self, before_rad: FloatArray, target_rad: FloatArray) -> FloatArray:
-        """Move from the last commands towards targets as fast as the motors allow.
-
-        Commands and targets are (joints, n) [rad].
-        """
+        """Move from commands towards targets (joints, n) as fast as motors allow."""
         change = self.within_range(target_rad) - before_rad
         return before_rad + np.clip(change, -self._change_rad, self._change_rad)

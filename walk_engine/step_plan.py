@@ -19,9 +19,9 @@ class Velocity:
     `max_forward` or the engine's limits are clipped: infinity means as fast as allowed.
 
     Attributes:
-      forward_m_s: speed in the direction in which the robot faces [m/s].
-      left_m_s: speed to its left [m/s].
-      turn_rad_s: rate of turn to the left [rad/s].
+      forward_m_s: speed in the direction in which the robot faces.
+      left_m_s: speed to its left.
+      turn_rad_s: rate of turn to the left.
       stand: True asks to halt and to straighten the legs, whatever the velocity.
 
     Example:
@@ -111,8 +111,7 @@ def plan_step(
     The first step (`starting`, (n,)) only rocks the robot: it lifts a foot, less high
     than a later step, and covers no distance. The turn of the hip yaw joints follows
     without slip: the foot turns by the z component of the joint's axis, and each degree
-    is used twice in a cycle. (rUNSWift's Walk2014 multiplies turns by 1.43, as feet
-    slip.)
+    is used twice in a cycle.
     """
     share = np.abs(speeds.left_m_s) / config.max_left_m_s
     period_s = gait["step_period"] + config.side_step_extra_s * share

@@ -113,15 +113,8 @@ class Stepper:
         """
         now = self._begin(before, request)
         time_s = now.ticks * self._tick_s
-        feet = feet_in_step(
-            time_s,
-            now.plan,
-            now.origin,
-            now.left_swings,
-            self._gait,
-            self._leg_height_m,
-            self._config,
-        )
+        own = self._gait, self._leg_height_m, self._config
+        feet = feet_in_step(time_s, now.plan, now.origin, now.left_swings, *own)
         feet = select(is_stepping(now.state), feet, self._resting)
         down = crouched(now.state, time_s, self._config.posture_s)
         sensing = sense(now.sensing, force_n, self._lateral_m, self._config)
@@ -147,13 +140,9 @@ class Stepper:
     ) -> Progress:
         """End a tick: update robots whose step, crouching or rising is over."""
         config, period_s = self._config, now.plan.period_s
-        changes = step_is_over(
-            time_s,
-            period_s,
-            crossed(now.sensing, sensing),
-            self._gait["switch_min_phase"],
-            config,
-        )
+        has_crossed = crossed(now.sensing, sensing)
+        least = self._gait["switch_min_phase"]
+        changes = step_is_over(time_s, period_s, has_crossed, least, config)
         # The last step ends when both feet are down side by side.
         stops = time_s >= period_s
         steps = is_stepping(now.state)

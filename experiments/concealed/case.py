@@ -3,7 +3,6 @@
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -41,15 +40,9 @@ def case_name(number: int) -> str:
 def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
     """Make one case: write its truth (the hidden effects), then its complete folder.
 
-    Args:
-      cases: folder of all cases.
-      truths: folder for the truths; gets a file such as `case_000.json`.
-      seed: seed of the set of cases.
-      number: number of the case.
-
-    Raises:
-      GroundwalkError: in every attempt the robot fell, or no size of the effect was as
-        visible in the recordings as the level that was drawn demands.
+    `cases` and `truths` are the folders of all cases and truths, `seed` is that of the
+    set. GroundwalkError if in every attempt the robot fell, or no size of the effect
+    was as visible in the recordings as the level that was drawn demands.
     """
     for attempt in range(_ATTEMPTS):
         maker = _Maker(seed, number, attempt)
@@ -66,15 +59,6 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
     maker.write(unfinished)
     write_text(truths / f"{name}.json", json.dumps(maker.truth(), indent=1) + "\n")
     unfinished.rename(cases / name)
-
-
-@dataclass(frozen=True, eq=False)
-class _Made:
-    """A simulated motion, its index in the case, and the effects hidden in it."""
-
-    motion: int
-    run: Run
-    effects: Sequence[Hidden]
 
 
 class _Maker:
@@ -94,26 +78,26 @@ class _Maker:
         self._motion = CaseMotion.drawn(
             self._sort.plant, self._sort.kind == "unexcited", jitter_s, rng(4)
         )
-        self._reference: list[_Made] = []
-        self._runs: list[_Made] = []
+        self._reference: dict[int, Run] = {}
+        self._runs: dict[int, Run] = {}
         self._hidden: Concealed | None = None
 
     def run(self) -> bool:
         """Simulate all motions; False if the robot fell or no effect size fits."""
         motion, engine = self._motion, self._sort.engine
         if motion.plant.floating:
-            self._reference = [self._move(number, (), engine) for number in REFERENCES]
-            nominal = [made.run for made in self._reference]
+            self._reference = {i: self._move(i, (), engine) for i in REFERENCES}
+            nominal = list(self._reference.values())
         else:
-            nominal = [self._move(0, (), "mujoco", _SCALE_STEP_S).run]
+            nominal = [self._move(0, (), "mujoco", _SCALE_STEP_S)]
         if not all(run.ok for run in nominal):
             return False
         self._hidden = self._concealed(scales(motion.plants[0], nominal))
         if self._hidden is None:
             return False
         for number in range(len(motion.names)):
-            self._runs.append(self._move(number, self._hidden.effects, engine))
-            if not self._runs[-1].run.ok:
+            self._runs[number] = self._move(number, self._hidden.effects, engine)
+            if not self._runs[number].ok:
                 return False
         return True
 
@@ -121,9 +105,8 @@ class _Maker:
         """Draw the hidden effects with their sizes; None if no size fits.
 
         A single effect on a fixed base gets the size at which the recordings carry the
-        drawn information about it (log-likelihood gain in nats). Other sizes are drawn
-        directly: on a robot that stands or walks, tiny differences of motion grow into
-        large ones, so that this information says little.
+        drawn information about it. Other sizes are drawn directly: on a robot that
+        stands or walks, tiny differences grow, so that this information says little.
         """
         motion = self._motion
         case = self._sort, motion.plant, does, motion.places, motion.duration_s
@@ -144,7 +127,7 @@ class _Maker:
     def _trials(self, effects: Sequence[Hidden]) -> list[Run]:
         """Simulate all motions in coarse physics steps, to find an effect's size."""
         return [
-            self._move(number, effects, self._sort.engine, _SCALE_STEP_S).run
+            self._move(number, effects, self._sort.engine, _SCALE_STEP_S)
             for number in range(len(self._motion.names))
         ]
 
@@ -154,11 +137,10 @@ class _Maker:
         effects: Sequence[Hidden],
         engine: str,
         step_s: float | None = None,
-    ) -> _Made:
+    ) -> Run:
         plant, clock = self._motion.plants[number], self._motion.clock(number, step_s)
         start_rad, feed = self._motion.feed(number)
-        run = run_hidden(plant, effects, engine, clock, feed, start_rad, self._ground)
-        return _Made(number, run, effects)
+        return run_hidden(plant, effects, engine, clock, feed, start_rad, self._ground)
 
     def write(self, folder: Path) -> None:
         """Write the model without hidden effects, and the recordings, into a folder."""
@@ -170,18 +152,19 @@ class _Maker:
         base = "floating" if plant.floating else "fixed"
         content = json.dumps({"robot": robot, "base": base}, indent=1)
         write_text(folder / PLANT_FILE, content + "\n")
-        for name, every in ((RECORDINGS, self._runs), (REFERENCE, self._reference)):
-            for made in every:
-                self._write(folder / name, made, robot, base)
-
-    def _write(self, folder: Path, made: _Made, robot: str, base: str) -> None:
-        plant = self._motion.plants[made.motion]
-        metadata = RecordingMetadata(robot, base, _SOURCE, servo=plant.servo)
-        recording = hidden_recording(
-            plant, made.run, made.effects, self._sensors, self._noise, metadata
-        )
-        name = f"{made.motion}_{self._motion.names[made.motion]}.parquet"
-        write_recording(recording, folder / name)
+        hidden = self._hidden.effects if self._hidden else ()
+        for part, runs, effects in (
+            (RECORDINGS, self._runs, hidden),
+            (REFERENCE, self._reference, ()),
+        ):
+            for number, run in runs.items():
+                plant = self._motion.plants[number]
+                metadata = RecordingMetadata(robot, base, _SOURCE, servo=plant.servo)
+                recording = hidden_recording(
+                    plant, run, effects, self._sensors, self._noise, metadata
+                )
+                name = f"{number}_{self._motion.names[number]}.parquet"
+                write_recording(recording, folder / part / name)
 
     def truth(self) -> dict[str, Any]:
         """The case's entry in the sealed file, such as its kind and hidden effects."""

@@ -43,8 +43,7 @@ CONFUSABLE = (
 _CONFUSABLE_SHARE = 0.6
 """Share of the cases with two or three effects that contain a pair of `CONFUSABLE`."""
 _COMPOUND_EASE = 0.5
-"""Smallest ease (0 hard, 1 easy to see) of the effects in pairs and triples, so that
-each of the effects matters."""
+"""Smallest ease (0 hard, 1 easy to see) of the effects in pairs and triples."""
 _QUANTA_RAD = (0.0015, 2 * np.pi / 2**14)
 """Possible resolutions of the encoders [rad]: of 12 and of 14 bits per turn."""
 _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "none": 0}
@@ -53,13 +52,7 @@ _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "no
 
 @dataclass(frozen=True)
 class CaseSort:
-    """The properties of a case that are drawn before anything is simulated.
-
-    Attributes:
-      plant: a key of `PLANTS`.
-      kind: a key of `CASE_KINDS`.
-      engine: "bullet" or "mujoco".
-    """
+    """What is drawn first: keys of `PLANTS` and `CASE_KINDS`, "bullet" or "mujoco"."""
 
     plant: str
     kind: str
@@ -77,11 +70,9 @@ class CaseSort:
 
 @dataclass(frozen=True, eq=False)
 class Concealed:
-    """The effects hidden in a case.
+    """The effects hidden in a case, with their sizes.
 
-    Attributes:
-      effects: the effects with their sizes.
-      ease: how easy they are to see: 1 is easiest, 0 hard, below 0 even harder.
+    `ease` says how easy they are to see: 1 is easiest, 0 hard, below 0 even harder.
     """
 
     effects: tuple[Hidden, ...]
@@ -112,16 +103,10 @@ def drawn_effects(
     rng: np.random.Generator,
     ease: float | None = None,
 ) -> Concealed:
-    """Draw the effects of a case: their names, places and sizes.
+    """Draw the effects of a case: their names, places (among `joints`) and sizes.
 
-    Args:
-      sort: robot, kind and engine of the case.
-      plant: the robot's model.
-      scales: torques, speeds and ranges of the robot's motion without hidden effects.
-      joints: indices of the joints where effects may be.
-      duration_s: duration of each recording [s].
-      rng: source of random numbers.
-      ease: how easy the effects are to see, 0 to 1; None to draw it.
+    `scales` are torques, speeds and ranges of the motion without hidden effects;
+    `ease` says how easy the effects are to see, 0 to 1; None to draw it.
     """
     drawn = float(rng.uniform())
     if sort.kind in ("pair", "triple"):

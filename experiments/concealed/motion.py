@@ -53,10 +53,10 @@ class CaseMotion:
       names: names of the motions.
       places: indices of the joints at which effects may be hidden.
       moves: (j,) whether each joint is excited.
-      centre_rad: (j,) start pose of a robot with a fixed base [rad].
+      centre_rad: (j,) start pose of a robot with a fixed base.
       rate_hz: ticks per second.
-      spans_s: for each recording, the time before it and its duration [s].
-      jitter_s: largest error of a time stamp [s].
+      spans_s: for each recording, the time before it and its duration.
+      jitter_s: largest error of a time stamp.
       seeds: seed of each motion.
     """
 
@@ -75,11 +75,7 @@ class CaseMotion:
     def drawn(
         cls, plant_name: str, held: bool, jitter_s: float, rng: np.random.Generator
     ) -> "CaseMotion":
-        """Draw tick rate, duration, gains, pose, and the joint that is held still.
-
-        `plant_name` is a key of `draw.PLANTS`; `held` says whether the joint with the
-        hidden effect is held still; `jitter_s` is the largest error of a time stamp.
-        """
+        """Draw tick rate, duration, gains, pose, and the joint that is `held` still."""
         plant, names = _plant(plant_name)
         coupled = plant.description.coupled if plant.description else ()
         tied = {joint for pair in coupled for joint in pair}
@@ -145,10 +141,7 @@ class CaseMotion:
 
 
 def table_feed(command_rad: FloatArray) -> tuple[FloatArray, Feed]:
-    """Turn position targets (ticks, j) [rad] into a start pose and a command function.
-
-    The start pose (j,) is the first row.
-    """
+    """The start pose (j,), the first row of targets (ticks, j) [rad], and a feed."""
     return command_rad[0], lambda row, sense: command_rad[row]
 
 

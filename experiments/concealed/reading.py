@@ -23,10 +23,6 @@ def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
     """Robot model, recordings and reference recordings of a case, not its truth.
 
     Only robots that stand or walk have reference recordings.
-
-    Raises:
-      RunFolderError: the folder holds no case.
-      BadRecordingError: a recording cannot be read.
     """
     path = folder / PLANT_FILE
     if not path.is_file():

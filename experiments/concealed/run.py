@@ -18,7 +18,6 @@ from experiments.runs.folder import PROVENANCE, RunFolder, provenance
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
-from experiments.runs.repeat_command import repeat_command
 from groundwalk.blas import one_blas_thread
 from groundwalk.errors import BadRecordingError, RunFolderError
 from groundwalk.files import write_text
@@ -73,8 +72,7 @@ def _note_code(config: ConcealedRun, kind: str) -> None:
     if missing and answers.has(PROVENANCE):
         answers.note_resumed()
     elif missing == cases:
-        command = {"command": repeat_command(VERB, config)}
-        answers.write_json(PROVENANCE, command | provenance())
+        answers.write_json(PROVENANCE, provenance(VERB, config))
 
 
 def unanswered(folder: Path, kind: str) -> list[Path]:
@@ -96,15 +94,8 @@ def answer_all(
 ) -> None:
     """Write the missing answers; a case that fails does not stop the others.
 
-    Args:
-      folder: folder of the set of cases.
-      kind: subfolder for the answers, such as "answers" or "baselines/bic".
-      answer: returns the verdict on a case; at the top of a module, to be pickled.
-      seed: given to `answer` for every case.
-      threads: number of processes; 0 for one per core.
-
-    Raises:
-      Exception: the error of the first case that failed, once all others are done.
+    `kind` is the subfolder for the answers, such as "baselines/bic". The error of the
+    first case that failed is raised once all others are done.
     """
     missing = unanswered(folder, kind)
     total = len(cases_of(folder))

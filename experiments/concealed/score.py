@@ -30,7 +30,6 @@ from experiments.runs.folder import PROVENANCE, RunFolder, provenance
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
-from experiments.runs.repeat_command import repeat_command
 from groundwalk.files import write_text
 
 VERB = "concealed-score"
@@ -71,9 +70,11 @@ def main(config: ConcealedScore) -> None:
     }
     oracles = consult_all(folder, truth.cases, answers, config.threads)
     score = score_of(truth, answers, oracles)
-    command = {"command": repeat_command(VERB, config)}
-    score["provenance"] = command | provenance()
-    score["answered_by"] = _code_that_answered(folder)
+    score["provenance"] = provenance(VERB, config)
+    answered = RunFolder(folder / ANSWERS)
+    known = answered.has(PROVENANCE)
+    by = Origin.of(answered.read_json(PROVENANCE), {}).commit if known else None
+    score["answered_by"] = by
     write_text(folder / SCORE, json.dumps(score, indent=1) + "\n")
     with extra(FIGURE):
         draw_score(score, folder / FIGURE)
@@ -109,14 +110,6 @@ def score_of(
         **figures.pop(DIAGNOSIS),
         "baselines": figures,
     }
-
-
-def _code_that_answered(folder: Path) -> str | None:
-    """The git commit of the code with which the diagnosis answered; None if unknown."""
-    answers = RunFolder(folder / ANSWERS)
-    if not answers.has(PROVENANCE):
-        return None
-    return Origin.of(answers.read_json(PROVENANCE), {}).commit
 
 
 def consult_all(
@@ -172,9 +165,9 @@ def _kept(
     if not path.is_file():
         return None
     oracle = Oracle.from_json(path.read_text())
-    keys = {method: answer_key(found) for method, found in asked.items()}
     known = {method: key for method, (key, _) in oracle.answered.items()}
-    return oracle if all(known.get(m) == key for m, key in keys.items()) else None
+    same = all(known.get(m) == answer_key(found) for m, found in asked.items())
+    return oracle if same else None
 
 
 if __name__ == "__main__":

@@ -22,13 +22,12 @@ MOST_NATS = 1e5
 """Largest information [nats per recording] that is drawn, in the easiest level, L1."""
 
 SHARES = {"L1": 0.40, "L2": 0.35, "L3": 0.15, "L4": 0.10}
-"""Share of the cases that is drawn for each level. The narrow level L2 gets many cases,
-because the level measured later, by a fit of the true effects, is often another one."""
+"""Share of the cases that is drawn for each level; the level measured later, by a fit
+of the true effects, is often another one."""
 
 KEPT = 0.6
-"""Share of the information [nats] that a diagnosis can use: it replays short windows
-with fitted start states, which absorb a part of the difference. A rough value suffices,
-because the level of a case is measured later."""
+"""Rough share of the information [nats] that a diagnosis can use: it replays short
+windows with fitted start states, which absorb a part of the difference."""
 
 LEAST_EASE, MOST_EASE = -2.0, 1.0
 """Range of the search for the ease, a measure of an effect's size from 0 (hard to see)
@@ -65,9 +64,8 @@ def level_of(nats_per_recording: float) -> str:
 def nats(nominal: Sequence[Run], runs: Sequence[Run], sensors: HiddenSensors) -> float:
     """Information [nats] about hidden effects in motions, compared with nominal ones.
 
-    It is the median over the recordings, because an effect that only one of them shows
-    can be neither learned from the others nor confirmed there. It is infinite if a
-    simulation diverged. The encoder noise of `sensors` is the unit of differences.
+    It is the median over the recordings, and infinite if a simulation diverged. The
+    encoder noise of `sensors` is the unit of differences.
     """
     if not all(run.ok for run in runs):
         return math.inf
@@ -88,12 +86,8 @@ def ease_that_tells(
     method on the logarithm of the nats over the ease, which is nearly linear, because
     sizes are exponential in the ease and nats proportional to the square of a size.
     Trials stay between those with too few and too many nats, because a torque limit or
-    an end stop gives no nats at all until it is reached.
-
-    Args:
-      wanted: nats per recording.
-      told: returns the nats at an ease; each call simulates all motions of a case.
-      first: the ease of the first trial.
+    an end stop gives no nats at all until it is reached. `told` returns the nats per
+    recording at an ease; the `first` trial is at this one.
     """
     goal = math.log(wanted)
     tried: dict[float, float] = {}

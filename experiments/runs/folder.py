@@ -27,7 +27,6 @@ PACKAGES = (
 FILE_ENDS = frozenset({".toml", ".urdf", ".xml", ".json"})
 """Endings by which an option's text, such as --robot, is known to be a file name."""
 
-_CODE = ("commit", "changed")
 _SOURCES = (":(top)", ":(top,exclude)docs/results")
 """Files that git checks for uncommitted changes: all but the stored results, which do
 not change the code (a pathspec of git)."""
@@ -39,8 +38,7 @@ class RunFolder:
     """The folder in which a run keeps its configuration, state and results.
 
     Example:
-      >>> folder = RunFolder.at(Path("runs/mine"))
-      >>> scores = folder.read_json("result.json")
+      >>> scores = RunFolder.at(Path("runs/mine")).read_json("result.json")
     """
 
     def __init__(self, path: Path) -> None:
@@ -49,11 +47,7 @@ class RunFolder:
         self._lock: FolderLock | None = None
 
     def lock(self) -> None:
-        """Keep other processes out of the folder for as long as this object lives.
-
-        Raises:
-          RunFolderError: another process writes into the folder.
-        """
+        """Keep other processes out of the folder for as long as this object lives."""
         self._lock = FolderLock.of(self.path)
 
     @classmethod
@@ -62,9 +56,6 @@ class RunFolder:
 
         `config` is a dataclass of options with `out` and `seed`; if `out` is None, the
         folder is `runs/<verb>/<date>_<time>_s<seed>`.
-
-        Raises:
-          RunFolderError: the folder exists already.
         """
         path = config.out
         if path is None:
@@ -75,17 +66,12 @@ class RunFolder:
         folder = cls(path)
         folder.lock()
         folder.write_json(CONFIG, {"verb": verb, **to_plain(with_whole_paths(config))})
-        command = {"command": repeat_command(verb, config)}
-        folder.write_json(PROVENANCE, command | provenance())
+        folder.write_json(PROVENANCE, provenance(verb, config))
         return folder
 
     @classmethod
     def at(cls, path: Path, verb: str | None = None) -> Self:
-        """Open the folder of an earlier run, made by the verb if one is given.
-
-        Raises:
-          RunFolderError: it is no run folder, or another verb has made it.
-        """
+        """Open the folder of an earlier run, made by the verb if one is given."""
         if not (path / CONFIG).is_file():
             raise RunFolderError(f"{path} is no run folder: it holds no {CONFIG}")
         folder = cls(path)
@@ -98,8 +84,8 @@ class RunFolder:
         """Add the version of the code that resumes the run to its provenance.json."""
         began = self.read_json(PROVENANCE)
         known = [began, *began.get("resumed", [])]
-        now = {key: value for key, value in provenance().items() if key in _CODE}
-        if all(now != {key: one.get(key) for key in _CODE} for one in known):
+        now = _code()
+        if all(now != {key: one.get(key) for key in now} for one in known):
             began["resumed"] = [*known[1:], now]
             self.write_json(PROVENANCE, began)
 
@@ -112,11 +98,7 @@ class RunFolder:
         write_text(self.path / name, content)
 
     def read_json(self, name: str) -> dict[str, Any]:
-        """Read a JSON file whose content is an object (a dict).
-
-        Raises:
-          RunFolderError: the file is missing, damaged or holds no object.
-        """
+        """Read a JSON file whose content is an object (a dict); else RunFolderError."""
         path = self.path / name
         try:
             content = json.loads(path.read_text())
@@ -159,23 +141,10 @@ def open_run(verb: str, config: Config, may_grow: str = "") -> tuple[RunFolder, 
     The folder is locked: no other process can open the run until this one ends or
     forgets the folder.
 
-    Args:
-      verb: the verb that runs, as on the command line.
-      config: the verb's options, a frozen dataclass. A resumed run keeps the options
-        that it was started with.
-      may_grow: name of an option that may be larger when the run is resumed. If it is,
-        the result is deleted, so that the run continues beyond its former end.
-
-    Returns:
-      The folder, and the options to use, with absolute paths.
-
-    Raises:
-      RunFolderError: a new run's folder exists, a resumed one's does not, or another
-        process uses it.
-      BadValueError: a resumed run is given another value of an option.
-
-    Example:
-      >>> folder, config = open_run("evaluate", Evaluate(gaits=("start",)))
+    `config` is a frozen dataclass of options; a resumed run keeps those that it was
+    started with, and refuses others. The option `may_grow` may be larger when the run
+    is resumed: the result is then deleted, so that the run continues beyond its former
+    end. The result is the folder, and the options to use, with absolute paths.
     """
     config = with_whole_paths(config)
     if config.resume is None:
@@ -242,17 +211,23 @@ def to_plain(config: Any) -> dict[str, Any]:
     return {one.name: plain[one.name] for one in options_of(config)}
 
 
-def provenance() -> dict[str, Any]:
-    """Versions of the code and its packages, the platform, and the command line."""
+def provenance(verb: str, config: Any) -> dict[str, Any]:
+    """Command that repeats a run, platform, versions of the code and its packages."""
     return {
+        "command": repeat_command(verb, config),
         "groundwalk": __version__,
         "python": platform.python_version(),
         "platform": platform.platform(),
         "arguments": sys.argv[1:],
         "packages": {name: _version(name) for name in PACKAGES},
-        "commit": _git("rev-parse", "HEAD"),
-        "changed": _git("status", "--porcelain", "--", *_SOURCES),
+        **_code(),
     }
+
+
+def _code() -> dict[str, str | None]:
+    """Git commit of the code, and its files with uncommitted changes."""
+    changed = _git("status", "--porcelain", "--", *_SOURCES)
+    return {"commit": _git("rev-parse", "HEAD"), "changed": changed}
 
 
 def _version(package: str) -> str | None:

@@ -4,7 +4,7 @@ import io
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from experiments.runs.progress import progress
-from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
 from worlds.scenes.camera import Image
 from worlds.scenes.colours import FALL, SKY, accent
@@ -42,10 +41,9 @@ class Film:
 
     Attributes:
       scenes: the walks, from left to right.
-      size_px: width and height of each walk's picture [pixels].
-      start_s: first moment [s]; None to show the fall or, without a fall, the middle of
-        the walk.
-      duration_s: length of the part that is shown [s].
+      size_px: width and height of each walk's picture.
+      start_s: first moment; None to show the fall or, without one, the walk's middle.
+      duration_s: length of the part that is shown.
       with_balance: whether forces, support polygon, ZMP and centre of mass are drawn.
     """
 
@@ -106,43 +104,36 @@ def strip_bytes(film: Film, frames: int) -> bytes:
     If the film's `start_s` is None, each row has its own start, chosen so that the last
     picture shows the fall.
     """
+    from PIL import Image as Pillow
+
     rows = []
     with progress("pictures", len(film.scenes) * frames) as bar:
         for index, scene in enumerate(film.scenes):
+            start_s, stop_s = film.shown_s([scene])
+            stop_s = min(stop_s, float(scene.recording.time_s[-1]))
             row = []
-            for time_s in _strip_times_s(film, scene, frames):
+            for time_s in np.linspace(min(start_s, stop_s), stop_s, frames):
                 row.append(film.titled(index, time_s))
                 bar.advance()
             rows.append(np.hstack(row))
-    return _png(np.vstack(rows))
-
-
-def _strip_times_s(film: Film, scene: Scene, frames: int) -> FloatArray:
-    start_s, stop_s = film.shown_s([scene])
-    stop_s = min(stop_s, float(scene.recording.time_s[-1]))
-    return np.linspace(min(start_s, stop_s), stop_s, frames)
+    file = io.BytesIO()
+    Pillow.fromarray(np.vstack(rows)).save(file, "PNG", optimize=True)
+    return file.getvalue()
 
 
 def film_bytes(film: Film, rate_hz: float, suffix: str) -> bytes:
-    """Make a film (".gif" or ".mp4") of all walks side by side, all at the same time.
-
-    Raises:
-      GroundwalkError: an .mp4 needs the program ffmpeg, which is not installed.
-    """
+    """Make a film (".gif" or ".mp4") of all walks side by side, at the same times."""
     if suffix == ".mp4":
         _ffmpeg()
     start_s, stop_s = film.shown_s(film.scenes)
     times_s = np.arange(start_s, stop_s + 1e-9, 1 / rate_hz)
-    frames = list(_frames(film, times_s))
-    return _mp4(frames, rate_hz) if suffix == ".mp4" else gif_bytes(frames, rate_hz)
-
-
-def _frames(film: Film, times_s: FloatArray) -> Iterator[Image]:
+    frames = []
     with progress("pictures", len(times_s)) as bar:
         for time_s in times_s.tolist():
             shown = [film.titled(index, time_s) for index in range(len(film.scenes))]
-            yield np.hstack(shown)
+            frames.append(np.hstack(shown))
             bar.advance()
+    return _mp4(frames, rate_hz) if suffix == ".mp4" else gif_bytes(frames, rate_hz)
 
 
 def _with_title(
@@ -161,14 +152,6 @@ def _with_title(
     return np.vstack([np.asarray(line), picture])
 
 
-def _png(picture: Image) -> bytes:
-    from PIL import Image as Pillow
-
-    file = io.BytesIO()
-    Pillow.fromarray(picture).save(file, "PNG", optimize=True)
-    return file.getvalue()
-
-
 def gif_bytes(frames: Sequence[Image], rate_hz: float) -> bytes:
     """Make a GIF file of all frames, with fewer colours if it is above `GIF_BYTES`.
 
@@ -184,9 +167,7 @@ def gif_bytes(frames: Sequence[Image], rate_hz: float) -> bytes:
 def _gif_of(frames: Sequence[Image], rate_hz: float, colours: int) -> bytes:
     from PIL import Image as Pillow
 
-    some = np.vstack(
-        [frames[row] for row in range(0, len(frames), 1 + len(frames) // 5)]
-    )
+    some = np.vstack(frames[:: 1 + len(frames) // 5])
     palette = Pillow.fromarray(some).quantize(colours, kmeans=3)
     pictures: list[PIL.Image.Image] = [
         Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE)

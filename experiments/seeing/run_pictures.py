@@ -29,21 +29,11 @@ WIDTH = 0.6
 """Width of a generation's dots and bar, as a share of the distance to the next one."""
 
 
-def draw_search(history: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Draw rewards and falls of a search into a PNG file; see `search_figure`."""
-    write_figure(search_figure(history), path)
-
-
 def search_figure(history: Sequence[Mapping[str, Any]]) -> "Figure":
-    """Draw the rewards and, in a panel below, the share of gaits that fell.
+    """Draw the rewards of a search and, in a panel below, the share of gaits that fell.
 
-    Args:
-      history: the record of each generation of a search: `rewards` [cm/s] and number
-        of `falls` of the gaits tried; `mean_reward` [cm/s] and `mean_fell` (a bool) of
-        the mean gait.
-
-    Raises:
-      BadValueError: there is no generation.
+    The history has of each generation the `rewards` [cm/s] and number of `falls` of the
+    gaits tried, and `mean_reward` [cm/s] and `mean_fell` of the mean gait.
     """
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
@@ -91,16 +81,8 @@ def _draw_tried(axes: "Axes", generation: int, rewards: Sequence[float]) -> None
     count = len(rewards)
     aside = WIDTH * ((np.arange(count) + 0.5) / count - 0.5)
     label = "gaits that were tried" if generation == 0 else None
-    axes.plot(
-        generation + aside,
-        rewards,
-        ".",
-        color=TRIED,
-        alpha=0.45,
-        ms=5.5,
-        mew=0,
-        label=label,
-    )
+    look = {"color": TRIED, "alpha": 0.45, "ms": 5.5, "mew": 0, "label": label}
+    axes.plot(generation + aside, rewards, ".", **look)
 
 
 def _draw_falls(axes: "Axes", history: Sequence[Mapping[str, Any]]) -> None:
@@ -127,9 +109,6 @@ def picture_search(folder: RunFolder) -> Path | None:
     """Draw a run's search, unless the picture is newer than the last generation.
 
     The result is the picture's path; None if the run has no finished generation.
-
-    Raises:
-      RunFolderError: the file with the search's history is damaged.
     """
     history, picture = folder.path / HISTORY, folder.path / SEARCH_PICTURE
     if not history.exists():
@@ -138,5 +117,5 @@ def picture_search(folder: RunFolder) -> Path | None:
         generations = folder.read_json(HISTORY).get("generations")
         if not generations:
             raise RunFolderError(f"{history} holds no generations")
-        draw_search(generations, picture)
+        write_figure(search_figure(generations), picture)
     return picture

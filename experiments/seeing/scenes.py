@@ -31,7 +31,10 @@ def read_recordings(folder: Path) -> dict[str, Recording]:
     The name is "sim/tuned" for the file `sim_tuned.parquet`; those of the sim come
     first.
     """
-    paths = sorted(folder.glob("*.parquet"), key=_order)
+    paths = sorted(
+        folder.glob("*.parquet"),
+        key=lambda path: (not path.stem.startswith("sim"), path.stem),
+    )
     names = scene_names(path.stem.replace("_", "/", 1) for path in paths)
     return dict(zip(names, map(read_with_model, paths), strict=True))
 
@@ -55,9 +58,8 @@ def read_with_model(path: Path) -> Recording:
     """Read a recording; its model file may also be in the folder of the recording."""
     recording = read_recording(path)
     model = path.parent / recording.metadata.robot
-    if not model.suffix or Path(recording.metadata.robot).exists():
-        return recording
-    if not model.is_file():
+    named = Path(recording.metadata.robot)
+    if not model.suffix or named.exists() or not model.is_file():
         return recording
     metadata = dataclasses.replace(recording.metadata, robot=str(model))
     return dataclasses.replace(recording, metadata=metadata)
@@ -76,21 +78,15 @@ def scene_names(texts: Iterable[str]) -> list[str]:
 
 
 def make_scenes(recordings: Mapping[str, Recording]) -> list[Scene]:
-    """Make scenes of recordings by name, with the robot and ground of their metadata.
-
-    Raises:
-      BadRecordingError: a recording's robot or ground is unknown.
-    """
-    return [_scene(name, recording) for name, recording in recordings.items()]
-
-
-def _scene(name: str, recording: Recording) -> Scene:
-    try:
-        description = _robot(recording)
-        ground = _ground(recording.metadata)
-    except (UnknownNameError, BadModelError, BadValueError) as error:
-        raise BadRecordingError(f"recording {name}: {error}") from error
-    return Scene(name, recording, description, ground)
+    """Make scenes of recordings by name, with robot and ground of their metadata."""
+    scenes = []
+    for name, recording in recordings.items():
+        try:
+            robot, ground = _robot(recording), _ground(recording.metadata)
+        except (UnknownNameError, BadModelError, BadValueError) as error:
+            raise BadRecordingError(f"recording {name}: {error}") from error
+        scenes.append(Scene(name, recording, robot, ground))
+    return scenes
 
 
 def _robot(recording: Recording) -> robots.Description:
@@ -113,7 +109,3 @@ def _ground(metadata: RecordingMetadata) -> Heightfield | None:
         return None
     whole = {"parameters": {}, "seed": 0, **metadata.terrain}
     return TerrainSpec.from_json(whole).make()
-
-
-def _order(path: Path) -> tuple[bool, str]:
-    return not path.stem.startswith("sim"), path.stem

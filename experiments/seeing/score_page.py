@@ -6,7 +6,7 @@ from typing import Any
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.reports.statistics import wilson
-from experiments.reports.tables import Scores
+from experiments.reports.tables import Scores, score_rows
 from experiments.runs.folder import RESULT, RunFolder
 from experiments.seeing.run_pictures import SEARCH_PICTURE, WALK_PICTURE
 from walk_engine import PARAMETERS, Gait
@@ -17,8 +17,7 @@ PICTURES = {
 }
 COLUMNS = ("world", "gait", "speed [cm/s] ± s.d.", "falls", "fall rate, 95 % interval")
 MOST_NAMED = 3
-"""Largest number of gaits that the page's answer describes one by one; of more gaits
-it describes only the best."""
+"""Of more gaits than this, the page's answer describes only the best."""
 
 
 def write_page(
@@ -29,11 +28,8 @@ def write_page(
 ) -> None:
     """Write the report page of a run whose result and pictures are written.
 
-    Args:
-      folder: the run's folder.
-      title: the question, as a heading.
-      scores: the fields of a `Score` by world and gait.
-      start: name and gait that the run's search started from; None without a search.
+    The title is the question; `start` is the gait (and its name) that the run's search
+    started from.
     """
     result = folder.read_json(RESULT)
     body = score_lines(scores)
@@ -75,12 +71,10 @@ def _rank(score: Mapping[str, Any]) -> tuple[float, float]:
 def score_lines(scores: Scores) -> list[str]:
     """Markdown table of speeds with s.d. and of falls with Wilson's 95 % interval."""
     rows = []
-    for world, gaits in scores.items():
-        for gait, score in gaits.items():
-            low, high = wilson(score["falls"], score["trials"])
-            speed = f"{score['speed_cm_s']:.1f} ± {score['speed_std']:.1f}"
-            falls = f"{score['falls']}/{score['trials']}"
-            rows.append([world, gait, speed, falls, f"{low:.0%} to {high:.0%}"])
+    for world, gait, *texts in score_rows(scores):
+        score = scores[world][gait]
+        low, high = wilson(score["falls"], score["trials"])
+        rows.append([world, gait, *texts, f"{low:.0%} to {high:.0%}"])
     return markdown_table(COLUMNS, rows)
 
 

@@ -15,10 +15,10 @@ from experiments.walking.gait_search import SEARCH_VERB, SearchPlan, rate
 from experiments.walking.recorder import Recorder
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError, RunFolderError
-from terrain import Heightfield, TerrainSpec
+from terrain import Heightfield
 from walk_engine import Gait
 from walk_engine.gait import PARAMETERS
-from worlds import End, RecordingMetadata
+from worlds import RecordingMetadata
 from worlds.rerun_files.search_history import SearchHistory, SearchWalk
 from worlds.scenes.scene import Scene
 
@@ -26,11 +26,7 @@ _NEEDED = ("robot", "terrain", "sim", "seed", "threads")
 
 
 def search_plan(stored: Mapping[str, Any]) -> SearchPlan:
-    """Make the options of a search from the content of its run's `config.json`.
-
-    Raises:
-      GroundwalkError: a robot or gait file does not exist, or a value is invalid.
-    """
+    """Make the options of a search from the content of its run's `config.json`."""
     given = {name: stored[name] for name in _NEEDED if name in stored}
     if given.get("sim") is not None:
         given["sim"] = Path(given["sim"])
@@ -52,26 +48,20 @@ def walk_again(plan: SearchPlan, best: Sequence[Gait]) -> list[SearchWalk]:
         )
     walks = []
     for k, gait in enumerate(best):
-        about = _metadata(plan, specs[k], gait, f"generation {k}", trials.ended[k])
+        about = RecordingMetadata(
+            robot=plan.robot,
+            base="floating",
+            source=f"groundwalk, the best gait of generation {k} of a search",
+            terrain=specs[k].to_json(),
+            gait=dict(gait),
+            world="sim",
+            end=str(trials.ended[k]),
+        )
         recording = recorder.recording(k, about)
         scene = Scene(f"generation-{k}", recording, description, grounds[k])
         distance_m, time_s = float(trials.distance_m[k]), float(trials.time_s[k])
         walks.append(SearchWalk(scene, distance_m, time_s, float(rewards[k])))
     return walks
-
-
-def _metadata(
-    plan: SearchPlan, ground: TerrainSpec, gait: Gait, of: str, end: End
-) -> RecordingMetadata:
-    return RecordingMetadata(
-        robot=plan.robot,
-        base="floating",
-        source=f"groundwalk, the best gait of {of} of a search",
-        terrain=ground.to_json(),
-        gait=dict(gait),
-        world="sim",
-        end=str(end),
-    )
 
 
 def _shared(grounds: Sequence[Heightfield]) -> list[Heightfield]:
@@ -92,9 +82,6 @@ def visualize_search(folder: RunFolder) -> Path | None:
 
     Runs of earlier versions of groundwalk did not store the best gaits. If these cannot
     walk again, the file's text on each generation says why.
-
-    Raises:
-      RunFolderError: the file with the search's history is damaged.
     """
     if not folder.has(HISTORY):
         return None
@@ -137,9 +124,6 @@ def read_history(entries: Entries) -> SearchHistory:
 
     Records of earlier versions have no `best_gait`; gait parameters that no record has
     are left out.
-
-    Raises:
-      KeyError: a record lacks a value that every version stores.
     """
     mean = _columns(entries, "mean_gait")
     ranges = np.array([parameter.high - parameter.low for parameter in PARAMETERS])

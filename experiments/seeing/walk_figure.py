@@ -28,27 +28,18 @@ BELOW_M, ABOVE_M = 0.03, 0.09
 
 
 def draw_walk(recordings: Mapping[str, Recording], path: Path) -> None:
-    """Draw walks by name, with base pose and all joints at every tick, into a PNG file.
-
-    Raises:
-      GroundwalkError: there is no recording, or one lacks the base's position or names
-        an unknown robot or ground.
-    """
+    """Draw walks, with base pose and all joints at every tick, into a PNG file."""
     strips = {scene.name: walk_strip(scene) for scene in make_scenes(recordings)}
     write_figure(walk_figure(strips), path)
 
 
-def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "Figure":
+def walk_figure(strips: Mapping[str, WalkStrip]) -> "Figure":
     """Draw a panel for each walk, all at the same scale.
 
     A faint stick figure is drawn every 0.12 s; those that do not overlap are drawn bold
-    with the time above. Thin lines are the paths of the ankles. The ground is drawn
-    under each foot's path, in the colour of that leg. The text before the last "/" of a
-    walk's name is the column, the text after it the row: "sim/tuned" and "real/tuned"
-    are side by side.
-
-    Raises:
-      BadValueError: there is no walk.
+    with the time above. Thin lines are the paths of the ankles, with the ground under
+    them. The text before the last "/" of a walk's name is the column, the
+    text after it the row: "sim/tuned" and "real/tuned" are side by side.
     """
     if not strips:
         raise BadValueError("there is no recording that could be drawn")
@@ -57,8 +48,7 @@ def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "F
     rows = list(dict.fromkeys(row for _, row in places.values()))
     height_m = max(np.ptp(strip.z_range_m) for strip in strips.values())
     height_m += BELOW_M + ABOVE_M
-    size = len(rows), len(columns)
-    figure, panels = _panels(*size, height_m / WIDTH_M, dots_per_inch)
+    figure, panels = _panels(len(rows), len(columns), height_m / WIDTH_M)
     for name, strip in strips.items():
         column, row = places[name]
         _draw_strip(panels[rows.index(row), columns.index(column)], strip, height_m)
@@ -66,15 +56,13 @@ def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "F
     return figure
 
 
-def _panels(
-    rows: int, columns: int, ratio: float, dots_per_inch: int
-) -> tuple["Figure", Any]:
+def _panels(rows: int, columns: int, ratio: float) -> tuple["Figure", Any]:
     """A figure with (rows, columns) panels without axes; `ratio` is height / width."""
     from matplotlib.figure import Figure
 
     panel_in = PANEL_IN * ratio + 0.6  # title and axis
     size_in = PANEL_IN * columns, panel_in * rows + 0.7  # key
-    figure = Figure(figsize=size_in, dpi=dots_per_inch, layout="constrained")
+    figure = Figure(figsize=size_in, dpi=200, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
     for axes in panels.flat:
         axes.set_axis_off()
@@ -86,12 +74,8 @@ def _panels(
 def _draw_strip(axes: "Axes", strip: WalkStrip, height_m: float) -> None:
     low_m = strip.z_range_m[0] - BELOW_M
     axes.set_axis_on()
-    axes.set(
-        xlim=strip.x_range_m,
-        ylim=(low_m, low_m + height_m),
-        yticks=[],
-        aspect="equal",
-    )
+    axes.set(xlim=strip.x_range_m, ylim=(low_m, low_m + height_m))
+    axes.set(yticks=[], aspect="equal")
     axes.set_title(strip.title, loc="left", fontsize=11)
     axes.spines[["top", "left", "right"]].set_visible(False)
     for side, line_m in strip.ground_m.items():
@@ -109,14 +93,9 @@ def _draw_figures(axes: "Axes", strip: WalkStrip) -> None:
     from matplotlib.collections import LineCollection
 
     body = strip.figure
-    far, near = body.arms[:1], body.arms[1:]
-    limbs = [
-        *((arm_m, ARMS) for arm_m in far),
-        (body.legs["left"], LEGS["left"]),
-        (body.torso, TORSO),
-        (body.legs["right"], LEGS["right"]),
-        *((arm_m, ARMS) for arm_m in near),
-    ]
+    arms = [(arm_m, ARMS) for arm_m in body.arms]
+    left, right = ((body.legs[side], LEGS[side]) for side in ("left", "right"))
+    limbs = [*arms[:1], left, (body.torso, TORSO), right, *arms[1:]]
     for depth, (limb_m, colour) in enumerate(limbs):
         for stills, look in (
             (strip.stills, {"linewidths": 0.8, "alpha": 0.35, "zorder": 2}),

@@ -22,11 +22,10 @@ class StickFigure:
     Attributes:
       legs: for "left" and "right" (ticks, points, 3) points of a line: hip, knee,
         ankle, heel, toe and back to the ankle.
-      arms: for each other limb (ticks, points, 3) points from its first joint to its
-        tip.
-      torso: (ticks, 3, 3) the middle between the hips, the middle between the
-        shoulders, and the centre of the head.
-      head_radius_m: radius of the head [m].
+      arms: for each other limb (ticks, points, 3) points from first joint to tip.
+      torso: (ticks, 3, 3) middle between the hips, that between the shoulders, and the
+        centre of the head.
+      head_radius_m: radius of the head.
     """
 
     legs: dict[str, FloatArray]
@@ -95,16 +94,16 @@ def _head(robot: Description) -> Capsule:
     x_m, y_m, z_m = robot.root.inertial.com_m.tolist()
     centre_m = (x_m, y_m, z_m)
     stand_in = Capsule(centre_m, centre_m, NAO_HEAD_M * robot.scale.length)
-    return max(robot.root.shapes, key=_top_m, default=stand_in)
+    return max(
+        robot.root.shapes,
+        key=lambda shape: max(shape.start_m[2], shape.end_m[2]) + shape.radius_m,
+        default=stand_in,
+    )
 
 
 def _middle_m(shape: Capsule) -> tuple[float, ...]:
     """Centre of a capsule [m]."""
     return tuple(np.mean([shape.start_m, shape.end_m], axis=0).tolist())
-
-
-def _top_m(shape: Capsule) -> float:
-    return max(shape.start_m[2], shape.end_m[2]) + shape.radius_m
 
 
 COURSE_M, LONGEST_S = 1.0, 5.0
@@ -130,15 +129,14 @@ class WalkStrip:
     Attributes:
       title: name and speed of the whole walk, and the reason if it ended early.
       ended: whether the walk ended early, such as by a fall.
-      time_s: (ticks,) times of all ticks [s].
+      time_s: (ticks,) times of all ticks.
       figure: the robot as a stick figure at all ticks.
       ticks: the part that is shown, as a slice of the ticks.
-      x_range_m: first and last x that are shown [m].
-      stills: (stills,) ticks at which the figure is drawn, 0.12 s apart, up to the end
-        of the part.
+      x_range_m: first and last x that are shown.
+      stills: (stills,) ticks at which the figure is drawn, 0.12 s apart.
       clear: those of the stills whose figures do not overlap; they are drawn bold.
       ground_m: for "left" and "right" (points, 2) x and z of the ground under the path
-        of that foot [m]; empty if the ground is unknown.
+        of that foot; empty if the ground is unknown.
     """
 
     title: str
@@ -160,18 +158,17 @@ class WalkStrip:
 
 
 def walk_strip(scene: Scene) -> WalkStrip:
-    """Choose the part of a walk to show, and prepare it for drawing.
-
-    Raises:
-      UnknownNameError: the recording lacks the base's position.
-    """
+    """Choose the part of a walk to show, and prepare it for drawing."""
     recording = scene.recording
     time_s, end = recording.time_s, recording.metadata.end
     x_m = recording.vector("base.position")[:, 0]
     ticks = _piece(time_s, x_m, bool(end))
-    x_range_m = _x_range(x_m[ticks])
+    middle_m = (x_m[ticks].min() + x_m[ticks].max()) / 2
+    x_range_m = float(middle_m - WIDTH_M / 2), float(middle_m + WIDTH_M / 2)
     figure = stick_figure(scene)
-    stills = _stills(time_s[ticks]) + ticks.start
+    shown_s = time_s[ticks]
+    times_s = np.arange(shown_s[-1], shown_s[0] - TICK_S / 2, -STILL_S)[::-1]
+    stills = np.searchsorted(shown_s, times_s - TICK_S / 2) + ticks.start
     speed_cm_s = 100 * (x_m[-1] - x_m[0]) / max(recording.duration_s, TICK_S)
     title = f"{scene.name.replace('/', ', ')}: {speed_cm_s:.1f} cm/s"
     return WalkStrip(
@@ -200,18 +197,6 @@ def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
     near = int(np.searchsorted(span_m, COURSE_M, side="right"))
     recent = int(np.searchsorted(time_s, time_s[stop - 1] - LONGEST_S))
     return slice(max(stop - near, recent), stop)
-
-
-def _x_range(x_m: FloatArray) -> tuple[float, float]:
-    """First and last x to show [m], around the positions x_m (ticks,) of the base."""
-    middle_m = (x_m.min() + x_m.max()) / 2
-    return float(middle_m - WIDTH_M / 2), float(middle_m + WIDTH_M / 2)
-
-
-def _stills(time_s: FloatArray) -> IntArray:
-    """Indices of times 0.12 s apart, counted back from the end of `time_s` (ticks,)."""
-    times_s = np.arange(time_s[-1], time_s[0] - TICK_S / 2, -STILL_S)[::-1]
-    return np.searchsorted(time_s, times_s - TICK_S / 2)
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:

@@ -15,8 +15,8 @@ class NetworkConfig:
       hidden: width of each hidden layer; two of 64 in the SGAT paper.
       epochs: largest number of passes through the data at each learning rate.
       batch: transitions in one step of the optimiser.
-      learning_rate: first learning rate of AdamW; a tenth of it refines the result.
-      weight_decay: weight decay of AdamW, which is decoupled from the gradient.
+      learning_rate: first rate of AdamW; a tenth of it refines the result.
+      weight_decay: that of AdamW, decoupled from the gradient.
       patience: epochs without a better held-out loss after which training stops.
       validation_share: share of the episodes that is held out to decide when to stop.
 
@@ -38,11 +38,7 @@ class NetworkConfig:
         object.__setattr__(self, "hidden", tuple(self.hidden))
         if not self.hidden or min(self.hidden) < 1:
             raise BadValueError(f"hidden is {self.hidden}; give each layer's width")
-        for name in ("epochs", "batch", "patience"):
-            if getattr(self, name) < 1:
-                raise BadValueError(
-                    f"{name} is {getattr(self, name)}; it must be at least 1"
-                )
+        self._check_counts("epochs", "batch", "patience")
         if not 0 < self.learning_rate < 1:
             raise BadValueError(
                 f"learning_rate is {self.learning_rate}; it must be between 0 and 1"
@@ -56,6 +52,12 @@ class NetworkConfig:
                 f"validation_share is {self.validation_share}; it must be between 0 "
                 "and 1"
             )
+
+    def _check_counts(self, *names: str) -> None:
+        for name in names:
+            value = getattr(self, name)
+            if value < 1:
+                raise BadValueError(f"{name} is {value}; it must be at least 1")
 
     def shape(self, dimensions: int) -> tuple[int, int]:
         """Raw outputs for targets of some dimensions, and the number of networks."""
@@ -80,9 +82,8 @@ class ForwardConfig(NetworkConfig):
         likelihood; with 0.5 the mean is learned as well where the spread is large
         (Seitzer et al. 2022).
       members: number of networks in the ensemble, each fitted to its own bootstrap
-        sample of the episodes. A robot keeps one network for a whole episode, because
-        what is unknown about a world does not change from tick to tick (TS-infinity of
-        Chua et al. 2018).
+        sample of the episodes. A robot keeps one network for a whole episode
+        (TS-infinity of Chua et al. 2018).
 
     Example:
       >>> ForwardConfig(head="full").head
@@ -100,11 +101,7 @@ class ForwardConfig(NetworkConfig):
         super().__post_init__()
         if self.head not in get_args(HeadName):
             raise UnknownNameError("head", self.head, get_args(HeadName))
-        for name in ("components", "rank", "members"):
-            if getattr(self, name) < 1:
-                raise BadValueError(
-                    f"{name} is {getattr(self, name)}; it must be at least 1"
-                )
+        self._check_counts("components", "rank", "members")
         if not 0 <= self.beta <= 1 or (self.beta and self.head != "gaussian"):
             raise BadValueError(
                 f"beta is {self.beta}; it must be between 0 and 1, and 0 for every "

@@ -19,9 +19,7 @@ from sgat.models.training import Stage, raw_outputs, squared_error
 from sgat.noise import NoiseStream
 from sgat.transitions import Transitions
 
-_GOLDEN = (5**0.5 - 1) / 2
-"""Golden ratio minus 1: its multiples modulo 1 are evenly spread from 0 to 1, which
-replaces random numbers where a result must not be random."""
+_GOLDEN = (5**0.5 - 1) / 2  # its multiples modulo 1 are evenly spread from 0 to 1
 
 
 class ForwardModel(NetworkModel[ForwardConfig]):
@@ -71,20 +69,16 @@ class ForwardModel(NetworkModel[ForwardConfig]):
     def sample(
         self, state: FloatArray, action: FloatArray, stream: NoiseStream
     ) -> FloatArray:
-        """(n, p) one sampled next state for each robot, as in SGAT.
-
-        States are (n, s), actions (n, a). `stream` draws the noise of the n robots,
-        with p dimensions.
-        """
+        """(n, p) sampled next states for states (n, s), actions (n, a), as in SGAT."""
         z, choice = stream.draw()
         member = (stream.member() * self.config.members).astype(np.intp)
         head, raw = self._head, self._raw(state, action, member)
         return self._next_state(state, head.sample(head.parts(raw, np), z, choice))
 
     def scaled_change(self) -> Callable[[Tensor], Tensor]:
-        """The mean change of the state as a function that torch can differentiate.
+        """A torch function of scaled states and actions, joined (n, s + a).
 
-        It gives scaled changes (n, p) for scaled states and actions, joined (n, s + a).
+        It gives the mean scaled changes (n, p) of the state.
         """
         network = self._network.network
         layers = zip(network.weights, network.biases, strict=True)
@@ -107,9 +101,8 @@ class ForwardModel(NetworkModel[ForwardConfig]):
             head.log_density(head.parts(torch.tensor(raw).double(), torch), y)
             for raw in self._each(transitions.state, transitions.action)
         ]
-        mixture = torch.logsumexp(torch.stack(densities), dim=0) - np.log(
-            len(densities)
-        )
+        mixture = torch.logsumexp(torch.stack(densities), dim=0)
+        mixture = mixture - np.log(len(densities))
         units = np.log(self._network.targets.scale).sum()
         return (float(mixture.mean()) - float(units)) / self.outcomes
 
@@ -117,7 +110,7 @@ class ForwardModel(NetworkModel[ForwardConfig]):
         """(N, p) standardised residuals: the noise for which `sample` gives the data.
 
         They are white and standard normal if the model is right. An ensemble's networks
-        take turns by episode. Components of a mixture are drawn by their probability,
+        take turns by episode; a mixture's components are drawn by their probability,
         with evenly spread numbers in place of random ones.
         """
         _, index = np.unique(transitions.episode, return_inverse=True)

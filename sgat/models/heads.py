@@ -2,8 +2,7 @@
 
 All numbers are scaled to mean 0 and standard deviation 1 of the training data. The
 parameters are computed with torch during training and with NumPy afterwards: the
-argument `xp` is one of the two modules, and only functions that both have under the
-same name are used.
+argument `xp` is one of the two modules.
 """
 
 from abc import ABC, abstractmethod
@@ -22,9 +21,8 @@ Parts: TypeAlias = tuple[Any, ...]
 LOG_VARIANCE = (-7.0, 4.0)
 """Bounds of a log-variance in scaled units: standard deviations from 0.03 to 7.
 
-Without bounds, a network can predict any spread away from its data. With a lower least
-variance, nearly singular covariances make training so stiff that large variances are
-learned badly: with -10, the noise on a single action was learned a third too large.
+With -10, nearly singular covariances make training so stiff that the noise on a single
+action was learned a third too large.
 """
 
 
@@ -78,10 +76,8 @@ class Head(ABC):
 class GaussianHead(Head):
     """Independent normal distributions, as in the SGAT paper.
 
-    Attributes:
-      beta: each dimension's loss is weighted by variance^beta, without a gradient
-        through the weight, so that the mean is learned where the spread is large, too
-        (Seitzer et al. 2022, eq. 5). 0 is the plain likelihood.
+    Each dimension's loss is weighted by variance^beta, without a gradient through the
+    weight (Seitzer et al. 2022, eq. 5); with 0 it is the plain likelihood.
     """
 
     beta: float = 0.0
@@ -157,11 +153,7 @@ class FullHead(Head):
 
 @dataclass(frozen=True)
 class LowRankHead(Head):
-    """A normal distribution with the covariance U U^T + D, where D is diagonal.
-
-    Attributes:
-      rank: number of columns of U; each is a disturbance that moves all dimensions.
-    """
+    """A normal distribution with covariance U U^T + D: rank of U, and D diagonal."""
 
     rank: int = 2
 
@@ -201,17 +193,12 @@ class LowRankHead(Head):
 
 
 _LARGEST_LOGIT = 8.0
-"""Bound of a component's logit: weights differ by a factor of at most e^16, so that
-training can bring back a component that has hardly any weight."""
+"""Bound of a component's logit, so that training can bring back a light component."""
 
 
 @dataclass(frozen=True)
 class MixtureHead(Head):
-    """Mixture of normal distributions with independent dimensions (Bishop 1994).
-
-    Attributes:
-      components: k, the number of normal distributions.
-    """
+    """Mixture of k normal distributions with independent dimensions (Bishop 1994)."""
 
     components: int = 3
 
@@ -253,8 +240,8 @@ class MixtureHead(Head):
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
         """(n, d) noise for which `sample` gives the values y (n, d).
 
-        The component of each row is drawn, with `choice` (n,), by its probability of
-        having produced y: with the most probable one, residuals would be too small.
+        `choice` (n,) draws each row's component by its probability of having produced
+        y: with the most probable one, residuals would be too small.
         """
         weights, means, deviations = parts
         z = (y[..., None, :] - means) / deviations

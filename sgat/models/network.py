@@ -15,9 +15,7 @@ Float32Array = npt.NDArray[np.float32]
 class Network:
     """Networks of equal shape (members), each of tanh layers and a last linear one.
 
-    Attributes:
-      weights: for each layer (members, inputs, outputs).
-      biases: for each layer (members, 1, outputs).
+    Each layer has weights (members, inputs, outputs) and biases (members, 1, outputs).
     """
 
     weights: tuple[Float32Array, ...]
@@ -67,12 +65,11 @@ class Scaling:
     """Mean and scale of each column.
 
     A constant column has the scale 1: divided by a tiny standard deviation, any later
-    change would become huge. Its scaled numbers are turned back into the constant,
-    since how it varies is unknown.
+    change would become huge. Its scaled numbers are turned back into the constant.
 
     Attributes:
-      mean: (d,) mean of each column.
-      scale: (d,) standard deviation of each column, 1 where it is constant.
+      mean: (d,) mean.
+      scale: (d,) standard deviation, 1 where a column is constant.
       varies: (d,) whether a column is not constant.
     """
 

@@ -26,13 +26,7 @@ from sgat.transitions import held_out_rows
 
 @dataclass(frozen=True, eq=False)
 class ScaledNetwork:
-    """A network with scaled inputs and targets.
-
-    Attributes:
-      inputs: scaling of the inputs.
-      targets: scaling of the values that the network was trained to predict.
-      network: takes scaled inputs; its raw outputs describe scaled targets.
-    """
+    """A network that takes scaled inputs; its raw outputs describe scaled targets."""
 
     inputs: Scaling
     targets: Scaling
@@ -50,20 +44,11 @@ class ScaledNetwork:
         seed: np.random.SeedSequence,
         members: int = 1,
     ) -> Self:
-        """Train networks to predict y from x.
+        """Train networks to predict y (N, d) from x (N, inputs), in their own units.
 
-        If there are several, they differ in their first weights and in their data: each
-        learns from its own bootstrap sample of the episodes.
-
-        Args:
-          x: (N, inputs) in their own units.
-          y: (N, d) targets in their own units.
-          episode: (N,) number of the episode of each row.
-          outputs: number of raw outputs of a network.
-          stages: losses to train with; they define what the raw outputs mean.
-          config: shape and training of each network.
-          seed: seed of everything random; the same seed gives the same bits.
-          members: number of networks.
+        Several `members` differ in their first weights, and in their data: each learns
+        from its own bootstrap sample of the episodes, numbered by (N,). `stages` define
+        what the raw `outputs` mean. The same seed gives the same bits.
         """
         rng = np.random.default_rng(seed)
         held_out = held_out_rows(episode, config.validation_share, rng)
@@ -108,15 +93,13 @@ class ScaledNetwork:
     def from_tensors(cls, tensors: dict[str, Tensor]) -> Self:
         """Undo `to_tensors`; ValueError if the shapes do not fit together."""
         arrays = {name: tensor.numpy() for name, tensor in tensors.items()}
-        inputs, targets = (
-            Scaling(
-                *(arrays[f"{name}.{field}"] for field in ("mean", "scale", "varies"))
-            )
-            for name in ("inputs", "targets")
-        )
-        for scaling in (inputs, targets):
-            if len({value.shape for value in vars(scaling).values()}) != 1:
+        scalings = []
+        for name in ("inputs", "targets"):
+            parts = [arrays[f"{name}.{key}"] for key in ("mean", "scale", "varies")]
+            if len({part.shape for part in parts}) != 1:
                 raise ValueError("a scaling's columns differ in number")
+            scalings.append(Scaling(*parts))
+        inputs, targets = scalings
         layers = range(sum(name.startswith("weights.") for name in arrays))
         weights = tuple(arrays[f"weights.{k}"] for k in layers)
         biases = tuple(arrays[f"biases.{k}"] for k in layers)
@@ -159,12 +142,9 @@ def write_model(
 def read_model(
     path: Path, kind: str, config_type: type[Config]
 ) -> tuple[Config, ScaledNetwork]:
-    """Read a file that `write_model` wrote; all numbers are equal to the last bit.
+    """Read a file that `write_model` wrote, to the last bit; else BadModelError.
 
     Only tensors and plain values are read (torch's `weights_only`): no code is run.
-
-    Raises:
-      BadModelError: the file cannot be read, is damaged, or has another kind of model.
     """
     try:
         file = io.BytesIO(path.read_bytes())
@@ -192,10 +172,7 @@ def read_model(
 class NetworkModel(Generic[Config]):
     """Base of models that consist of scaled networks, from `fit` or from a file.
 
-    Attributes:
-      kind: name of the kind of model, in files and in error messages.
-      config_type: class of the settings.
-      config: shape and training of the networks.
+    `kind` is the model's name in files and messages; `config_type` is of its settings.
     """
 
     kind: ClassVar[str]

@@ -30,9 +30,8 @@ class Stage(NamedTuple):
     """A part of training; each stage starts from the best weights of the one before.
 
     Attributes:
-      loss: loss that is minimised.
-      score: loss on held-out episodes that decides when to stop: without terms that
-        only help learning.
+      loss: is minimised.
+      score: loss on held-out episodes that decides when to stop.
       rate: factor on the learning rate.
     """
 
@@ -42,12 +41,7 @@ class Stage(NamedTuple):
 
 
 class Examples(NamedTuple):
-    """Training data in scaled units.
-
-    Attributes:
-      x: (n, inputs) inputs.
-      y: (n, d) targets.
-    """
+    """Training data in scaled units: inputs x (n, inputs) and targets y (n, d)."""
 
     x: Tensor
     y: Tensor
@@ -67,20 +61,11 @@ def train(
     config: NetworkConfig,
     generator: torch.Generator,
 ) -> Network:
-    """Train several networks side by side.
+    """Train several networks of some `outputs` side by side, on a single thread.
 
-    The result depends only on the arguments: all random numbers come from the
-    generator, and a single thread computes.
-
-    Args:
-      outputs: width of the last layer.
-      stages: stages of training, each with its loss.
-      examples: n rows to learn from.
-      weights: (members, n) weight of each row in each network's loss.
-      held_out: rows that decide when a stage ends; the weights that are best for them
-        are kept.
-      config: shape of the networks, and settings of the optimiser.
-      generator: draws the first weights and the order of the rows.
+    `weights` (members, n) are those of the examples in each network's loss. What is
+    best for the held-out rows is kept. The generator draws the first weights and the
+    order of the rows.
     """
     sizes = [examples.x.shape[1], *config.hidden, outputs]
     minds = torch.tensor(weights, dtype=torch.float32)

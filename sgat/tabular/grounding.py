@@ -18,11 +18,9 @@ def counted_forward_model(
 ) -> FloatArray:
     """(S, A, S) probabilities of real next states, from their counts (S, A, S).
 
-    The shares maximise the likelihood. If fewer than `known_after` transitions of a
-    state and action were seen, the sim's probabilities are used, which leaves the
-    action as it is. Where the sim is too optimistic, policies planned in it go to these
-    states and collect the missing data (like the known states of R-max: Brafman and
-    Tennenholtz 2002).
+    If fewer than `known_after` transitions of a state and action were seen, the sim's
+    probabilities are used, which leaves the action as it is (like the known states of
+    R-max: Brafman and Tennenholtz 2002).
     """
     seen = counts.sum(axis=-1, keepdims=True)
     shares: FloatArray = np.where(
@@ -46,11 +44,9 @@ def inverse_model(sim: FiniteMdp) -> IntArray:
 def grounded_sim(sim: FiniteMdp, forward: FloatArray, samples: bool) -> FiniteMdp:
     """The simulator behind an action transformer, as a finite world of its own.
 
-    Args:
-      sim: a deterministic simulator with S states and A actions; else BadValueError.
-      forward: (S, A, S) forward model: probabilities of the real next states.
-      samples: whether the transformer samples next states (SGAT) or takes the most
-        likely one (GAT).
+    `sim` is deterministic; else BadValueError. `forward` (S, A, S) holds probabilities
+    of the real next states, which the transformer samples (SGAT), or of which it takes
+    the most likely one (GAT).
 
     Example:
       >>> sgat = grounded_sim(sim, real.transition, samples=True)
@@ -67,10 +63,9 @@ def action_transformer(
 
     The transformer is g(s, a) = f_inv(s, f_real(s, a)), with the real world's forward
     model (`forward`) and the sim's inverse model. If `samples` is False (GAT), f_real
-    takes the most likely next state, the first of equally likely ones, since a mean of
-    states has no meaning. Next states that no action of the sim leads to cannot be
-    imitated: the probabilities of the other ones are scaled up. If none is left, the
-    action stays as it is.
+    takes the most likely next state, the first of equally likely ones. Next states that
+    no action of the sim leads to cannot be imitated: the probabilities of the other
+    ones are scaled up. If none is left, the action stays as it is.
     """
     inverse = inverse_model(sim)
     wanted = np.where((inverse != NONE)[:, np.newaxis], forward, 0)
@@ -96,11 +91,9 @@ class TabularLoop:
       exploration: probability of a random action at each step of these episodes.
       known_after: least number of real transitions of a state and action with which
         their counted probabilities are used, instead of the sim's.
-      gain: a new policy is an improvement if its return in the grounded sim is larger
-        by more than this.
-      calm_steps: the loop ends after this number of grounding steps in a row without an
-        improvement.
-      most_steps: the loop ends after this number of grounding steps in any case.
+      gain: least improvement of the return in the grounded sim that counts as one.
+      calm_steps: grounding steps in a row without an improvement that end the loop.
+      most_steps: largest number of grounding steps.
     """
 
     episodes: int = 10_000
@@ -113,10 +106,9 @@ class TabularLoop:
     def __post_init__(self) -> None:
         """Refuse counts below 1, and an exploration that is no probability."""
         for name in ("episodes", "known_after", "calm_steps", "most_steps"):
-            if getattr(self, name) < 1:
-                raise BadValueError(
-                    f"{name} is {getattr(self, name)}; it must be positive"
-                )
+            value = getattr(self, name)
+            if value < 1:
+                raise BadValueError(f"{name} is {value}; it must be positive")
         if not 0 <= self.exploration <= 1:
             raise BadValueError(
                 f"exploration is {self.exploration}; it must be from 0 to 1"
@@ -128,7 +120,7 @@ class Settled:
     """Result of `ground_until_calm`.
 
     Attributes:
-      policy: (S,) action of the last policy in each of the S states.
+      policy: (S,) action of the last policy in each state.
       steps: number of grounding steps.
       transitions: number of real transitions in all steps.
       calm: whether the loop ended because nothing improved any more.
@@ -147,28 +139,18 @@ def ground_until_calm(
     loop: TabularLoop,
     generator: np.random.Generator,
 ) -> Settled:
-    """Ground the sim with real data and plan in it, until policies stop improving.
+    """Ground a deterministic sim and plan in it, until policies stop improving.
 
-    The inverse model needs no data: a deterministic sim's table contains it.
-
-    Args:
-      sim: a deterministic simulator; the loop begins with its optimal policy.
-      real: the world in which episodes are played; its table is not used otherwise.
-      samples: True for SGAT, False for GAT.
-      loop: how much data is collected, and when to stop.
-      generator: draws the real world's outcomes.
-
-    Example:
-      >>> ground_until_calm(sim, real, True, TabularLoop(), rng).policy
+    This is Algorithm 1 of the SGAT paper (GAT's, if `samples` is False). It begins with
+    the sim's optimal policy; `real` serves only to play episodes.
     """
     policy = policy_iteration(sim)
     counts = np.zeros(sim.transition.shape, np.intp)
     calm = step = 0
     while calm < loop.calm_steps and step < loop.most_steps:
         step += 1
-        counts += roll_out(
-            real, policy, loop.episodes, generator, loop.exploration
-        ).counts
+        played = roll_out(real, policy, loop.episodes, generator, loop.exploration)
+        counts += played.counts
         forward = counted_forward_model(counts, sim, loop.known_after)
         grounded = grounded_sim(sim, forward, samples)
         before, policy = policy, policy_iteration(grounded, policy)

@@ -73,7 +73,7 @@ class TabularRollouts:
     Attributes:
       returns: (n,) sum of rewards of each episode.
       cut: number of episodes that were cut at the step limit.
-      counts: (S, A, S) number of times that each transition was seen.
+      counts: (S, A, S) how often each transition was seen.
     """
 
     returns: FloatArray
@@ -101,13 +101,9 @@ def roll_out(
 ) -> TabularRollouts:
     """Play episodes of a policy (S,) side by side.
 
-    Two policies whose generators are in the same state share their random numbers: step
-    k of episode i uses the same ones whatever happened before, so equal probabilities
-    of next states lead to equal next states. `exploration` is the probability, at each
-    step, of a random action; episodes are cut after `step_limit` steps.
-
-    Example:
-      >>> roll_out(mdp, policy, 100, np.random.default_rng(1)).mean
+    Step k of episode i uses the same random numbers whatever happened before, so that
+    policies can be compared. `exploration` is the probability of a random action, at
+    each step; episodes are cut after `step_limit` steps.
     """
     chances = mdp.transition.cumsum(axis=-1)
     chances /= chances[..., -1:]  # exactly 1 at the end, above any number drawn
@@ -133,12 +129,8 @@ def roll_out(
 
 
 GOES_ON = 1 - 1e-7
-"""Probability that an episode continues after a step, while planning.
-
-Without discounting, a policy that never ends has no finite value where steps cost
-something. With this probability it has one, of ten million steps on average: very
-low, but finite. Policies that end are hardly affected: a return of 100 after 20
-steps changes by 2e-4."""
+"""Probability that an episode continues after a step, while planning, so that policies
+that never end have a finite value. A return of 100 after 20 steps changes by 2e-4."""
 
 TIE = 1e-8
 """Actions are equally good if their values differ by less than this share of the best
@@ -148,14 +140,9 @@ value (or of 1, if that is less than 1)."""
 def policy_iteration(mdp: FiniteMdp, policy: IntArray | None = None) -> IntArray:
     """(S,) actions of an optimal policy, by Howard's policy iteration.
 
-    An action changes only if another one is better by more than rounding, so each round
-    improves the policy and the search ends. Of equally good actions the first is taken.
-    Steps should cost something; else never ending can be as good as reaching a goal.
-    The result does not depend on the `policy` to start from.
-
-    Example:
-      >>> policy_iteration(stay_or_go)
-      array([1, 0])
+    An action changes only if another one is better by more than rounding. Of equally
+    good actions the first is taken. Steps should cost something; else never ending can
+    be as good as reaching a goal. The result does not depend on the first `policy`.
     """
     if policy is None:
         policy = np.zeros(mdp.states, np.intp)
@@ -190,11 +177,7 @@ def action_values(mdp: FiniteMdp, values: FloatArray) -> FloatArray:
 
 
 def expected_return(mdp: FiniteMdp, policy: IntArray, step_limit: int) -> float:
-    """Exact expected sum of rewards of an episode from the start, undiscounted.
-
-    The policy holds the action in each state (S,). Episodes are cut after `step_limit`
-    steps, so that the sum is finite for policies that never end.
-    """
+    """Exact expected sum of rewards of an episode, cut after `step_limit` steps."""
     steps = _steps(mdp, policy)
     now = steps @ mdp.reward
     values = np.zeros(mdp.states)

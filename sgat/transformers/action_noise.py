@@ -21,11 +21,7 @@ class ActionNoise:
     """
 
     def __init__(self, deviation: float, low: FloatArray, high: FloatArray) -> None:
-        """Choose the standard deviation, and the least and largest action (a,).
-
-        Raises:
-          BadValueError: the deviation is negative or not finite.
-        """
+        """Choose the standard deviation, and the least and largest action (a,)."""
         if not 0 <= deviation < np.inf:
             raise BadValueError(f"deviation is {deviation}; it must not be negative")
         self.deviation = deviation

@@ -53,16 +53,11 @@ class ActionTransformer:
           inverse: f_inv.
           low: (a,) least action.
           high: (a,) largest action.
-          noise: None for GAT. For SGAT the law of the standardised noise, with as many
-            dimensions as a next state.
+          noise: None for GAT; for SGAT, of as many dimensions as a next state.
           smoothing: share of the transformed action in the result, from 0 to 1; the
             remainder is the policy's action.
           inverse_columns: how many of a state's first columns the inverse model sees;
             all if None.
-
-        Raises:
-          BadValueError: smoothing is not from 0 to 1, or the noise has the wrong number
-            of dimensions.
         """
         if not 0 <= smoothing <= 1:
             raise BadValueError(f"smoothing is {smoothing}; it must be from 0 to 1")
@@ -75,7 +70,7 @@ class ActionTransformer:
         self.inverse = inverse
         self.noise = noise
         self.smoothing = smoothing
-        self._columns = slice(inverse_columns)
+        self.inverse_columns = inverse_columns
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
         self._stream: NoiseStream | None = None
 
@@ -83,12 +78,6 @@ class ActionTransformer:
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """(a,) least and (a,) largest action, in the action's units."""
         return self._low, self._high
-
-    @property
-    def inverse_columns(self) -> int | None:
-        """How many of a state's first columns the inverse model sees; None for all."""
-        columns: int | None = self._columns.stop
-        return columns
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode of n robots, each with its own seed."""
@@ -100,16 +89,19 @@ class ActionTransformer:
 
         With noise, each call draws the noise of one tick.
         """
-        found = self._find(state, action)
+        if self.noise is None:
+            wanted = self.forward.predict(state, action)
+        elif self._stream is None or self._stream.n != len(state):
+            n = len(state)
+            raise BadValueError(f"reset with {n} seeds before {n} robots act")
+        else:
+            wanted = self.forward.sample(state, action, self._stream)
+        found = self.inverse.predict(state[:, : self.inverse_columns], wanted)
         found = action + self.smoothing * (found - action)
         return np.clip(found, self._low, self._high)
 
     def save(self, folder: Path) -> dict[str, Any]:
-        """Write both models into a folder, and return what `load` needs besides.
-
-        Raises:
-          BadValueError: the noise is not white; other laws hold data.
-        """
+        """Write both models into a folder, and return what `load` needs besides."""
         noise = self.noise
         if not (noise is None or isinstance(noise, WhiteNoise)):
             kind = type(noise).__name__
@@ -137,13 +129,3 @@ class ActionTransformer:
             header["smoothing"],
             header["inverse_columns"],
         )
-
-    def _find(self, state: FloatArray, action: FloatArray) -> FloatArray:
-        if self.noise is None:
-            wanted = self.forward.predict(state, action)
-        elif self._stream is None or self._stream.n != len(state):
-            n = len(state)
-            raise BadValueError(f"reset with {n} seeds before {n} robots act")
-        else:
-            wanted = self.forward.sample(state, action, self._stream)
-        return self.inverse.predict(state[:, self._columns], wanted)

@@ -53,11 +53,7 @@ class KeptTransformer(Transformer, Protocol):
         """(a,) least and (a,) largest action, in the action's units."""
 
     def save(self, folder: Path) -> dict[str, Any]:
-        """Write the models into a folder.
-
-        Returns:
-          Plain values that `load` needs besides the models; they go into the header.
-        """
+        """Write the models into a folder; return what else `load` needs."""
 
     @classmethod
     def load(
@@ -74,9 +70,6 @@ _KINDS: dict[str, type[KeptTransformer]] = {}
 
 def add_grounding(grounding: "Grounding") -> None:
     """Register a grounding, so that it can be looked up by its name and its title.
-
-    Raises:
-      BadValueError: another grounding has this name already.
 
     Example:
       >>> add_grounding(ThroughModels("sgat-large", "SGAT, large", members=9))
@@ -98,10 +91,7 @@ def groundings() -> dict[str, "Grounding"]:
 
 
 def grounding(name: str) -> "Grounding":
-    """One grounding, looked up by its name or its title.
-
-    Raises:
-      UnknownNameError: there is no such grounding; the message has the nearest name.
+    """One grounding, looked up by its name or its title; else UnknownNameError.
 
     Example:
       >>> grounding("SGAT, uneven sim").name
@@ -119,18 +109,6 @@ def file_kind(cls: T) -> T:
     return cls
 
 
-def kind_of_file(kind: str) -> type[KeptTransformer]:
-    """The transformer class that reads folders whose header names this kind.
-
-    Raises:
-      UnknownNameError: no class has registered this kind.
-    """
-    _import_shelf()
-    if kind not in _KINDS:
-        raise UnknownNameError("kind of transformer", kind, _KINDS)
-    return _KINDS[kind]
-
-
 @cache
 def _import_shelf() -> None:
     """Import every file of this folder once, so that it registers what it defines."""
@@ -146,9 +124,7 @@ _FORMAT = 1
 def write_transformer(folder: Path, transformer: KeptTransformer) -> None:
     """Write a transformer into a folder, which is made if it does not exist.
 
-    Raises:
-      BadValueError: the transformer is not fitted, or has other noise than white noise,
-        whose data the files cannot hold.
+    BadValueError if it is not fitted, or has other noise than white noise.
     """
     low, high = (bound.tolist() for bound in transformer.bounds)
     header: dict[str, Any] = {"format": _FORMAT, "low": low, "high": high}
@@ -157,21 +133,19 @@ def write_transformer(folder: Path, transformer: KeptTransformer) -> None:
 
 
 def read_transformer(folder: Path) -> KeptTransformer:
-    """Read a folder that `write_transformer` wrote.
+    """Read a folder that `write_transformer` wrote; BadModelError if it holds none.
 
     The transformer gives the same actions as the one that was written, to the last bit.
-
-    Raises:
-      BadModelError: the folder cannot be read, or holds no action transformer.
-
-    Example:
-      >>> transformer = read_transformer(Path("runs/sgat"))
     """
     try:
         header = json.loads((folder / HEADER).read_text())
         if header["format"] != _FORMAT:
             raise ValueError(f"its format is {header['format']}")
         low, high = np.array(header["low"], float), np.array(header["high"], float)
-        return kind_of_file(header["kind"]).load(folder, header, low, high)
+        kind = header["kind"]
+        _import_shelf()
+        if kind not in _KINDS:
+            raise UnknownNameError("kind of transformer", kind, _KINDS)
+        return _KINDS[kind].load(folder, header, low, high)
     except (OSError, KeyError, TypeError, ValueError, UnknownNameError) as error:
         raise BadModelError(f"{folder} holds no action transformer: {error}") from error

@@ -30,10 +30,8 @@ from sgat.transformers.grounding_base import (
 )
 from sgat.transitions import Transitions, held_out_rows
 
-DIRECT = "direct.pt"
-"""Name of the network's file in a transformer's folder."""
-
-_KIND = "direct transformer"
+DIRECT, _KIND = "direct.pt", "direct transformer"
+"""Name of the network's file in a transformer's folder, and kind in that file."""
 
 
 @file_kind
@@ -45,12 +43,10 @@ class DirectTransformer:
 
         mean over all dimensions and transitions of ((f(s, g(s, a)) - s') / r)^2.
 
-    GAT and SGAT use an inverse model f_inv of the sim instead, which is inaccurate if
-    the action of a single tick moves the state little. First, f_inv is a regression on
-    next states: it prefers actions that were common in the sim's data to those that
-    reproduce the real world's latency. Second, it magnifies errors of the predicted
-    next state. Here the noise of s' averages out, and if both worlds have the same
-    sensor noise, f has the same bias in both.
+    GAT and SGAT use an inverse model of the sim instead, which is inaccurate if the
+    action of a single tick moves the state little: it prefers actions that were common
+    in the sim's data, and magnifies errors of the predicted next state. Here the noise
+    of s' averages out.
 
     The transformer is deterministic. Use it with a sim that is as random as the real
     world, or in place of GAT.
@@ -80,8 +76,7 @@ class DirectTransformer:
 
         Args:
           real: transitions of the real world, of at least two episodes.
-          sim: forward model of the sim, whose next states have the columns of those of
-            `real`.
+          sim: forward model of the sim, with next states like those of `real`.
           tried: the sim's transitions that `sim` was fitted to; their states have only
             the first columns of those of `real`.
           seed: seed of the training.
@@ -190,8 +185,7 @@ class UnevenSim(Grounding):
     def transformer(self, data: GroundingData) -> DirectTransformer:
         """The transformer, fitted at the first call for these data.
 
-        It learns only from the columns of next states that an action moves directly,
-        such as joint positions: the torso is moved by the sim's own lumps.
+        It learns only from the columns of next states that an action moves directly.
         """
         return data.once(self.name, lambda: _fit_direct(data))
 

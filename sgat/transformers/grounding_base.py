@@ -35,8 +35,7 @@ class GroundingData:
       inverse_seed: seed of the inverse model's training.
       forward_seed: seed of the training of a forward model that is a single network.
       seed: parent of the seeds of all other trainings.
-      network: shape and training of forward models; a grounding replaces the family of
-        distributions and the number of networks.
+      network: forward models' settings but for distributions and number of networks.
       uneven: transitions of a sim whose ground and sensors are as random as the real
         world's, for groundings with `uneven_sim`.
       sim_columns: how many of a state's first columns matter in the sim; all if None.

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from sgat.models.config import HeadName
-from sgat.models.forward_model import ForwardModel
 from sgat.noise import BlockNoise, NoiseLaw, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import add_grounding
@@ -22,14 +21,9 @@ MEMBERS = 4
 class ThroughModels(Grounding):
     """Grounding by g(s, a) = f_inv(s, f_real(s, a)): a forward and an inverse model.
 
-    Attributes:
-      name: name on command lines and in result files.
-      title: name in tables and on pages.
-      noise: "none": f_real predicts the mean, as in GAT; "white": it predicts a sample,
-        as in SGAT; "blocks": a sample made of consecutive residuals of real data.
-      head: family of the distributions that f_real predicts.
-      members: number of networks in f_real.
-      means: lines of Markdown for result pages on how it differs from the SGAT paper.
+    With the `noise` "none", f_real predicts the mean, as in GAT; with "white" a sample,
+    as in SGAT; with "blocks" a sample made of consecutive residuals of real data. It
+    has `members` networks, which predict distributions of the family `head`.
     """
 
     name: str
@@ -50,24 +44,16 @@ class ThroughModels(Grounding):
         forward = data.forward(
             replace(data.network, head=self.head, members=self.members, beta=beta)
         )
+        law: NoiseLaw | None = None
+        if self.noise == "white":
+            law = WhiteNoise(forward.outcomes)
+        elif self.noise == "blocks":
+            residuals = forward.residuals(data.real)
+            law = BlockNoise(residuals, data.real.episode, BLOCK_TICKS)
+        models, bounds = (forward, data.inverse()), (data.low, data.high)
         return ActionTransformer(
-            forward,
-            data.inverse(),
-            data.low,
-            data.high,
-            self._law(forward, data),
-            inverse_columns=data.sim_columns,
+            *models, *bounds, law, inverse_columns=data.sim_columns
         )
-
-    def _law(self, forward: ForwardModel, data: GroundingData) -> NoiseLaw | None:
-        match self.noise:
-            case "none":
-                return None
-            case "white":
-                return WhiteNoise(forward.outcomes)
-            case "blocks":
-                residuals = forward.residuals(data.real)
-                return BlockNoise(residuals, data.real.episode, BLOCK_TICKS)
 
 
 for _one in (

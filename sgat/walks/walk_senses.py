@@ -28,18 +28,13 @@ class WalkSenses:
     """Turns the measurements of n robots into states and actions, tick by tick.
 
     Only j of the robot's joints are grounded: those whose commands are transformed.
-    The first columns of a state are those that a next state has, too: joint positions
-    (j) [rad], gyroscope (3) [rad/s] and tilt (2), the first two components of the
-    world's up axis in the torso frame. Then follow the last change of the joint
-    positions (j) [rad], and the HISTORY_TICKS - 1 commands before the newest, oldest
+    The first `outcomes` columns of a state are those that a next state has, too: joint
+    positions (j) [rad], gyroscope (3) [rad/s] and tilt (2), the first two components of
+    the world's up axis in the torso frame. Then follow the last change of the joint
+    positions (j) [rad] (up to here are the `sim_columns`, which matter in a world
+    without latency), and the HISTORY_TICKS - 1 commands before the newest, oldest
     first, relative to the present joint positions (j each) [rad]. An action is the
     newest command, relative to the present joint positions (j) [rad].
-
-    Attributes:
-      joints: indices of the grounded joints among all joints.
-      outcomes: number of columns of a next state.
-      sim_columns: how many of a state's first columns matter in a world without
-        latency: all but the commands.
     """
 
     def __init__(self, joints: Sequence[int]) -> None:
@@ -110,12 +105,9 @@ class WalkSenses:
 
 
 def leg_senses(description: Description) -> WalkSenses:
-    """States and actions that ground the joints of a robot's two legs.
+    """States and actions that ground the joints of a biped's two legs.
 
     Arms hardly matter to a walk, and grounding them would need more data.
-
-    Raises:
-      BadValueError: the robot has no two legs.
 
     Example:
       >>> len(leg_senses(robots.get("nao")).joints)

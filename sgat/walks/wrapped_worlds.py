@@ -81,13 +81,9 @@ class GroundedWorld(WorldWrapper):
         transformer: Transformer,
         seeds: Sequence[np.random.SeedSequence],
     ) -> None:
-        """Put a transformer before a world with n robots.
+        """Put a transformer, with its senses, before a world.
 
-        Args:
-          world: the sim.
-          senses: makes the states and actions that the transformer sees.
-          transformer: changes the actions.
-          seeds: n seeds of the transformer's noise, one for each robot.
+        `seeds` are those of the transformer's noise, one for each robot.
         """
         super().__init__(world)
         self._senses, self._transformer = senses, transformer
@@ -140,17 +136,10 @@ class WatchedWorld(WorldWrapper):
         exploration_rad: float | FloatArray = 0.0,
         seed: np.random.SeedSequence | None = None,
     ) -> None:
-        """Wrap a world with n robots.
+        """Wrap a world with n robots; the senses make what is recorded.
 
-        Args:
-          world: the world to learn about.
-          senses: makes the states and actions that are recorded.
-          exploration_rad: standard deviation [rad] of the noise on the commands of the
-            grounded joints: one number, or (n, 1). The noise grows from zero.
-          seed: seed of that noise.
-
-        Raises:
-          BadValueError: exploration is negative, or has no seed.
+        `exploration_rad` is the standard deviation [rad] of the noise on the commands
+        of the grounded joints: one number, or (n, 1). The noise grows from zero.
         """
         super().__init__(world)
         if not np.all(np.asarray(exploration_rad) >= 0):
@@ -173,7 +162,9 @@ class WatchedWorld(WorldWrapper):
     def step(self, command_rad: FloatArray) -> Observation:
         """Advance by one tick, with noise added to the commands (n, joints) [rad]."""
         senses, walking = self._senses, self.active
-        self._noise = self._next_noise()
+        fresh = self._generator.standard_normal(self._noise.shape)
+        scale = self._exploration_rad * np.sqrt(1 - EXPLORATION_MEMORY**2)
+        self._noise = np.asarray(EXPLORATION_MEMORY * self._noise + scale * fresh)
         state = senses.state()
         # Added to the command and not to the action, so that zero noise changes no bit.
         given_rad = command_rad.copy()
@@ -188,25 +179,13 @@ class WatchedWorld(WorldWrapper):
         return observation
 
     def transitions(self) -> Transitions:
-        """All transitions since the last reset, robot by robot.
-
-        Raises:
-          BadValueError: the walk was no longer than `SETTLING_TICKS` (5 ticks).
-        """
+        """All transitions since the last reset, robot by robot."""
         noted = self._rows[SETTLING_TICKS:]
         if not noted:
             raise BadValueError(
                 f"nothing was noted: walk more than {SETTLING_TICKS} ticks"
             )
-        state, action, outcome = (
-            np.stack(columns, axis=1) for columns in zip(*noted, strict=True)
-        )
+        arrays = [np.stack(columns, axis=1) for columns in zip(*noted, strict=True)]
         keep = np.stack(self._walking[SETTLING_TICKS:], axis=1)
         episode = np.broadcast_to(np.arange(self.n)[:, None], keep.shape)
-        return Transitions(state[keep], action[keep], outcome[keep], episode[keep])
-
-    def _next_noise(self) -> FloatArray:
-        rho = EXPLORATION_MEMORY
-        fresh = self._generator.standard_normal(self._noise.shape)
-        scale = self._exploration_rad * np.sqrt(1 - rho * rho)
-        return np.asarray(rho * self._noise + scale * fresh)
+        return Transitions(*(array[keep] for array in (*arrays, episode)))

@@ -5,9 +5,9 @@ import pytest
 
 import robots
 from robots import biped
-from walk_engine import EngineConfig, Velocity, WalkEngine, gaits
+from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.chain_ik import ChainLegs
-from walk_engine.engine_config import WALK2014_CONFIG
+from walk_engine.engine_config import EngineConfig
 from walk_engine.legs import Legs, inverse
 
 N = 40
@@ -117,7 +117,7 @@ def test_a_gait_means_the_same_to_a_larger_robot():
 
 def test_constants_by_their_units():
     scale = robots.get("talos").scale
-    scaled = WALK2014_CONFIG.scaled(scale)
+    scaled = EngineConfig().scaled(scale)
     assert scaled.max_left_m_s == pytest.approx(0.2 * scale.speed)
     assert scaled.max_turn_rad_s == pytest.approx(0.87 / scale.time)
     assert scaled.posture_s == pytest.approx(0.5 * scale.time)

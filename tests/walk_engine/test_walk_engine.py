@@ -7,7 +7,7 @@ import pytest
 from walk_drill import LEFT, RIGHT, Drill, forces
 
 from groundwalk.errors import BadValueError
-from walk_engine import EngineConfig, Velocity, WalkEngine, gaits
+from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.gait import NAMES, from_unit
 
 WALK2014 = gaits.get("walk2014")
@@ -225,11 +225,3 @@ def test_bad_first_foot_is_refused(biped):
 def test_requests_that_are_no_numbers_are_refused(name):
     with pytest.raises(BadValueError, match=name):
         Velocity(**{name: np.array([0.0, np.nan])})
-
-
-@pytest.mark.parametrize(
-    "constant", [{"posture_s": 0.0}, {"stretch": 1.1}, {"max_left_m_s": np.nan}]
-)
-def test_bad_constants_are_refused(constant):
-    with pytest.raises(BadValueError, match=next(iter(constant))):
-        EngineConfig(**constant)

@@ -30,18 +30,15 @@ class Mark:
       kind: kind of the verdict, or "missing".
       names_something: whether any effect is named.
       top1: whether the verdict is "effects" and its first effect has a true name.
-      in_set: whether a true name is among all names that the answer considers.
-      set_size: number of names that the answer considers.
+      in_set: whether a true name is among the `set_size` names that are considered.
       places: for each effect found with a true name, whether its place is true.
-      hits: number of effects found that are true in name and place.
-      extra: number of effects found that are not.
+      hits: number of effects found that are true in name and place; `extra` are not.
       missed: number of true effects that were not found.
       errors: relative error of each effect that is true in name and place.
       covered: for each main parameter of these, whether its interval holds the truth.
       closed: held-out error that the answer removes, as a share of the error that the
-        fitted true effects remove; None if they remove nothing.
-      wrong_place: the same share for the answer's control with the place changed.
-      wrong_effect: the same share for the answer's control with the effect changed.
+        fitted true effects remove; None if they remove nothing. `wrong_place` and
+        `wrong_effect` are the shares for the answer's controls.
       probability: stated probability of the first effect; None without an effect.
     """
 
@@ -85,14 +82,9 @@ class Mark:
 def mark(
     case: TrueCase, verdict: Verdict | None, oracle: Oracle | None, method: str
 ) -> Mark:
-    """Compare an answer with the truth.
+    """Compare a method's answer (None is wrong in every respect) with the truth.
 
-    Args:
-      case: the truth.
-      verdict: the answer; None (no answer) is wrong in every respect.
-      oracle: fit of the true effects; None if no effect that the diagnosis knows is
-        hidden.
-      method: name of the method that answered, such as "diagnosis".
+    The oracle is None if no effect that the diagnosis knows is hidden.
     """
     found = verdict.effects if verdict else ()
     true = {_at(each): each for each in case.effects}
@@ -145,10 +137,9 @@ def _main(found: Found, true: Hidden) -> list[str]:
 def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
     """Error of the main parameters, relative to the size of the true effect.
 
-    The parameters form a vector. The error is the distance from the estimate to the
-    truth, the size is that from the truth to the values at which the effect does
-    nothing; an infinite one of these, as for a stiffness, counts as zero. It also
-    stands for a parameter that the answer does not state.
+    The error is the distance from the estimate to the truth, the size is that from the
+    truth to the values at which the effect does nothing; an infinite one of these
+    counts as zero. It also stands for a parameter that the answer does not state.
     """
     key = f"{true.name}@{true.place}"
     neutral = oracle.neutral.get(key, {}) if oracle else {}

@@ -86,9 +86,8 @@ def median_error(marks: Sequence[Mark]) -> float:
 def calibration_error(marks: Sequence[Mark]) -> float:
     """Expected calibration error of the probabilities stated for the first effects.
 
-    It is the mean gap between stated probability and share of right names over ten bins
-    of equal width, weighted by their cases (Guo, Pleiss, Sun and Weinberger 2017, "On
-    calibration of modern neural networks", equation 3).
+    It is the mean gap between stated probability and share of right names over ten
+    equal bins, weighted by their cases (Guo et al. 2017, equation 3).
     """
     rows = reliability(marks)
     gaps = (row["n"] * abs(row["stated"] - row["right"]["value"]) for row in rows)
@@ -98,9 +97,8 @@ def calibration_error(marks: Sequence[Mark]) -> float:
 def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
     """Calibration by bins of stated probability; bins without cases are left out.
 
-    Returns:
-      For each bin the mean stated probability ("stated"), the number of cases ("n") and
-      the share whose first effect has a true name ("right").
+    Each has the mean stated probability ("stated"), the number of cases ("n") and the
+    share whose first effect has a true name ("right").
     """
     bins: dict[int, list[Mark]] = {}
     for each in marks:

@@ -30,11 +30,9 @@ class Oracle:
       gain: log-likelihood [nats] per recording by which the fitted true effects beat
         the nominal model.
       nominal: rms error of the nominal model on held-out recordings, in units of noise.
-      fitted: the same error with the fitted true effects.
-      neutral: value at which a parameter does nothing, by "effect@place" and name of
-        the parameter; None for infinity.
-      answered: for each method the hash of the effects that it found, and the held-out
-        rms error with them.
+      fitted: that error with the fitted true effects.
+      neutral: values of parameters that do nothing (None: infinity), by "effect@place".
+      answered: for each method the hash of the effects found, and the error with them.
     """
 
     gain: float
@@ -54,11 +52,7 @@ class Oracle:
 
     @classmethod
     def from_json(cls, text: str) -> "Oracle":
-        """Read an oracle from the text that `to_json` returns.
-
-        Raises:
-          BadValueError: the text is no JSON, or a key or a value is wrong.
-        """
+        """Read an oracle from the text that `to_json` returns; else BadValueError."""
         return from_plain(cls, parse_json(text, "oracle"), "oracle")
 
 

@@ -24,9 +24,8 @@ colour-blind people can distinguish."""
 def draw_score(score: Mapping[str, Any], path: Path) -> None:
     """Write the figure of a score (the contents of score.json) as a PNG file.
 
-    The left panel shows for all methods the share of single effects that were named
-    correctly, by level of difficulty; the right one for the diagnosis the share of
-    correct names over the stated probability.
+    It shows the share of correct names: for all methods by level of difficulty, and for
+    the diagnosis over the stated probability.
     """
     from matplotlib.figure import Figure
 
@@ -47,15 +46,15 @@ def _draw_levels(axes: "Axes", methods: Mapping[str, Mapping[str, Any]]) -> None
         there = [i for i, one in enumerate(shares) if one["value"] is not None]
         middles = np.array(there) + (number - (len(methods) - 1) / 2) * width
         counted = [shares[i] for i in there]
-        values, colour = (
+        axes.bar(
+            middles,
             [one["value"] for one in counted],
-            COLOURS[number % len(COLOURS)],
+            0.9 * width,
+            color=COLOURS[number % len(COLOURS)],
+            label=name,
+            yerr=_bars(counted),
+            error_kw={"elinewidth": 0.8},
         )
-        errors: dict[str, Any] = {
-            "yerr": _bars(counted),
-            "error_kw": {"elinewidth": 0.8},
-        }
-        axes.bar(middles, values, 0.9 * width, color=colour, label=name, **errors)
     numbers = [methods["diagnosis"]["top1"][level]["n"] for level in LEVELS]
     labels = [f"{level}\nn {n}" for level, n in zip(LEVELS, numbers, strict=True)]
     axes.set_xticks(range(len(LEVELS)), labels)
@@ -71,10 +70,7 @@ def _draw_reliability(axes: "Axes", bins: Sequence[Mapping[str, Any]]) -> None:
     axes.plot([0, 1], [0, 1], color="0.6", linestyle="--", linewidth=1)
     if bins:
         rights = [row["right"] for row in bins]
-        stated, shares = (
-            [row["stated"] for row in bins],
-            [one["value"] for one in rights],
-        )
+        stated, shares = [r["stated"] for r in bins], [one["value"] for one in rights]
         style: dict[str, Any] = {"color": COLOURS[0], "marker": "o", "linestyle": "-"}
         axes.errorbar(stated, shares, yerr=_bars(rights), elinewidth=0.8, **style)
     axes.set(xlim=(0, 1.02), ylim=(0, 1.02))
@@ -102,14 +98,7 @@ docs/concealed.md.
 
 @dataclass(frozen=True)
 class Goal:
-    """A figure of the score, and the range in which it should lie.
-
-    Attributes:
-      title: title of the figure in plain words.
-      path: keys that lead to the figure in score.json.
-      low: smallest value that meets the goal; None without a lower bound.
-      high: largest value that meets the goal; None without an upper bound.
-    """
+    """A figure of the score, its keys in score.json, and the range that is wanted."""
 
     title: str
     path: tuple[str, ...]

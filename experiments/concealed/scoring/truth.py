@@ -19,9 +19,7 @@ class TrueCase:
     Attributes:
       plant: name of the robot model, such as "so101".
       engine: "mujoco" or "bullet", which made the recordings.
-      kind: "single", "pair" or "triple" (number of hidden effects), "none", "outside"
-        (an effect that the diagnosis does not know) or "unexcited" (one effect at a
-        joint that never moves).
+      kind: a key of `draw.CASE_KINDS`, such as "single".
       effects: the hidden effects with their parameters.
       size: how easy the effects are to see: 1 easiest, 0 hard, below 0 even harder;
         None if nothing is hidden.
@@ -40,13 +38,7 @@ class TrueCase:
 
 @dataclass(frozen=True)
 class Truth:
-    """The truth of a set of cases, the contents of its sealed file.
-
-    Attributes:
-      seed: seed of the random numbers with which the cases were drawn.
-      cases: all cases by name, in the order of their numbers.
-      sha256: hash of the sealed file, as it was printed when the cases were made.
-    """
+    """The truth of a set of cases, drawn from a seed, and its sealed file's hash."""
 
     seed: int
     cases: Mapping[str, TrueCase]
@@ -54,12 +46,7 @@ class Truth:
 
 
 def read_truth(folder: Path) -> Truth:
-    """Open the sealed file of a set of cases.
-
-    Raises:
-      RunFolderError: the file is missing, has changed since it was sealed, or cannot be
-        read.
-    """
+    """Open the sealed file of a set; RunFolderError if it has changed since."""
     path, stamp = folder / SEALED / TRUTH, folder / HASH
     for needed in (path, stamp):
         if not needed.is_file():
@@ -83,11 +70,7 @@ def read_truth(folder: Path) -> Truth:
 
 
 def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
-    """The verdicts in a folder, by the names of the cases that have one.
-
-    Raises:
-      RunFolderError: the folder does not exist, or a verdict in it cannot be read.
-    """
+    """The verdicts in a folder, by the names of the cases that have one."""
     if not folder.is_dir():
         raise RunFolderError(f"{folder} is missing: run groundwalk concealed run first")
     answers = {}

@@ -12,12 +12,13 @@ from made_up_runs import history
 from experiments.diagnose import Diagnose
 from experiments.evaluate import Evaluate
 from experiments.optimize_gait import OptimizeGait
+from experiments.reports.figure_file import write_figure
 from experiments.reports.html import body_html, sentence_html
 from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.runs.folder import RunFolder
 from experiments.runs.repeat_command import repeat_command
-from experiments.seeing.run_pictures import draw_search
+from experiments.seeing.run_pictures import search_figure
 from experiments.seeing.score_page import score_answer, write_page
 from experiments.transfer.claims import Claim, claims_answer, write_transfer_page
 from experiments.transfer.nao_studies.page import answer_of
@@ -55,7 +56,7 @@ def tuned(tmp_path_factory):
     path = tmp_path_factory.mktemp("runs") / "tuned"
     folder = RunFolder.create("optimize-gait", OptimizeGait(population=8, out=path))
     folder.write_json("result.json", {**SCORES, "gait": dict(gaits.get("walk2014"))})
-    draw_search(history(3), path / "search.png")
+    write_figure(search_figure(history(3)), path / "search.png")
     write_page(folder, "Does it <walk>?", SCORES, {"start": gaits.get("start")})
     return path
 

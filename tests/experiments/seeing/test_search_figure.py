@@ -3,7 +3,8 @@ import pytest
 from made_up_runs import history
 from matplotlib.image import imread
 
-from experiments.seeing.run_pictures import draw_search, search_figure
+from experiments.reports.figure_file import write_figure
+from experiments.seeing.run_pictures import search_figure
 from groundwalk.errors import BadValueError
 
 
@@ -52,7 +53,7 @@ def test_generations_are_whole_numbers(generations):
 
 def test_the_file_is_a_picture_fit_for_a_page(tmp_path):
     path = tmp_path / "search.png"
-    draw_search(history(2), path)
+    write_figure(search_figure(history(2)), path)
     rows, columns, _ = imread(path).shape
     assert 1200 <= columns <= 2400
     assert rows < columns
@@ -60,11 +61,11 @@ def test_the_file_is_a_picture_fit_for_a_page(tmp_path):
 
 def test_the_same_search_gives_the_same_bytes(tmp_path):
     for name in ("a.png", "b.png"):
-        draw_search(history(2), tmp_path / name)
+        write_figure(search_figure(history(2)), tmp_path / name)
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
 def test_nothing_to_draw(tmp_path):
     with pytest.raises(BadValueError, match="no generation"):
-        draw_search([], tmp_path / "search.png")
+        write_figure(search_figure([]), tmp_path / "search.png")
     assert list(tmp_path.iterdir()) == []
