@@ -15,8 +15,8 @@ class Verb(NamedTuple):
     """Where the code of a verb of the command line is, and a summary of the verb.
 
     Attributes:
-      config: name of an object in the verb's module: the dataclass of its options, or a
-        table (dict of `Verb`) of the verb's own verbs.
+      config: name, in the verb's module, of the dataclass of its options, or of a table
+        (dict of `Verb`) of the verb's own verbs.
       summary: a few words for the list of verbs.
       module: the module in the package experiments; by default named like the verb.
     """
@@ -69,11 +69,8 @@ def choose(
 ) -> None:
     """Run the verb that the first argument names; only its module is imported.
 
-    Args:
-      verbs: the verbs by name; a verb may have verbs of its own, called studies.
-      program: the command up to here, such as "groundwalk concealed", for the help.
-      arguments: the words that follow `program` on the command line.
-      kind: what the help calls a verb: "verb" or "study".
+    A verb may have verbs of its own, called studies. `program` is the command up to
+    here, such as "groundwalk concealed"; `kind` is what the help calls a verb.
     """
     name, *options = arguments or ["--help"]
     if name in ("-h", "--help"):
@@ -98,14 +95,10 @@ def run_verb(
     program: str | None = None,
     arguments: list[str] | None = None,
 ) -> NoReturn:
-    """Parse a verb's options, do its work, and exit.
+    """Parse a verb's options (by default those of the process), do its work, and exit.
 
-    Args:
-      config_type: dataclass of the options. After Ctrl-C its text `if_interrupted`, if
-        any, is printed: how to continue.
-      verb: does the work; an integer that it returns is the exit status.
-      program: name of the command in its help; by default the script's name.
-      arguments: the words to parse; by default those of the process.
+    After Ctrl-C the text `if_interrupted` of the options' dataclass, if any, says how
+    to continue. An integer that the verb returns is the exit status.
     """
     config = _parse(config_type, program, arguments)
     hint = getattr(config_type, "if_interrupted", "")

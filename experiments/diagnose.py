@@ -137,11 +137,7 @@ def main(config: Diagnose) -> None:
 
 
 def print_audit(config: Diagnose) -> None:
-    """Print the check of the recordings with which a diagnosis begins (some seconds).
-
-    Raises:
-      BadRecordingError: a recording cannot be used.
-    """
+    """Print the check of the recordings with which a diagnosis begins."""
     plant, traces, reference = _read(config)
     found = audit([*traces, *reference], plant)
     if config.json:
@@ -238,19 +234,14 @@ def _write(
 
 
 def write_correction(folder: RunFolder, found: Diagnosis) -> None:
-    """Write the model with the effects found, if any, into the run folder.
-
-    The files are `corrected.xml` and `corrected.json`.
-    """
+    """Write the model with the effects found, if any, into the run folder."""
     if not found.verdict.effects:
         return
     first = found.test.traces[0]
     servo = found.plant.servo if first.unheld else first.servo
     model = (*found.given, *found.model)
-    xml = corrected_mjcf(found.plant, model, servo)
-    folder.write_text(CORRECTED_XML, xml)
-    text = Correction.of(found.plant, model).to_json()
-    folder.write_text(CORRECTED_JSON, text)
+    folder.write_text(CORRECTED_XML, corrected_mjcf(found.plant, model, servo))
+    folder.write_text(CORRECTED_JSON, Correction.of(found.plant, model).to_json())
 
 
 def _description(config: Diagnose) -> robots.Description | None:

@@ -4,6 +4,7 @@ import contextlib
 import dataclasses
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -36,8 +37,8 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from robots import Description
 from terrain import TerrainSpec, parse
-from walk_engine import Gait, gaits
-from worlds import Recording, read_recording
+from walk_engine import gaits
+from worlds import read_recording
 
 VERB = "humanoids"
 WALK = TrialRules(limit_s=5.0, start_spread_rad=0.01)
@@ -116,16 +117,12 @@ def main(config: Humanoids) -> None:
             with extra(f"{own.path}: a picture"):
                 picture_run(own)
     with extra(PICTURE):
-        walks = {short_name(name): _walk(folder, name) for name in config.robots}
+        walk = Path(RECORDINGS, "sim_tuned.parquet")  # the first in the sim
+        names = [short_name(name) for name in config.robots]
+        walks = {name: read_recording(folder.path / name / walk) for name in names}
         draw_humanoids(walks, folder.path / PICTURE)
     write_humanoids_page(folder, result)
     print_result(config.json, result, *robot_rows(result), folder.path)
-
-
-def _walk(folder: RunFolder, name: str) -> Recording:
-    """Recording of a robot's first walk in the sim with its tuned gait."""
-    path = folder.path / short_name(name) / RECORDINGS / "sim_tuned.parquet"
-    return read_recording(path)
 
 
 def _robot(
@@ -135,7 +132,9 @@ def _robot(
     # The seed follows from the name: the other robots of the run make no difference.
     own = [config.seed, *description.name.encode()]
     of_search, of_trials = np.random.SeedSequence(own).spawn(2)
-    tuned = _search(config, folder, description, of_search)
+    budget = Budget(config.population, config.generations, config.sigma)
+    rater = partial(_rate, config, description)
+    tuned = tune(folder.path / CHECKPOINT, START, budget, rater, of_search)
     of_world = dict(zip(config.studies(), of_trials.spawn(2), strict=True))
     scores: dict[str, Any] = {}
     for world, study in config.studies().items():
@@ -153,18 +152,6 @@ def _robot(
         "saturation": limits,
         "gait": dict(tuned),
     }
-
-
-def _search(
-    config: Humanoids,
-    folder: RunFolder,
-    description: Description,
-    seed: np.random.SeedSequence,
-) -> Gait:
-    """Search on flat ground in the sim; return the best of all generations' means."""
-    budget = Budget(config.population, config.generations, config.sigma)
-    rater = partial(_rate, config, description)
-    return tune(folder.path / CHECKPOINT, START, budget, rater, seed)
 
 
 def _rate(

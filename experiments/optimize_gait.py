@@ -102,9 +102,6 @@ def tune_gait(config: OptimizeGait) -> tuple[RunFolder, Gait]:
 
     The results are the run's folder and the tuned gait.
 
-    Raises:
-      GroundwalkError: the run's folder exists already, or cannot be continued.
-
     Example:
       >>> folder, gait = tune_gait(OptimizeGait(population=8, generations=2, trials=1))
       See docs/python.md.

@@ -10,7 +10,7 @@ from diagnosis import Rules
 from experiments.command_line import run_verb
 from experiments.diagnose import Diagnose, run_diagnosis
 from experiments.diagnosis_report.console import print_verdict
-from experiments.real_robot_study.cases import ROBOTS, RealRobot
+from experiments.real_robot_study.cases import ROBOTS
 from experiments.real_robot_study.page import write_real_page
 from experiments.reports.report import REPORT
 from experiments.runs.extras import extra
@@ -43,11 +43,7 @@ class RealRobots:
     out: Path | None = None
 
     def diagnose(self) -> Diagnose:
-        """The options of `groundwalk diagnose` for this robot's recordings.
-
-        Raises:
-          BadValueError: there are no recordings.
-        """
+        """The options of `groundwalk diagnose` for this robot's recordings."""
         case = ROBOTS[self.robot]
         folder = self.data / case.folder
         recordings = tuple(sorted(folder.glob("*.parquet")))
@@ -56,11 +52,10 @@ class RealRobots:
                 f"{folder} has no recordings: give the folder that holds "
                 f"{case.folder}/ with --data; they come from {case.source}"
             )
-        gains = case.gains
-        share = case.least_share
+        gains, share = case.gains, case.least_share
         return Diagnose(
             recordings,
-            _model(case, folder),
+            str(folder / case.model) if Path(case.model).suffix else case.model,
             kp=None if gains is None else gains.kp,
             kd=None if gains is None else gains.kd,
             max_torque=None if gains is None else gains.max_torque,
@@ -81,11 +76,6 @@ def main(config: RealRobots) -> None:
     with extra(REPORT):
         write_real_page(folder, ROBOTS[config.robot], verdict)
     print_verdict(verdict, [path for path in (report, diagnosis) if path.exists()])
-
-
-def _model(case: RealRobot, folder: Path) -> str:
-    own = folder / case.model
-    return str(own) if own.suffix else case.model
 
 
 if __name__ == "__main__":

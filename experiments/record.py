@@ -7,17 +7,12 @@ from typing import Literal
 import numpy as np
 
 from experiments.command_line import run_verb
-from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, table_feed
+from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, motion_feed
 from experiments.motions import (
     MOTIONS,
-    STANDING_MOTIONS,
-    Excitation,
-    standing_commands,
-    walking_feed,
 )
 from experiments.runs.folder import check_new
 from experiments.runs.options import check_at_least
-from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, GroundwalkError
 from groundwalk.files import write_text
 from worlds import Recording
@@ -25,7 +20,7 @@ from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import HiddenPlant, hidden_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
-from worlds.hidden.run import Feed, run_hidden
+from worlds.hidden.run import run_hidden
 from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
 
@@ -35,9 +30,6 @@ ENGINES = {"sim": "mujoco", "real": "bullet"}
 _RATE_HZ = 100.0
 _JITTER_S = 0.0005
 """Standard deviation of the errors of a recording's time stamps [s]."""
-
-_REST_S = 0.8
-"""Time for which a robot stands before it walks [s]."""
 
 _LONGEST_S = 600.0
 Motion = Literal[
@@ -115,18 +107,24 @@ def main(config: Record) -> None:
 def make_recording(config: Record) -> Recording:
     """Move a robot, write the recording into `config.out`, and return it.
 
-    Raises:
-      GroundwalkError: the robot fell, or its simulation diverged.
+    GroundwalkError if the robot fell, or its simulation diverged.
 
     Example:
       >>> make_recording(Record(Path("air.parquet"), robot="pendulum", world="sim"))
       See docs/python.md.
     """
     plant, effects = config.plant(), config.effects()
-    of_motion, of_clock, of_noise, of_ground = np.random.SeedSequence(
-        config.seed
-    ).spawn(4)
-    start_rad, feed = _feed(config, plant, np.random.default_rng(of_motion))
+    seed = np.random.SeedSequence(config.seed)
+    of_motion, of_clock, of_noise, of_ground = seed.spawn(4)
+    start_rad, feed = motion_feed(
+        plant,
+        config.motion,
+        np.arange(round(config.duration * _RATE_HZ) + 1) / _RATE_HZ,
+        _RATE_HZ,
+        np.random.default_rng(of_motion),
+        plant.range_rad.mean(axis=1),
+        np.ones(len(plant.joints), bool),
+    )
     clock = Clock.drawn(
         FLOATING_STEP_S if plant.floating else STEP_S,
         _RATE_HZ,
@@ -157,27 +155,6 @@ def make_recording(config: Record) -> Recording:
     )
     write_recording(recording, config.out)
     return recording
-
-
-def _feed(
-    config: Record, plant: HiddenPlant, rng: np.random.Generator
-) -> tuple[FloatArray, Feed]:
-    """The start pose (joints,) [rad], and a function that gives the commands [rad]."""
-    time_s = np.arange(round(config.duration * _RATE_HZ) + 1) / _RATE_HZ
-    description = plant.description
-    if config.motion == "walk" and description is not None:
-        return walking_feed(description, rng, round(_REST_S * _RATE_HZ))
-    if config.motion in STANDING_MOTIONS and description is not None:
-        commands = standing_commands(description, config.motion, time_s, rng)
-        return table_feed(commands)
-    plan = Excitation(
-        centre_rad=plant.range_rad.mean(axis=1),
-        range_rad=plant.range_rad,
-        speed_rad_s=plant.speed_rad_s,
-        moves=np.ones(len(plant.joints), bool),
-        together=description.coupled if description else (),
-    )
-    return table_feed(plan.commands(config.motion, time_s, rng))
 
 
 if __name__ == "__main__":

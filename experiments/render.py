@@ -73,34 +73,25 @@ class Render:
 
 def main(config: Render) -> None:
     """Draw the pictures, and print the file's name."""
+    words = [word.replace("_", "/") for word in config.only]  # sim_tuned: sim/tuned
     recordings = {
         name: recording
         for name, recording in gather(config.paths).items()
-        if not config.only or any(_has(name, word) for word in config.only)
+        if not words or any(word in name.replace("_", "/") for word in words)
     }
     if not recordings:
         raise RunFolderError(
             f"{config.paths[0]} holds no recordings"
             + (f" with {' or '.join(config.only)} in their name" if config.only else "")
         )
-    film = Film(
-        make_scenes(recordings),
-        (config.width, config.height),
-        config.start,
-        config.duration,
-        config.balance,
-    )
+    size, part = (config.width, config.height), (config.start, config.duration)
+    film = Film(make_scenes(recordings), size, *part, config.balance)
     if config.out.suffix == STRIP:
         content = strip_bytes(film, config.frames)
     else:
         content = film_bytes(film, config.rate, config.out.suffix)
     write_bytes(config.out, content)
     print(config.out)
-
-
-def _has(name: str, word: str) -> bool:
-    """Whether a recording's name contains a word; "sim_tuned" matches "sim/tuned"."""
-    return word.replace("_", "/") in name.replace("_", "/")
 
 
 if __name__ == "__main__":

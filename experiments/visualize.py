@@ -100,9 +100,6 @@ def gather(paths: Sequence[Path]) -> dict[str, Recording]:
     """Read recordings of run folders and files, by the names that are shown.
 
     With several paths, the name of a run's recording begins with that of its folder.
-
-    Raises:
-      BadRecordingError: a file is no recording.
     """
     recordings = {}
     stems = scene_names(path.resolve().with_suffix("").name for path in paths)
@@ -117,11 +114,7 @@ def gather(paths: Sequence[Path]) -> dict[str, Recording]:
 
 
 def default_out(paths: Sequence[Path]) -> Path:
-    """The .rrd file that `groundwalk visualize` writes without --out.
-
-    Raises:
-      BadValueError: the file exists and was not written by groundwalk.
-    """
+    """The .rrd file that is written without --out; refuses one of other programs."""
     first = paths[0]
     if len(paths) > 1:
         out = first.parent / "comparison.rrd"

@@ -8,7 +8,6 @@ draws the numbers of an episode from a law.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
@@ -43,48 +42,6 @@ class WhiteNoise:
         """(CHUNK_TICKS, n, d) noise of the next ticks."""
         shape = (CHUNK_TICKS, self.dimensions)
         return np.stack([g.standard_normal(shape) for g in generators], axis=1)
-
-
-NoiseLaw: TypeAlias = "WhiteNoise | BlockNoise"
-"""Distribution of one robot's noise, which depends only on its own generator."""
-
-
-class NoiseStream:
-    """Draws the noise of n robots through one episode, each from its own seed."""
-
-    def __init__(self, law: NoiseLaw, seeds: Sequence[np.random.SeedSequence]) -> None:
-        """Start an episode of n robots, each with its own seed."""
-        self._law = law
-        self._generators = [np.random.default_rng(seed) for seed in seeds]
-        self._member = np.array([g.random() for g in self._generators])
-        self._noise = np.empty((0, len(seeds), law.dimensions))
-        self._choice = np.empty((0, len(seeds)))
-        self._tick = 0
-
-    @property
-    def n(self) -> int:
-        """Number of robots."""
-        return len(self._generators)
-
-    def draw(self) -> tuple[FloatArray, FloatArray]:
-        """Noise (n, d) of the next tick, and (n,) uniform numbers from 0 to 1.
-
-        If a model predicts a mixture, the uniform numbers choose a component.
-        """
-        if self._tick == len(self._noise):
-            self._noise = self._law.chunk(self._generators)
-            ticks = len(self._noise)
-            self._choice = np.stack([g.random(ticks) for g in self._generators], axis=1)
-            self._tick = 0
-        self._tick += 1
-        return self._noise[self._tick - 1], self._choice[self._tick - 1]
-
-    def member(self) -> FloatArray:
-        """(n,) uniform numbers from 0 to 1 that are constant during an episode.
-
-        With them, an ensemble assigns each robot one of its networks for the episode.
-        """
-        return self._member
 
 
 def child_of(seed: np.random.SeedSequence, use: int) -> np.random.SeedSequence:
@@ -132,6 +89,48 @@ class BlockNoise:
         starts = self._starts[np.stack(picks, axis=1)]
         rows = starts[:, None, :] + np.arange(self.ticks)[:, None]
         return np.asarray(self._residuals[rows.reshape(-1, len(generators))])
+
+
+NoiseLaw = WhiteNoise | BlockNoise
+"""Distribution of one robot's noise, which depends only on its own generator."""
+
+
+class NoiseStream:
+    """Draws the noise of n robots through one episode, each from its own seed."""
+
+    def __init__(self, law: NoiseLaw, seeds: Sequence[np.random.SeedSequence]) -> None:
+        """Start an episode of n robots, each with its own seed."""
+        self._law = law
+        self._generators = [np.random.default_rng(seed) for seed in seeds]
+        self._member = np.array([g.random() for g in self._generators])
+        self._noise = np.empty((0, len(seeds), law.dimensions))
+        self._choice = np.empty((0, len(seeds)))
+        self._tick = 0
+
+    @property
+    def n(self) -> int:
+        """Number of robots."""
+        return len(self._generators)
+
+    def draw(self) -> tuple[FloatArray, FloatArray]:
+        """Noise (n, d) of the next tick, and (n,) uniform numbers from 0 to 1.
+
+        If a model predicts a mixture, the uniform numbers choose a component.
+        """
+        if self._tick == len(self._noise):
+            self._noise = self._law.chunk(self._generators)
+            ticks = len(self._noise)
+            self._choice = np.stack([g.random(ticks) for g in self._generators], axis=1)
+            self._tick = 0
+        self._tick += 1
+        return self._noise[self._tick - 1], self._choice[self._tick - 1]
+
+    def member(self) -> FloatArray:
+        """(n,) uniform numbers from 0 to 1 that are constant during an episode.
+
+        With them, an ensemble assigns each robot one of its networks for the episode.
+        """
+        return self._member
 
 
 def _standardised(residuals: FloatArray, starts: IntArray, ticks: int) -> FloatArray:

@@ -122,26 +122,35 @@ class CaseMotion:
     def feed(self, number: int) -> tuple[FloatArray, Feed]:
         """Start pose (j,) [rad] and command function of the recording `number`."""
         rng = np.random.default_rng([self.seeds[number], 0])
-        name, description = self.names[number], self.plant.description
-        if name == "walk" and description is not None:
-            rest_rows = round(_WALK_REST_S * self.rate_hz)
-            return walking_feed(description, rng, rest_rows)
         rows = sum(round(span * self.rate_hz) for span in self.spans_s[number]) + 1
         time_s = np.arange(rows) / self.rate_hz
-        if self.plant.floating and description is not None:
-            return table_feed(standing_commands(description, name, time_s, rng))
-        plan = Excitation(
-            self.centre_rad,
-            self.plant.range_rad,
-            self.plant.speed_rad_s,
-            self.moves,
-            description.coupled if description else (),
-        )
-        return table_feed(plan.commands(name, time_s, rng))
+        own = self.plant, self.names[number], time_s, self.rate_hz, rng
+        return motion_feed(*own, self.centre_rad, self.moves)
 
 
-def table_feed(command_rad: FloatArray) -> tuple[FloatArray, Feed]:
-    """The start pose (j,), the first row of targets (ticks, j) [rad], and a feed."""
+def motion_feed(
+    plant: HiddenPlant,
+    motion: str,
+    time_s: FloatArray,
+    rate_hz: float,
+    rng: np.random.Generator,
+    centre_rad: FloatArray,
+    moves: BoolArray,
+) -> tuple[FloatArray, Feed]:
+    """Start pose (j,) [rad] and command function of a motion, for ticks at (T,) [s].
+
+    In the air, the joints that move (j,) do so around their centres (j,) [rad].
+    """
+    description = plant.description
+    if motion == "walk" and description is not None:
+        return walking_feed(description, rng, round(_WALK_REST_S * rate_hz))
+    if plant.floating and description is not None:
+        command_rad = standing_commands(description, motion, time_s, rng)
+    else:
+        coupled = description.coupled if description else ()
+        limits = plant.range_rad, plant.speed_rad_s
+        plan = Excitation(centre_rad, *limits, moves, coupled)
+        command_rad = plan.commands(motion, time_s, rng)
     return command_rad[0], lambda row, sense: command_rad[row]
 
 

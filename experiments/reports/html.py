@@ -56,12 +56,9 @@ def _parser() -> "MarkdownIt":
 def _pictures_stand_alone(state: "StateCore") -> None:
     """Hide the tags of paragraphs with only a picture: it is rendered as a figure."""
     for k, token in enumerate([] if state.inlineMode else state.tokens):
-        if token.type == "inline" and _is_picture(token.children or []):
+        children = [child.type for child in token.children or []]
+        if token.type == "inline" and children == ["image"]:
             state.tokens[k - 1].hidden = state.tokens[k + 1].hidden = True
-
-
-def _is_picture(children: "Sequence[Token]") -> bool:
-    return [child.type for child in children] == ["image"]
 
 
 def _figure(
@@ -78,17 +75,13 @@ def _figure(
     path = env.get(FOLDER, Path()) / name
     if Path(name).name != name or not path.is_file():
         return f"<em>{words}</em>\n"
-    return (
-        f'<figure><img src="{data_uri(path)}" alt="{words}">'
-        f"<figcaption>{words}</figcaption></figure>\n"
-    )
-
-
-def data_uri(path: Path) -> str:
-    """A file's content as a data URI, for use in HTML."""
     kind, _ = mimetypes.guess_type(path.name)
     content = base64.b64encode(path.read_bytes()).decode("ascii")
-    return f"data:{kind or 'application/octet-stream'};base64,{content}"
+    source = f"data:{kind or 'application/octet-stream'};base64,{content}"
+    return (
+        f'<figure><img src="{source}" alt="{words}">'
+        f"<figcaption>{words}</figcaption></figure>\n"
+    )
 
 
 def _wide_open(*rule: object) -> str:

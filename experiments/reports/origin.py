@@ -21,10 +21,6 @@ class Origin:
         commits at which the run was resumed.
       settings: values of all options by name, including defaults.
       versions: versions of groundwalk, Python and the packages, by name.
-
-    Example:
-      >>> Origin.of_run(RunFolder.at(Path("runs/mine"))).command
-      'groundwalk evaluate start'
     """
 
     command: str
@@ -50,11 +46,7 @@ class Origin:
 
     @classmethod
     def of_run(cls, folder: RunFolder) -> Self:
-        """Read the origin from a run's folder.
-
-        Raises:
-          RunFolderError: the folder lacks config.json or provenance.json.
-        """
+        """Read the origin from a run's folder."""
         config = folder.read_json(CONFIG)
         chosen = {k: v for k, v in config.items() if k not in {"verb", *NOT_REPEATED}}
         return cls.of(folder.read_json(PROVENANCE), chosen)

@@ -20,12 +20,8 @@ TEMPLATE = "report.html.jinja"
 class Report:
     """A page: a question, its answer, the tables and pictures behind it, its origin.
 
-    Attributes:
-      question: the heading of the page.
-      answer: paragraphs in plain words; may be empty.
-      body: lines of Markdown: tables, notes, pictures. A picture is the name of a file
-        beside the page.
-      origin: command, settings and versions of the run.
+    The body is lines of Markdown, in which a picture is the name of a file beside the
+    page; the answer is paragraphs in plain words.
 
     Example:
       >>> report = Report("Does it walk?", ["Yes."], [], Origin.of_run(folder))

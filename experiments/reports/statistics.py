@@ -21,8 +21,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 
 NORMAL_95 = 1.959963984540054
-"""97.5 % quantile of the normal distribution: half the width of a 95 % interval in
-standard deviations. A constant, because importing scipy.stats takes half a second."""
+"""97.5 % quantile of the normal distribution: half the width of a 95 % interval."""
 
 CHI_SQUARED_95 = 3.841458820694124
 """95 % quantile of the chi-squared distribution with one degree of freedom."""
@@ -81,21 +80,17 @@ def half_fall(
 ) -> HalfFall:
     """Estimate the severity at which half of the trials fall.
 
-    Args:
-      severities: (rungs,) positive severities from the mildest to the hardest, either
-        rising (heights) or falling (friction).
-      falls: (rungs,) number of trials that fell.
-      trials: (rungs,) number of all trials.
-
-    Raises:
-      BadValueError: there are fewer than two severities, or they are not ordered.
+    The severities (rungs,) are at least two, positive, and rise (heights) or fall
+    (friction); `falls` and `trials` (rungs,) are numbers of trials.
 
     Example:
       >>> half_fall([1, 2, 4, 8], falls=[0, 0, 8, 8], trials=[8] * 4).beyond
       ''
     """
     ladder = np.asarray(severities, float)
-    if ladder.size < 2 or not (ladder > 0).all() or not _is_ordered(ladder):
+    steps = np.diff(ladder)
+    is_ordered = (steps > 0).all() or (steps < 0).all()
+    if ladder.size < 2 or not (ladder > 0).all() or not is_ordered:
         raise BadValueError(
             f"severities are {ladder.tolist()}; they must be at least two positive "
             "numbers from mild to hard"
@@ -116,12 +111,6 @@ def half_fall(
     if best < 0:
         return HalfFall("<", float(ladder[0]), None, high)
     return HalfFall("", severity(best), low, high)
-
-
-def _is_ordered(ladder: FloatArray) -> bool:
-    """Whether the numbers (n,) strictly rise, or strictly fall."""
-    steps = np.diff(ladder)
-    return bool((steps > 0).all() or (steps < 0).all())
 
 
 def _profile(x: FloatArray, falls: FloatArray, trials: FloatArray) -> FloatArray:

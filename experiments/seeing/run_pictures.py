@@ -81,7 +81,13 @@ def _draw_tried(axes: "Axes", generation: int, rewards: Sequence[float]) -> None
     count = len(rewards)
     aside = WIDTH * ((np.arange(count) + 0.5) / count - 0.5)
     label = "gaits that were tried" if generation == 0 else None
-    look = {"color": TRIED, "alpha": 0.45, "ms": 5.5, "mew": 0, "label": label}
+    look: dict[str, Any] = {
+        "color": TRIED,
+        "alpha": 0.45,
+        "ms": 5.5,
+        "mew": 0,
+        "label": label,
+    }
     axes.plot(generation + aside, rewards, ".", **look)
 
 

@@ -33,7 +33,7 @@ def draw_walk(recordings: Mapping[str, Recording], path: Path) -> None:
     write_figure(walk_figure(strips), path)
 
 
-def walk_figure(strips: Mapping[str, WalkStrip]) -> "Figure":
+def walk_figure(strips: Mapping[str, WalkStrip], dots_per_inch: int = 200) -> "Figure":
     """Draw a panel for each walk, all at the same scale.
 
     A faint stick figure is drawn every 0.12 s; those that do not overlap are drawn bold
@@ -48,7 +48,8 @@ def walk_figure(strips: Mapping[str, WalkStrip]) -> "Figure":
     rows = list(dict.fromkeys(row for _, row in places.values()))
     height_m = max(np.ptp(strip.z_range_m) for strip in strips.values())
     height_m += BELOW_M + ABOVE_M
-    figure, panels = _panels(len(rows), len(columns), height_m / WIDTH_M)
+    size = len(rows), len(columns)
+    figure, panels = _panels(*size, height_m / WIDTH_M, dots_per_inch)
     for name, strip in strips.items():
         column, row = places[name]
         _draw_strip(panels[rows.index(row), columns.index(column)], strip, height_m)
@@ -56,13 +57,15 @@ def walk_figure(strips: Mapping[str, WalkStrip]) -> "Figure":
     return figure
 
 
-def _panels(rows: int, columns: int, ratio: float) -> tuple["Figure", Any]:
+def _panels(
+    rows: int, columns: int, ratio: float, dots_per_inch: int
+) -> tuple["Figure", Any]:
     """A figure with (rows, columns) panels without axes; `ratio` is height / width."""
     from matplotlib.figure import Figure
 
     panel_in = PANEL_IN * ratio + 0.6  # title and axis
     size_in = PANEL_IN * columns, panel_in * rows + 0.7  # key
-    figure = Figure(figsize=size_in, dpi=200, layout="constrained")
+    figure = Figure(figsize=size_in, dpi=dots_per_inch, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
     for axes in panels.flat:
         axes.set_axis_off()

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from experiments.concealed.motion import table_feed
 from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
@@ -18,7 +17,7 @@ def swing_rad(effect, stiffness=1.0, damping=1.0):
     """What a pendulum's encoder says once the start is forgotten."""
     plant = hidden_plant("pendulum").with_gains(stiffness, damping)
     clock = Clock(0.0005, np.arange(ROWS) * 20, 0)
-    start_rad, feed = table_feed(SWING)
+    start_rad, feed = SWING[0], lambda row, sense: SWING[row]
     nobody = np.random.SeedSequence(0)
     hidden = [Hidden(*effect)]
     run = run_hidden(plant, hidden, "mujoco", clock, feed, start_rad, nobody)
