@@ -81,14 +81,8 @@ def _draw_tried(axes: "Axes", generation: int, rewards: Sequence[float]) -> None
     count = len(rewards)
     aside = WIDTH * ((np.arange(count) + 0.5) / count - 0.5)
     label = "gaits that were tried" if generation == 0 else None
-    look: dict[str, Any] = {
-        "color": TRIED,
-        "alpha": 0.45,
-        "ms": 5.5,
-        "mew": 0,
-        "label": label,
-    }
-    axes.plot(generation + aside, rewards, ".", **look)
+    look: dict[str, Any] = {"color": TRIED, "alpha": 0.45, "ms": 5.5, "mew": 0}
+    axes.plot(generation + aside, rewards, ".", label=label, **look)
 
 
 def _draw_falls(axes: "Axes", history: Sequence[Mapping[str, Any]]) -> None:
