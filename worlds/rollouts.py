@@ -79,6 +79,7 @@ class RolloutWorld(ABC):
         self._delay = DelayLine(options.latency_steps, options.steps_per_tick)
         self.active: BoolArray = np.zeros(len(grounds), bool)
         self.ended: list[End] = [End.NONE] * len(grounds)
+        self._open()
 
     @property
     def n(self) -> int:
@@ -128,6 +129,10 @@ class RolloutWorld(ABC):
     @abstractmethod
     def close(self) -> None:
         """End processes and free memory; the world cannot be used afterwards."""
+
+    @abstractmethod
+    def _open(self) -> None:
+        """Refuse options that this world cannot have, and make its simulations."""
 
     @abstractmethod
     def _start(self, pose_rad: FloatArray) -> None:

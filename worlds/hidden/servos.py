@@ -107,8 +107,8 @@ class Transmission:
     joint's angle and u the motor's torque, each implicit Euler step solves for m:
       u = clip(kp (command - m) - kd dm/dt, +-most) - back_emf dm/dt,
       u = stiffness dead_zone(m - q, play / 2) + damping (dm/dt - dq/dt in contact).
-    The total play is `gap_rad`. The encoder reads the motor's angle or the joint's;
-    the former is None before the first step.
+    The total play is `gap_rad`. The encoder reads the motor's angle, which is
+    None before the first step, or else the joint's.
     """
 
     stiffness_nm_rad: float

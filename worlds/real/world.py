@@ -4,22 +4,20 @@ import contextlib
 import multiprocessing
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from multiprocessing.connection import Connection
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import GroundwalkError
-from robots.description import Description
-from terrain import Heightfield
 from worlds.hidden.engine import BodySense
 from worlds.observation import Observation, Truth
 from worlds.real.hidden_robot import HiddenRobot, check_hidden
 from worlds.real.robot import BulletRobot
 from worlds.rollouts import RolloutWorld, Schedule
 from worlds.sim.model import StartHeight
-from worlds.world import TICK_S, WorldOptions
+from worlds.world import TICK_S
 
 
 def state_columns(joints: int) -> dict[str, slice]:
@@ -89,16 +87,10 @@ class RealWorld(RolloutWorld):
       processes: the worker processes; empty once the world is closed.
     """
 
-    def __init__(
-        self,
-        description: Description,
-        grounds: Sequence[Heightfield],
-        seeds: Sequence[np.random.SeedSequence],
-        options: WorldOptions,
-    ) -> None:
+    def _open(self) -> None:
         """Start the worker processes and send them their robots and grounds."""
+        description, options = self.description, self.options
         check_hidden(description, options)
-        super().__init__(description, grounds, seeds, options)
         workers = min(options.threads or os.cpu_count() or 1, self.n)
         self._shares = np.array_split(np.arange(self.n), workers)
         context = multiprocessing.get_context("spawn")

@@ -1,14 +1,11 @@
 """The deterministic world "sim": MuJoCo computes many robots in one batch."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from robots.description import Description
-from terrain import Heightfield
 from worlds.observation import Observation, Truth
 from worlds.rollouts import RolloutWorld, Schedule
 from worlds.sim.model import (
@@ -18,7 +15,7 @@ from worlds.sim.model import (
     mujoco_model,
     touch_shares,
 )
-from worlds.world import TICK_S, WorldOptions
+from worlds.world import TICK_S
 
 if TYPE_CHECKING:
     from mujoco.batch import Batch
@@ -34,26 +31,20 @@ class SimWorld(RolloutWorld):
         MuJoCo's data.
     """
 
-    def __init__(
-        self,
-        description: Description,
-        grounds: Sequence[Heightfield],
-        seeds: Sequence[np.random.SeedSequence],
-        options: WorldOptions,
-    ) -> None:
+    def _open(self) -> None:
         """Compile a model for each distinct ground, and make the batch of n robots."""
-        if options.hidden:
+        if self.options.hidden:
             raise BadValueError("a sim has no hidden physics; only the real world can")
-        super().__init__(description, grounds, seeds, options)
         self._batch = self._made_batch()
         self._qpos = self._batch.bind("qpos")
         self.qvel = self._batch.bind("qvel")
         self._ctrl = self._batch.bind("ctrl")
         self._sensors = self._batch.bind("sensordata")
-        self._shares = touch_shares(description)
-        self._joints = slice(0 if options.fixed_base else ROOT_QPOS, None)
-        self._speeds = slice(0 if options.fixed_base else ROOT_QVEL, None)
-        self._start_height = StartHeight(description)
+        self._shares = touch_shares(self.description)
+        fixed = self.options.fixed_base
+        self._joints = slice(0 if fixed else ROOT_QPOS, None)
+        self._speeds = slice(0 if fixed else ROOT_QVEL, None)
+        self._start_height = StartHeight(self.description)
 
     def close(self) -> None:
         """Do nothing: a batch has no process to end, and Python frees its memory."""
