@@ -25,8 +25,7 @@ from experiments.walking import TrialRules, walk_trials
 from groundwalk.arrays import FloatArray
 from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.gait import PARAMETERS, from_unit, to_unit
-from worlds.sim.model import mujoco_model
-from worlds.sim.world import SimWorld
+from worlds.sim.world import SimWorld, mujoco_model
 
 ROBOTS = 150
 TICKS = 200

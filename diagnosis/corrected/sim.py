@@ -19,8 +19,7 @@ from robots import Description
 from terrain import Heightfield
 from worlds import Observation, Truth, WorldOptions
 from worlds.rollouts import Schedule
-from worlds.sim.model import ground_name, world_spec
-from worlds.sim.world import SimWorld
+from worlds.sim.world import SimWorld, ground_name, world_spec
 
 
 class LateCommands:

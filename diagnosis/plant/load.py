@@ -23,7 +23,7 @@ from robots import Description
 from robots import get as robot
 from robots import names as robot_names
 from robots.engine_models.mjcf import quiet_mujoco
-from robots.from_urdf.package_paths import example_robots
+from robots.from_urdf.mesh_files import example_robots
 from worlds.recordings.columns import nearest
 
 _SUFFIXES = (".xml", ".urdf")

@@ -10,7 +10,7 @@ from robots import Biped, Description, biped
 from walk_engine import Gait
 from walk_engine.legs import Legs
 from worlds import Recording
-from worlds.scenes.forward_kinematics import LinkPoses, link_poses
+from worlds.scenes.scene import LinkPoses, link_poses
 
 FEET_PARTS = (-1.0, 0.0, 1.0)
 """Positions of the feet, relative to the hips, at which `reach` is measured: behind,

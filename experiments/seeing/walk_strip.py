@@ -8,8 +8,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Capsule, Description, Foot
 from worlds import TICK_S
-from worlds.scenes.forward_kinematics import LinkPoses
-from worlds.scenes.scene import SIDES, Scene
+from worlds.scenes.scene import SIDES, LinkPoses, Scene
 
 NAO_HEAD_M = 0.056
 """Radius of the NAO's head [m], scaled to robots whose model has no shapes."""

@@ -11,8 +11,7 @@ from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.sole import contact_points
 from worlds.recordings.columns import SUPPORT
-from worlds.scenes.forward_kinematics import LinkPoses, link_poses
-from worlds.scenes.scene import Scene
+from worlds.scenes.scene import LinkPoses, Scene, link_poses
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
-from robots.from_urdf.package_paths import example_robots
+from robots.from_urdf.mesh_files import example_robots
 from robots.leg_geometry import ROLES
 
 FORWARD = ("x", "-x", "y", "-y")

@@ -28,7 +28,7 @@ from robots.from_urdf.limbs import (
     hanging_rad,
 )
 from robots.from_urdf.link_shapes import foot, round_shapes
-from robots.from_urdf.package_paths import mesh_path
+from robots.from_urdf.mesh_files import mesh_path
 from robots.from_urdf.posed_tree import PosedTree
 from robots.from_urdf.servo_size import servo
 from robots.from_urdf.urdf_tree import UrdfTree, read_urdf

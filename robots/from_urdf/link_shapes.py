@@ -10,8 +10,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadModelError
 from robots.description import Capsule, Foot
 from robots.from_urdf.adaptation import SoleBox
-from robots.from_urdf.mesh_files import read_mesh
-from robots.from_urdf.package_paths import mesh_path
+from robots.from_urdf.mesh_files import mesh_path, read_mesh
 from robots.from_urdf.posed_tree import PosedTree
 from robots.from_urdf.urdf_tree import UrdfShape
 

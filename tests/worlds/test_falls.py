@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 import terrain
 from terrain import Heightfield
 from worlds import End, Truth
-from worlds.falls import EndRule
+from worlds.rollouts import EndRule
 
 START_M = 0.31
 

@@ -12,7 +12,7 @@ from terrain import Heightfield
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.engine import ORIGIN_POSE, BodySense
 from worlds.hidden.plant import HiddenPlant
-from worlds.sim.model import ROOT_QPOS, ROOT_QVEL, add_ground, touch_shares
+from worlds.sim.world import ROOT_QPOS, ROOT_QVEL, add_ground, touch_shares
 
 if TYPE_CHECKING:
     import mujoco

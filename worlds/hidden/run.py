@@ -7,7 +7,6 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from terrain import Heightfield
-from worlds.falls import fallen
 from worlds.hidden.clock import Clock
 from worlds.hidden.drive import HiddenDrive
 from worlds.hidden.effects.placed import Hidden, surroundings
@@ -15,7 +14,8 @@ from worlds.hidden.engine import BodySense, HiddenEngine
 from worlds.hidden.plant import HiddenPlant
 from worlds.observation import up_z
 from worlds.real.hidden_robot import hidden_engine
-from worlds.sim.model import StartHeight
+from worlds.rollouts import fallen
+from worlds.sim.world import StartHeight
 
 Feed = Callable[[int, BodySense], FloatArray]
 """Function of a control tick's number and the sensors' readings at that tick, which
@@ -110,7 +110,7 @@ def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:
     """Whether the pose of a floating base stays finite and the robot never falls.
 
     `felt` holds "position_m" (rows, 3) and "orientation" (rows, 4) w, x, y, z of the
-    base in the ground's frame. For falls see `worlds.falls.fallen`.
+    base in the ground's frame. For falls see `worlds.rollouts.fallen`.
     """
     place_m, turn = felt["position_m"], felt["orientation"]
     if not (np.isfinite(place_m).all() and np.isfinite(turn).all()):

@@ -24,7 +24,7 @@ from robots.engine_models.urdf import urdf
 from terrain import Heightfield
 from worlds.hidden.engine import BodySense, HiddenEngine
 from worlds.real.body import BulletBody
-from worlds.sim.model import ROOT_QPOS, ROOT_QVEL, mujoco_model
+from worlds.sim.world import ROOT_QPOS, ROOT_QVEL, mujoco_model
 from worlds.soft_ground import FootSpring
 from worlds.world import WorldOptions
 

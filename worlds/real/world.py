@@ -16,7 +16,7 @@ from worlds.observation import Observation, Truth
 from worlds.real.hidden_robot import HiddenRobot, check_hidden
 from worlds.real.robot import BulletRobot
 from worlds.rollouts import RolloutWorld, Schedule
-from worlds.sim.model import StartHeight
+from worlds.sim.world import StartHeight
 from worlds.world import TICK_S
 
 

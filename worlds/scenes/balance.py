@@ -22,8 +22,7 @@ from scipy.spatial import ConvexHull
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
-from worlds.scenes.forward_kinematics import LinkPoses
-from worlds.scenes.scene import SIDES, Scene
+from worlds.scenes.scene import SIDES, LinkPoses, Scene
 
 LOADED_PART = 0.05
 """A foot counts as loaded if its force exceeds this share of the robot's weight."""

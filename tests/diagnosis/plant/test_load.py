@@ -12,7 +12,7 @@ from groundwalk.errors import (
     BadRecordingError,
     UnknownNameError,
 )
-from robots.from_urdf.package_paths import example_robots
+from robots.from_urdf.mesh_files import example_robots
 from worlds.recordings.metadata import ServoGains
 
 DATA = Path(__file__).parents[4] / "shared" / "data"

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from groundwalk.errors import BadModelError
-from robots.from_urdf.package_paths import example_robots, mesh_path
+from robots.from_urdf.mesh_files import example_robots, mesh_path
 
 
 @pytest.fixture

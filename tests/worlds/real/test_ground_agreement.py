@@ -9,7 +9,7 @@ from pybullet_utils.bullet_client import BulletClient
 import terrain
 from terrain import Heightfield
 from worlds.real.body import load_ground
-from worlds.sim.model import add_ground
+from worlds.sim.world import add_ground
 
 POINTS = 1000
 ABOVE_M, BELOW_M = 2.0, -2.0

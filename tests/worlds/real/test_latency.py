@@ -7,7 +7,7 @@ import pytest
 from worlds import WorldOptions
 from worlds.real.robot import BulletRobot
 from worlds.rollouts import DelayLine
-from worlds.sim.model import mujoco_model
+from worlds.sim.world import mujoco_model
 
 TICKS = 12
 STEPS = 5  # of 2 ms in a tick

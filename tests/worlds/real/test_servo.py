@@ -8,7 +8,7 @@ import pytest
 
 from worlds import WorldOptions
 from worlds.real.robot import ServoTwin
-from worlds.sim.model import mujoco_model
+from worlds.sim.world import mujoco_model
 
 TICKS = 200
 FREQUENCIES_HZ = np.array([0.3, 0.7, 1.1, 1.9, 2.3])

@@ -4,7 +4,7 @@ import pytest
 
 import robots
 from robots.engine_models.mjcf import mujoco_spec
-from worlds.scenes.forward_kinematics import LinkPoses, link_poses
+from worlds.scenes.scene import LinkPoses, link_poses
 
 NAO = robots.get("nao")
 LINKS = [NAO.root.name, *(joint.link.name for joint in NAO.links)]

@@ -9,7 +9,7 @@ from worlds.recordings.metadata import RecordingMetadata
 from worlds.recordings.recording import Recording
 from worlds.scenes.balance import balance, loaded_feet
 from worlds.scenes.scene import Scene
-from worlds.sim.model import add_ground
+from worlds.sim.world import add_ground
 
 STANDING_M = 0.085 + 0.1 + 0.1029 + 0.04511
 ABOUT = RecordingMetadata("nao", "floating", "a test")

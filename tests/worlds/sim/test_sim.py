@@ -6,7 +6,7 @@ import pytest
 
 import terrain
 from worlds import SensorNoise, WorldOptions
-from worlds.sim.model import mujoco_model
+from worlds.sim.world import mujoco_model
 
 MANY = 150
 
