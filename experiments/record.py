@@ -16,11 +16,10 @@ from experiments.runs.options import check_at_least
 from groundwalk.errors import BadValueError, GroundwalkError
 from groundwalk.files import write_text
 from worlds import Recording
-from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import HiddenPlant, hidden_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
-from worlds.hidden.run import run_hidden
+from worlds.hidden.run import Clock, run_hidden
 from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
 

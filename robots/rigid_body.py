@@ -57,9 +57,8 @@ def inertia_matrix(components: Sequence[float]) -> FloatArray:
 def combined(bodies: Sequence[Inertial]) -> Inertial:
     """Combine rigidly joined bodies, all given in one frame, into one body.
 
-    The inertia about the common centre of mass follows from the parallel axis
-    theorem, I = sum_i (I_i + m_i (d_i.d_i E - d_i d_i^T)) with d_i from the common
-    centre of mass to that of body i.
+    The inertia about the common centre of mass follows from the parallel axis theorem,
+    I = sum_i (I_i + m_i (d_i.d_i E - d_i d_i^T)), d_i from there to that of body i.
     """
     mass = sum(body.mass_kg for body in bodies)
     com = np.sum([body.mass_kg * body.com_m for body in bodies], axis=0) / mass

@@ -110,9 +110,6 @@ class RolloutWorld(ABC):
 
     This class keeps track of the rollouts that go on, delays commands by the latency
     and adds the sensors' noise.
-
-    Attributes:
-      description, options, active, ended: see `World`.
     """
 
     def __init__(

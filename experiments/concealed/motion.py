@@ -13,9 +13,8 @@ import numpy as np
 
 from experiments.motions import MOTIONS, Excitation, standing_commands, walking_feed
 from groundwalk.arrays import BoolArray, FloatArray
-from worlds.hidden.clock import Clock
 from worlds.hidden.plant import HiddenPlant, hidden_plant
-from worlds.hidden.run import Feed
+from worlds.hidden.run import Clock, Feed
 
 STEP_S = 0.00025
 """Physics step of a robot with a fixed base [s]."""

@@ -18,14 +18,10 @@ _NOISE = 12
 class PosedTree:
     """A URDF's robot in one pose, in a frame at its root: x forward, y left, z up.
 
-    Where a joint's name is asked for, "" stands for the root. "The root frame" is the
-    frame above; joints that do not move are fixed at their angles.
-
-    Attributes:
-      tree: the URDF.
-      turn: (3, 3) rotation from the URDF's root link frame to the root frame.
-      moving: names of the joints that move, parents first.
-      pose_rad: angles [rad] of joints by name; joints without an entry are at zero.
+    Where a joint's name is asked for, "" stands for the root; "the root frame" is the
+    frame above, to which `turn` (3, 3) leads from the URDF's root link. The joints in
+    `moving`, parents first, move; others are fixed at their angle in `pose_rad`, or at
+    zero.
     """
 
     tree: UrdfTree

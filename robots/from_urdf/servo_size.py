@@ -31,15 +31,9 @@ def servo(
     """Make a servo whose stall torque and no-load speed are a URDF's joint limits.
 
     The back-EMF of such a motor is a damping of effort / speed; the servo's damping is
-    never less. The rotor inertia is unknown and left out.
-
-    Args:
-      effort_nm: effort limit of the joint.
-      speed_rad_s: velocity limit of the joint.
-      mass_kg: mass of the robot.
-      height_m: height of its centre of mass above the soles.
-      hanging_kg_m2: inertia of the links below the joint about its axis; None for a
-        joint of a leg.
+    never less. The rotor inertia is unknown and left out. Mass and height of the centre
+    of mass above the soles are the robot's; `hanging_kg_m2` is the inertia of the links
+    below the joint about its axis, None for a joint of a leg.
     """
     if not (effort_nm > 0 and speed_rad_s > 0):
         raise BadValueError(

@@ -12,10 +12,9 @@ from robots import biped
 from terrain import TerrainSpec
 from walk_engine import Velocity, WalkEngine, gaits
 from worlds import TICK_S, Recording, RecordingMetadata
-from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
-from worlds.hidden.run import run_hidden
+from worlds.hidden.run import Clock, run_hidden
 from worlds.scenes.scene import Scene
 
 AREA = {"x_range_m": (-1.0, 3.0), "y_range_m": (-2.0, 2.0)}

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from groundwalk.errors import UnknownNameError
-from robots.read_description import read_description
+from robots.catalog import read_description
 
 NAO_TOML = (resources.files("robots") / "nao.toml").read_text()
 

@@ -10,14 +10,13 @@ Example:
   ('swing',)
 """
 
-from worlds.hidden.effects import KINDS, Hidden, HiddenKind, surroundings
+from worlds.hidden.effects import KINDS, Hidden, surroundings
 from worlds.hidden.plant import HiddenPlant, hidden_plant
 from worlds.hidden.setting import Scales, Setting, Spot
 
 __all__ = [
     "KINDS",
     "Hidden",
-    "HiddenKind",
     "HiddenPlant",
     "Scales",
     "Setting",

@@ -9,7 +9,6 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from worlds.hidden.clock import CommandLine
 from worlds.hidden.effects.kind import JointTorque, StiffContact
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.engine import WATCH_STEPS, HiddenEngine, least_inertia_kg_m2
@@ -107,6 +106,39 @@ class HiddenJoints:
                     time_s, float(position_rad[i]), float(speed[i]), float(servo_nm[i])
                 )
         return torque
+
+
+_LEAD_STEPS = 0.5
+"""Delay of every command in physics steps: in leapfrog integration the force at the
+start of a step stands for the time from half a step before to half a step after it."""
+
+
+class CommandLine:
+    """Delays commands to servos by a time that need not be whole physics steps."""
+
+    def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
+        """Begin with (j,) targets in force; later ones come `delay_steps` late."""
+        self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
+        self._coming: deque[tuple[float, FloatArray]] = deque()
+
+    def send(self, step: int, command_rad: FloatArray) -> None:
+        """Send (j,) position targets at the beginning of physics step number `step`."""
+        self._coming.append((step + self._delay, command_rad))
+
+    def over(self, step: int) -> FloatArray:
+        """(j,) mean position targets [rad] that the servos have in this physics step.
+
+        Must be called once for each step, in order: it drops the commands used.
+        """
+        if not self._coming or self._coming[0][0] >= step + 1:
+            return self._now
+        mean, done = np.zeros_like(self._now), 0.0
+        while self._coming and self._coming[0][0] < step + 1:
+            at, command = self._coming.popleft()
+            part = max(at - step, 0.0)
+            mean += (part - done) * self._now
+            self._now, done = command, part
+        return np.asarray(mean + (1.0 - done) * self._now)
 
 
 class HiddenDrive:

@@ -1,13 +1,13 @@
-"""Simulates one robot with hidden physics that follows commands."""
+"""Simulates one robot with hidden physics that follows commands at control ticks."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.errors import BadValueError
 from terrain import Heightfield
-from worlds.hidden.clock import Clock
 from worlds.hidden.drive import HiddenDrive
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.engine import BodySense, HiddenEngine
@@ -16,6 +16,50 @@ from worlds.observation import up_z
 from worlds.real.hidden_robot import hidden_engine
 from worlds.rollouts import fallen
 from worlds.sim.world import StartHeight
+
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """The control ticks of a recorded run, as numbers of physics steps of `step_s`.
+
+    The physics step at which each tick happens is in `ticks` (rows,), 0 first. The
+    recording begins at tick number `first`, whose time is 0.
+    """
+
+    step_s: float
+    ticks: IntArray
+    first: int
+
+    @property
+    def time_s(self) -> FloatArray:
+        """(rows,) time of each tick [s], negative before the recording begins."""
+        return np.asarray((self.ticks - self.ticks[self.first]) * self.step_s)
+
+    @classmethod
+    def drawn(
+        cls,
+        step_s: float,
+        rate_hz: float,
+        spans_s: tuple[float, float],
+        jitter_s: float,
+        rng: np.random.Generator,
+    ) -> "Clock":
+        """Evenly spaced ticks, each early or late by a random number of physics steps.
+
+        `spans_s` are the time before the recording begins and the recording's length;
+        `jitter_s` is the largest deviation of a tick from its even time. BadValueError
+        if it is so large that ticks change their order.
+        """
+        first = round(spans_s[0] * rate_hz)
+        rows = first + round(spans_s[1] * rate_hz) + 1
+        even = np.arange(rows) / rate_hz
+        off = rng.uniform(-jitter_s, jitter_s, rows)
+        ticks = np.round((even + off) / step_s).astype(np.intp)
+        ticks -= ticks[0]
+        if (np.diff(ticks) < 1).any():
+            raise BadValueError(f"a jitter of {jitter_s} s swaps ticks")
+        return cls(step_s, ticks, first)
+
 
 Feed = Callable[[int, BodySense], FloatArray]
 """Function of a control tick's number and the sensors' readings at that tick, which

@@ -28,16 +28,15 @@ def servo_torque_nm(
 class Servos:
     """Gains, limits and faults of a robot's servos, and the set-points they follow.
 
-    Hidden effects change the arrays before the first step. All are (j,), one value for
-    each joint in the plant's order.
+    Hidden effects change the arrays, each (j,) in the plant's order, before the first
+    step.
 
     Attributes:
       kp_nm_rad, kd_nm_s_rad, back_emf_nm_s_rad, max_torque_nm: see `servo_torque_nm`.
       max_speed_rad_s: highest speed of a set-point that follows its command.
       fade_1_s: share of kp that is lost in each second of the recording.
       offset_rad: constant encoder error, measured minus true angle.
-      leaks: (to, from, share) for crosstalk: columns of two joints, and the share of
-        the second joint's command that is added to the first one's.
+      leaks: (to, from, share) for crosstalk between the commands of two joints.
     """
 
     def __init__(self, plant: HiddenPlant, step_s: float) -> None:

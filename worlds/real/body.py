@@ -49,10 +49,8 @@ def bullet_client() -> Any:
 class BulletBody:
     """One robot and its ground in a PyBullet client of its own, moved by joint torques.
 
-    Attributes:
-      bullet: the client.
-      number: PyBullet's id of the robot.
-      position_rad, velocity_rad_s: (joints,) state of the joints after the last step.
+    `bullet` is the client, `number` its id of the robot. The joints' positions and
+    velocities (joints,) are those after the last step.
     """
 
     def __init__(

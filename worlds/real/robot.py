@@ -120,11 +120,7 @@ def restart(
 
 
 class BulletRobot:
-    """A robot on its ground in PyBullet, with the motors of the sim (`ServoTwin`).
-
-    Attributes:
-      body: the robot in its PyBullet client.
-    """
+    """A robot on its ground in PyBullet, with the motors of the sim (`ServoTwin`)."""
 
     def __init__(
         self, description: Description, ground: Heightfield, options: WorldOptions

@@ -81,10 +81,8 @@ class RealWorld(RolloutWorld):
     """The world "real": n robots, each in a PyBullet client, spread over processes.
 
     The motors are the sim's (`ServoTwin`), unless the options have hidden effects.
-    Robot i's rollout has the same bits whatever n is and however many processes run.
-
-    Attributes:
-      processes: the worker processes; empty once the world is closed.
+    Robot i's rollout has the same bits whatever n is and however many `processes` run;
+    that list is empty once the world is closed.
     """
 
     def _open(self) -> None:

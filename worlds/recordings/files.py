@@ -182,11 +182,9 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
 def write_recording(recording: Recording, path: Path) -> None:
     """Write a recording into a file, atomically; equal recordings give equal bytes.
 
-    Missing values (NaN) become nulls (Parquet) or empty cells (CSV); all other values
-    are read back bit by bit. Beside a `.csv` file, a `.json` file is written.
-
-    Raises:
-      BadRecordingError: the path ends with neither .parquet nor .csv.
+    The path must end with .parquet or .csv. Missing values (NaN) become nulls (Parquet)
+    or empty cells (CSV); all other values are read back bit by bit. Beside a `.csv`
+    file, a `.json` file is written.
 
     Example:
       >>> write_recording(recording, Path("swing.parquet"))

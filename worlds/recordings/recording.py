@@ -59,10 +59,9 @@ class Recording:
     `BadRecordingError` with column and row of the first fault.
 
     Example:
-      >>> columns = {"time": time_s, "position.swing": measured_rad,
-      ...            "command.swing": command_rad}
-      >>> metadata = RecordingMetadata("pendulum.xml", "fixed", "in water")
-      >>> recording = Recording(columns, metadata)
+      >>> columns = {"time": time_s, "position.swing": measured_rad, ...
+      "command.swing": command_rad} >>> recording = Recording(columns,
+      RecordingMetadata("arm.xml", "fixed", "in water"))
     """
 
     columns: dict[str, FloatArray]

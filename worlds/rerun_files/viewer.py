@@ -18,10 +18,7 @@ def open_viewer(paths: Sequence[Path]) -> "subprocess.Popen[bytes]":
     The viewer listens for more data; its default is all network interfaces, but here it
     listens on the loopback interface only, on a free port. It sends usage statistics to
     its makers unless `rerun analytics disable` has been run once. Returns its process.
-
-    Raises:
-      BadRecordingError: a file does not exist.
-      GroundwalkError: the program `rerun` is not installed.
+    GroundwalkError if a file or the program `rerun` does not exist.
     """
     for path in paths:
         if not path.is_file():

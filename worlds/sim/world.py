@@ -150,10 +150,7 @@ class SimWorld(RolloutWorld):
     """The world "sim": n robots in one `mujoco.batch.Batch`, each on its own ground.
 
     Robot i's rollout has the same bits whatever n is and however many threads run.
-
-    Attributes:
-      qvel: (n, v) velocities of all v degrees of freedom [rad/s; m/s]; a live view of
-        MuJoCo's data.
+    `qvel` (n, v) is a live view of MuJoCo's velocities of all v degrees of freedom.
     """
 
     def _open(self) -> None:

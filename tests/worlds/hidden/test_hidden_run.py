@@ -8,10 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
-from worlds.hidden.run import run_hidden
+from worlds.hidden.run import Clock, run_hidden
 
 M, L, OWN, G = 0.5, 0.3, 0.002, 9.81
 KP, KD = 8.0, 0.2

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
-from worlds.hidden.run import run_hidden
+from worlds.hidden.run import Clock, run_hidden
 
 ROWS = 601
 TIME_S = np.arange(ROWS) * 0.01

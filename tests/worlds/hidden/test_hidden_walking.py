@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 import robots
-from worlds.hidden.clock import Clock
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
-from worlds.hidden.run import run_hidden
+from worlds.hidden.run import Clock, run_hidden
 
 NOBODY = np.random.SeedSequence(0)
 SLOPE = Hidden("ground_slope", "world", {"pitch": 0.05, "roll": 0.0})

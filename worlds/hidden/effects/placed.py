@@ -128,13 +128,7 @@ class Hidden:
 
 
 def surroundings(effects: Iterable[Hidden]) -> Surroundings:
-    """Signal delays, gyroscope bias and ground of a robot with these hidden effects.
-
-    Example:
-      >>> late = Hidden.parse("command_latency:delay=0.02")
-      >>> surroundings([late, late]).command_delay_s
-      0.04
-    """
+    """Signal delays, gyroscope bias and ground of a robot with these hidden effects."""
     changed = Surroundings()
     for effect in effects:
         effect.kind.change_surroundings(changed, effect.values)
