@@ -2,10 +2,11 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError
+from worlds.hidden.drive import CommandLine
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
-from worlds.hidden.run import Clock, CommandLine, run_hidden
+from worlds.hidden.run import Clock, run_hidden
 from worlds.recordings.metadata import RecordingMetadata
 
 NOBODY = np.random.SeedSequence(0)
