@@ -7,7 +7,7 @@ numbers, and the best one is the result.
 """
 
 import pickle
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -188,8 +188,8 @@ def run_search(
     return np.array([mean.to_vector() for mean in (*means, search.mean)])
 
 
-def best_mean(means: FloatArray, ratings: Sequence[FloatArray]) -> Gait:
-    """The mean gait, of vectors (n, 16), with the best average of its rewards (n,)."""
+def best_mean(means: FloatArray, ratings: FloatArray) -> Gait:
+    """The mean gait, of vectors (n, 16), with the best mean of rewards (ratings, n)."""
     return Gait.from_vector(means[np.mean(ratings, axis=0).argmax()])
 
 
@@ -220,7 +220,7 @@ def tune(
         budget.generations,
     )
     ratings = [rater(means, one) for one in of_ratings.spawn(budget.ratings)]
-    return best_mean(means, ratings)
+    return best_mean(means, np.stack(ratings))
 
 
 def _read(checkpoint: Path) -> tuple[GaitSearch, list[Entry]]:

@@ -61,5 +61,5 @@ def test_the_best_mean_gait_is_so_on_average(ratings, best):
     means = np.array(
         [START.replace(max_forward=v).to_vector() for v in (0.1, 0.2, 0.3)]
     )
-    found = best_mean(means, [np.array(one) for one in ratings])
+    found = best_mean(means, np.array(ratings))
     np.testing.assert_array_equal(found.to_vector(), means[best])
