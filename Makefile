@@ -41,7 +41,7 @@ walk: $(READY)
 		$(if $(wildcard $(RUN)),$(RUN)-$(shell date +%Y-%m-%d-%H%M%S),$(RUN))
 
 test: $(READY)
-	$(VENV)/bin/python -m pytest -n 2
+	$(VENV)/bin/python -m pytest -n 3 --dist worksteal
 
 lint: $(READY)
 	$(VENV)/bin/ruff check .

@@ -13,6 +13,16 @@ settings.register_profile("no_deadline", deadline=None)
 settings.load_profile("no_deadline")
 
 
+def pytest_collection_modifyitems(items):
+    """The longest begin first, so that no worker is left alone with one at the end."""
+    items.sort(key=lambda item: ("journeys" not in item.path.parts, not slow(item)))
+
+
+def slow(item):
+    """Whether a test takes more than a few seconds."""
+    return item.get_closest_marker("slow") is not None
+
+
 @pytest.fixture(scope="session", autouse=True)
 def quick_processes():
     """See `copied_processes`."""

@@ -45,7 +45,9 @@ class Store:
 
 def weak_arms(first):
     return [
-        replace(measured(seed, gain=(1.0, 0.8)), name=f"recording {seed}")
+        replace(
+            measured(seed, gain=(1.0, 0.8), duration_s=1.5), name=f"recording {seed}"
+        )
         for seed in range(first, first + 3)
     ]
 
@@ -80,8 +82,8 @@ def test_a_diagnosis_goes_on_after_a_round_to_the_same_verdict():
 
 @pytest.mark.slow
 def test_what_was_learned_from_a_reference_is_not_learned_again():
-    before = [moved(seed) for seed in range(3)]
-    now = [moved(seed, gain=(1.0, 0.8)) for seed in range(10, 13)]
+    before = [moved(seed, duration_s=1.5) for seed in range(3)]
+    now = [moved(seed, gain=(1.0, 0.8), duration_s=1.5) for seed in range(10, 13)]
     store = Store()
     reports, whole = told(swinger(), now, store, before)
     learned = {key: one for key, one in store.kept.items() if "reference" in key}

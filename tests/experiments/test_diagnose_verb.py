@@ -19,7 +19,7 @@ def recording(tmp_path_factory):
     hidden = ("servo_gain@swing:factor=0.9",)
     record(
         Record(
-            robot="pendulum", motion="multisine", hidden=hidden, duration=6.0, out=path
+            robot="pendulum", motion="multisine", hidden=hidden, duration=4.0, out=path
         )
     )
     return path
@@ -52,7 +52,7 @@ def test_an_audit_takes_no_search(recording, tmp_path, capsys, monkeypatch):
     model = str(recording.with_name("swing.nominal.xml"))
     main(Diagnose((recording.parent,), model, audit_only=True))
     told = capsys.readouterr().out
-    assert "swing: 6 s, 100 rows a second, 1 of 1 joints move" in told
+    assert "swing: 4 s, 100 rows a second, 1 of 1 joints move" in told
     main(Diagnose((recording,), model, audit_only=True, json=True))
     assert json.loads(capsys.readouterr().out)["traces"][0]["name"] == "swing"
     assert list(tmp_path.iterdir()) == []
@@ -110,7 +110,7 @@ def test_recordings_that_the_audit_refuses_leave_no_folder(recording, tmp_path):
 def test_an_arm_from_a_urdf_is_diagnosed_to_the_end(tmp_path, capsys):
     """An arm has no feet: its overlay shows curves without a robot."""
     path = tmp_path / "arm.parquet"
-    record(Record(robot="so101", motion="steps", duration=5.0, out=path))
+    record(Record(robot="so101", motion="steps", duration=3.0, out=path))
     model = path.with_name("arm.nominal.urdf")
     main(Diagnose((path,), str(model), out=tmp_path / "run"))
     written = {path.name for path in (tmp_path / "run").iterdir()}

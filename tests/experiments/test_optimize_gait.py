@@ -13,7 +13,7 @@ from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
-SIZES = {"population": 4, "generations": 4, "trials": 1, "course-m": 0.3}
+SIZES = {"population": 4, "generations": 2, "ratings": 1, "trials": 1, "course-m": 0.2}
 SMALL = [f"--{name}={size}" for name, size in SIZES.items()]
 PATIENCE_S = 300
 
@@ -23,7 +23,7 @@ def script(*arguments):
 
 
 def history_of(tmp_path, name, **settings):
-    plan = SearchPlan(population=6, generations=2, **settings)
+    plan = SearchPlan(population=6, generations=2, ratings=1, **settings)
     folder = RunFolder(tmp_path / name)
     search_gait(plan, folder)
     return (folder.path / "history.json").read_bytes()
@@ -42,7 +42,7 @@ def test_a_killed_run_resumes_to_the_same_bits(tmp_path):
     result = json.loads(done.stdout)  # nothing but the result on standard output
     run = subprocess.Popen(script(*SMALL, "--out", str(cut)), stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + PATIENCE_S
-    while generations(cut) < 2 and time.monotonic() < deadline:
+    while generations(cut) < 1 and time.monotonic() < deadline:
         time.sleep(0.02)
     run.send_signal(signal.SIGKILL)
     run.wait()

@@ -122,6 +122,7 @@ def run_search(path, **settings):
         terrain="lumps:amplitude_m=0.008",
         population=4,
         generations=2,
+        ratings=1,
         seed=3,
         threads=1,
         out=path,

@@ -36,8 +36,8 @@ from worlds.sim.world import SimWorld
 
 SMOKE = {
     "methods": (SGAT,), "trials": 2, "course_m": 0.3, "population": 4,
-    "generations": 1, "ratings": 1, "repeats": 1, "real_walks": 4,
-    "more_real_walks": 2, "sim_walks": 4,
+    "generations": 1, "ratings": 1, "repeats": 1, "real_walks": 2,
+    "more_real_walks": 2, "sim_walks": 2,
 }  # fmt: skip
 
 
@@ -57,7 +57,7 @@ def test_a_small_study_runs_and_resumes_to_the_same_numbers(tmp_path):
     assert [(c["method"], c["step"]) for c in cells] == [
         ("start gait", 0), (SGAT, 1), (SGAT, 2),
     ]  # fmt: skip
-    assert [c["real_walks"] for c in cells] == [0, 4, 6]
+    assert [c["real_walks"] for c in cells] == [0, 2, 4]
     kept = {path.name for path in whole.path.iterdir()}
     assert {"result.md", "transfer_nao.png", HISTORY} <= kept
     # as if killed after the first grounding step

@@ -19,7 +19,7 @@ from sgat.walks.gait_cloud import GaitCloud
 from walk_engine import gaits
 from walk_engine.gait import NAMES
 
-SMOKE = {"gaits": 2, "trials": 2, "rollouts": 2, "real_walks": 4, "sim_walks": 4}
+SMOKE = {"gaits": 2, "trials": 2, "rollouts": 2, "real_walks": 2, "sim_walks": 2}
 
 
 def state_of(real, **predicted):
