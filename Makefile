@@ -41,7 +41,7 @@ walk: $(READY)
 		$(if $(wildcard $(RUN)),$(RUN)-$(shell date +%Y-%m-%d-%H%M%S),$(RUN))
 
 test: $(READY)
-	$(VENV)/bin/python -m pytest -n 3 --dist worksteal
+	$(VENV)/bin/python -m pytest -n 3 --maxschedchunk 1
 
 lint: $(READY)
 	$(VENV)/bin/ruff check .

@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import sys
 import tempfile
+from multiprocessing import forkserver
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -57,5 +58,8 @@ def _type_in(folder, words, said):
         for number in copies:
             os.dup2(file, number)
     sys.argv = ["groundwalk", *words]
-    copy_instead(pytest.MonkeyPatch())
+    patch = pytest.MonkeyPatch()
+    copy_instead(patch)
+    # A copy does not know that the server that made it still runs.
+    patch.setattr(forkserver._forkserver, "ensure_running", lambda: None)
     main()

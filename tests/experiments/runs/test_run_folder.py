@@ -177,13 +177,13 @@ def test_an_option_that_came_later_has_its_default_when_resumed(tmp_path):
 
 
 def test_the_code_that_goes_on_is_written_down(tmp_path, monkeypatch):
-    of_code = {"python": "3", "packages": {}, "arguments": []}
+    of_code = {"python": "3", "packages": {}}
     for commit, told in (
         ("a", "a"), ("a", "a"), ("b", "a; resumed at b"), ("b", "a; resumed at b"),
         ("a", "a; resumed at b"), ("c", "a; resumed at b; resumed at c"),
     ):  # fmt: skip
         now = of_code | {"commit": commit, "changed": ""}
-        monkeypatch.setattr(run_folder, "provenance", lambda now=now: now)
+        monkeypatch.setattr(run_folder, "_code", lambda now=now: now)
         there = (tmp_path / "run").exists()
         where = {"resume" if there else "out": tmp_path / "run"}
         folder, _ = open_run("verb", Config(**where))
