@@ -4,7 +4,6 @@ A stall is a moment after which all joints follow their commands later. A pulse 
 constant torque, for a while, that a joint's servo did not ask for.
 """
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,13 +23,11 @@ class Material:
     """Recordings that are ready for a diagnosis.
 
     Attributes:
-      plant: nominal robot model.
-      audited: what the audit of the recordings found.
       traces: the longest part of each recording without a stall; torques of pulses
         are replayed, values that pulses falsified are missing.
       reference: recordings of the healthy robot, prepared in the same way.
       channels: the channels that all recordings measured.
-      pulses: pulses found in `traces`: torques that no servo asked for.
+      pulses: torques found in `traces` that no servo asked for.
       limits: sentences about the stalls of `traces`, for the report.
     """
 
@@ -76,12 +73,10 @@ def _prepared(
     plant: Plant, traces: Sequence[Trace], drive: DriveBy
 ) -> tuple[tuple[Trace, ...], tuple[Pulse, ...]]:
     """Remove stalls and pulses, and choose what drives the joints in replays."""
-    ready = [steady(trace) for trace in traces]
-    pulses = [pulses_of(plant, trace) for trace in ready]
-    ready = [
-        without_pulses(plant, trace, own)
-        for trace, own in zip(ready, pulses, strict=True)
-    ]
-    if drive == "torques":
-        ready = [driven_by_torques(trace) for trace in ready]
-    return tuple(ready), tuple(itertools.chain(*pulses))
+    ready, pulses = list[Trace](), list[Pulse]()
+    for trace in map(steady, traces):
+        own = pulses_of(plant, trace)
+        clean = without_pulses(plant, trace, own)
+        ready.append(driven_by_torques(clean) if drive == "torques" else clean)
+        pulses += own
+    return tuple(ready), tuple(pulses)

@@ -230,23 +230,28 @@ def _verdict(
 ) -> Verdict:
     """The verdict; its kind becomes "unknown" where held-out data contradict it."""
     both, result, kind = tested.both, tested.result, tested.kind
+    judge = search.judge
     nominal = data.learned.residuals([()])[0]
     left = tested.refitted.residual if tested.refitted else nominal
     unmodelled = data.test.residuals([()])[0]
     modelled = tested.test.residuals([tested.model])[0]
     larger = larger_than_learned(data.learned, left, tested.fit)
-    refuted = model_refuted(unmodelled, modelled, search.judge.least_gain)
+    refuted = model_refuted(unmodelled, modelled, judge.least_gain)
     share = 1 - result.closed(result.winner) if result.winner else 1.0
     shape = both, left, share
     if kind == "none" and larger:
         kind, shape = "unknown", (data.test, unmodelled, 1.0)
     if kind == "effects" and refuted:
         kind = "unknown"
+    smallest: Mapping[str, Amount] = {}
+    if kind in ("none", "not_identifiable"):
+        gain = judge.least_fitted
+        smallest = smallest_detectable(judge.fit, search.signatures, gain)
     effects = believed_effects(both, result, tested.refitted)
     return Verdict(
         kind=kind,
         effects=effects if kind != "none" else (),
-        smallest_detectable=_detectable(search, kind),
+        smallest_detectable=smallest,
         unexplained=unexplained(*shape) if kind == "unknown" else None,
         limits=(*larger, *refuted, *material.audited.limits, *material.limits),
         mismatch=mismatch_map(data.learned, nominal),
@@ -255,11 +260,3 @@ def _verdict(
         next_experiment=next_experiment(material.plant, result, material.traces),
         recordings=data.recordings(),
     )
-
-
-def _detectable(search: Search, kind: VerdictKind) -> Mapping[str, Amount]:
-    """By "effect@place", the smallest size that would show; {} if effects are found."""
-    if kind not in ("none", "not_identifiable"):
-        return {}
-    judge = search.judge
-    return smallest_detectable(judge.fit, search.signatures, judge.least_fitted)

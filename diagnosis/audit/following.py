@@ -28,8 +28,7 @@ class Following:
       misfit: (m, m) rms of position less command [rad], at the lag that fits best.
       correlation: (m, m) correlation, at the lag at which it is largest in size.
       slope: (m,) slope of each position over its own command.
-      flipped: (m,) rms of position plus own command [rad], at the best lag: small if
-        the sign of one is wrong.
+      flipped: (m,) rms of position plus own command [rad]: small if a sign is wrong.
     """
 
     columns: tuple[int, ...]

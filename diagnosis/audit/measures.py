@@ -252,12 +252,15 @@ def audit_joint(joint: str, channel: ChannelAudit, smoothed: Smoothed) -> JointA
         _MOVES_NOISES * noise.total, _MOVES_QUANTA * (noise.quantum or 0), _MOVES_RAD
     )
     moves = high - low > least
+    speed = np.abs(smoothed.rate)
+    fast = speed > _FAST * np.quantile(speed, 0.995)
+    reversals = int(np.count_nonzero(np.diff(np.sign(smoothed.rate[fast]))))
     return JointAudit(
         name=joint,
         low_rad=low,
         high_rad=high,
-        speed_rad_s=float(np.quantile(np.abs(smoothed.rate), 0.99)),
-        reversals=_reversals(smoothed.rate) if moves else 0,
+        speed_rad_s=float(np.quantile(speed, 0.99)),
+        reversals=reversals if moves else 0,
         moves=moves,
     )
 
@@ -304,10 +307,3 @@ def excitation_findings(traces: Sequence[TraceAudit]) -> Iterator[Finding]:
         else:
             continue
         yield Finding("limit", text, channel=f"position.{name}")
-
-
-def _reversals(rate: FloatArray) -> int:
-    """Number of changes of direction; rows that are almost still are left out."""
-    fast = np.abs(rate) > _FAST * np.quantile(np.abs(rate), 0.995)
-    direction = np.sign(rate[fast])
-    return int(np.count_nonzero(np.diff(direction)))

@@ -54,15 +54,13 @@ class Torques:
         """Compute servo torque minus inverse dynamics for recordings of a robot."""
         every = max(1, -(-sum(trace.ticks for trace in traces) // MOST_ROWS))
         parts = zip(*(_rows(trace, every) for trace in traces), strict=True)
-        since_s, q, v, a, command, rate, kp, damping, servo_nm = map(
-            np.concatenate, parts
-        )
+        t, q, v, a, command, rate, kp, damping, servo_nm = map(np.concatenate, parts)
         # the model has the nominal servo's back-EMF as damping
         emf = traces[0].servo.back_emf_nm_s_rad - plant.servo.back_emf_nm_s_rad
         nominal = inverse_dynamics(plant, plant.model, q, v, a) + emf * v
         weight = 1 / np.maximum(np.median(kp, axis=0), 1e-6)
         return cls(
-            JointMotion(since_s, q, v, a, command, rate, kp, nominal),
+            JointMotion(t, q, v, a, command, rate, kp, nominal),
             np.median(damping, axis=0),
             weight,
             ((servo_nm - nominal) * weight).reshape(-1),

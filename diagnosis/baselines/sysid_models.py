@@ -78,7 +78,7 @@ class SysidModels:
         """Compile one model for each recording, since each has its own servos."""
         self._plant, self._free = plant, free
         self._nominal = {
-            _label(number): (self._with_servo(trace.servo), trace.servo)
+            f"trace_{number}": (self._with_servo(trace.servo), trace.servo)
             for number, trace in enumerate(traces)
         }
 
@@ -134,7 +134,7 @@ def sequence_of(sysid: ModuleType, plant: Plant, trace: Trace, number: int) -> A
     the state, since position sensors in MuJoCo's rollout are one step late.
     """
     spec = plant.spec.copy()
-    spec.modelname = _label(number)
+    spec.modelname = f"trace_{number}"
     spec.option.timestep = STEP_S
     for sensor in list(spec.sensors):
         spec.delete(sensor)
@@ -183,7 +183,3 @@ def _start(
         if trace.base_orientation is not None:
             qpos[3:7] = trace.base_orientation[0]
     return np.asarray(sysid.create_initial_state(model, qpos, qvel), float)
-
-
-def _label(number: int) -> str:
-    return f"trace_{number}"

@@ -29,8 +29,13 @@ MOST = 0.98
 lacks can look like one of them."""
 
 
-def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
-    """Effects that could replace `placed` in the winning model and explain as much."""
+def alike(
+    found: SearchResult, plant: Plant, placed: PlacedEffect
+) -> tuple[PlacedEffect, ...]:
+    """Effects that may be true instead of `placed`, in these or in any recordings.
+
+    They could replace it in the winning model and explain as much, or are its twins.
+    """
     winner = found.winner
     assert winner is not None
     rest = winner.keys - {placed.key}
@@ -40,15 +45,8 @@ def confusable(found: SearchResult, placed: PlacedEffect) -> tuple[PlacedEffect,
         other = len(own) == 1 and own[0].key != placed.key
         if other and found.worse(judged) <= TIED_NATS:
             others[own[0].key] = PlacedEffect(own[0].name, own[0].place)
-    return tuple(others.values())
-
-
-def alike(
-    found: SearchResult, plant: Plant, placed: PlacedEffect
-) -> tuple[PlacedEffect, ...]:
-    """Effects that may be true instead of `placed`, in these or in any recordings."""
     twins = effect(placed.name).twins(plant, placed.place)
-    return tuple(dict.fromkeys((*confusable(found, placed), *twins)))
+    return tuple(dict.fromkeys((*others.values(), *twins)))
 
 
 def alternatives(

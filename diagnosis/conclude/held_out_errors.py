@@ -123,10 +123,7 @@ STEPS = 4
 
 
 def controls_of(
-    predictor: Predictor,
-    model: Model,
-    alike: Collection[str],
-    rng: np.random.Generator,
+    predictor: Predictor, model: Model, alike: Collection[str], rng: np.random.Generator
 ) -> dict[str, Model | None]:
     """Fit models that differ from the one found in its main effect.
 

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from mujoco.batch import Batch
@@ -22,50 +23,20 @@ from worlds.rollouts import Schedule
 from worlds.sim.world import SimWorld, ground_name, world_spec
 
 
-class LateCommands:
-    """Delays commands; a physics step in which two act gets their weighted mean."""
+class _Delay:
+    """Values that count later, by a time that may end between two physics steps.
+
+    `values` has the two that count now in front, the older one first, of which it has
+    the `share`.
+    """
 
     def __init__(self, delay_s: float, step_s: float) -> None:
-        """Make room for commands on their way; `step_s` is the physics step."""
-        steps, self._share = divmod(delay_s / step_s, 1)
-        self._commands: deque[FloatArray] = deque(maxlen=int(steps) + 2)
+        steps, self.share = divmod(delay_s / step_s, 1)
+        self.values: deque[Any] = deque(maxlen=int(steps) + 2)
 
-    def begin(self, command_rad: FloatArray) -> None:
-        """Start as if these (n, j) position targets had always been commanded."""
-        for _ in range(self._commands.maxlen or 0):
-            self._commands.append(command_rad)
-
-    def step(self, command_rad: FloatArray) -> FloatArray:
-        """Take a step's (n, j) command; return the delayed one that acts in it."""
-        self._commands.append(command_rad)
-        older, newer = self._commands[0], self._commands[1]
-        return (1 - self._share) * newer + self._share * older
-
-
-class LateEncoders:
-    """Delays measured joint positions and velocities, interpolating between steps."""
-
-    def __init__(self, delay_s: float, step_s: float) -> None:
-        """Make room for past measurements; `step_s` is the physics step."""
-        steps, self._share = divmod(delay_s / step_s, 1)
-        self._step_s = step_s
-        self._states: deque[tuple[FloatArray, FloatArray]] = deque(
-            maxlen=int(steps) + 2
-        )
-
-    def begin(self, position_rad: FloatArray, velocity_rad_s: FloatArray) -> None:
-        """Start as if joint positions and velocities (n, j) had always been these."""
-        for _ in range(self._states.maxlen or 0):
-            self.note(position_rad, velocity_rad_s)
-
-    def note(self, position_rad: FloatArray, velocity_rad_s: FloatArray) -> None:
-        """Store the true joint positions and velocities (n, j) after a physics step."""
-        self._states.append((position_rad.copy(), velocity_rad_s.copy()))
-
-    def seen(self) -> tuple[FloatArray, FloatArray]:
-        """Late joint positions and velocities (n, j) that the encoders report now."""
-        older, newer = self._states[0], self._states[1]
-        return hermite(older, newer, self._step_s, 1 - self._share)
+    def begin(self, value: Any) -> None:
+        """Start as if the value had always been this one."""
+        self.values.extend([value] * (self.values.maxlen or 0))
 
 
 def sim_plant(
@@ -139,8 +110,8 @@ class CorrectedSim(SimWorld):
         variants = sim_variants(plant, self._model, self.n)
         self._laws = BatchLaws(batch, variants, [plant.servo], step_s)
         signals = variants.signals
-        self._commands = LateCommands(float(signals.command_delay_s[0]), step_s)
-        self._encoders = LateEncoders(float(signals.sensor_delay_s[0]), step_s)
+        self._commands = _Delay(float(signals.command_delay_s[0]), step_s)
+        self._encoders = _Delay(float(signals.sensor_delay_s[0]), step_s)
         self._gyro_bias_rad_s = signals.gyro_bias_rad_s
         return batch
 
@@ -150,8 +121,7 @@ class CorrectedSim(SimWorld):
             self._steps = 0
             self._laws.begin(pose_rad)
             self._commands.begin(pose_rad)
-            _, velocity = self._laws.joint_state()
-            self._encoders.begin(self._laws.encoder_rad(), velocity)
+            self._encoders.begin(self._measured(self._laws))
 
     def _advance(self, schedule: Schedule) -> None:
         if self._laws is None:
@@ -160,19 +130,27 @@ class CorrectedSim(SimWorld):
         for targets, steps in schedule:
             for _ in range(steps):
                 now_s = np.array([self._steps * self.options.timestep_s])
-                self._laws.servo(self._commands.step(targets), now_s)
+                self._commands.values.append(targets)
+                share, (older, newer, *_) = self._commands.share, self._commands.values
+                self._laws.servo((1 - share) * newer + share * older, now_s)
                 self._laws.outside.apply(now_s)
                 self._run(1)
                 self._steps += 1
-                _, velocity = self._laws.joint_state()
-                self._encoders.note(self._laws.encoder_rad(), velocity)
+                self._encoders.values.append(self._measured(self._laws))
+
+    @staticmethod
+    def _measured(laws: BatchLaws) -> tuple[FloatArray, FloatArray]:
+        """Positions and velocities (n, j) that encoders without delay would report."""
+        return laws.encoder_rad().copy(), laws.joint_state()[1].copy()
 
     def _read(self) -> tuple[Truth, Observation]:
         """Read truth and observation; sensor effects act on the observation only."""
         truth, observation = super()._read()
         if self._laws is None:
             return truth, observation
-        position, velocity = self._encoders.seen()
+        older, newer, *_ = self._encoders.values
+        since = 1 - self._encoders.share
+        position, velocity = hermite(older, newer, self.options.timestep_s, since)
         return truth, replace(
             observation,
             position_rad=position + self._laws.joints["offset_rad"],

@@ -38,12 +38,10 @@ class Joints:
       setpoint_speed_rad_s: highest speed of the servo's set-point.
       gap_rad: total play between servo and joint; no torque passes within it.
       offset_rad: measured minus true position; the servo acts on the measured one.
-      coulomb_nm: dry friction.
       stribeck_nm: extra dry friction at standstill.
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
       load_share: dry friction as a share of the motor's torque, back-EMF included.
       spring_nm_rad: stiffness between motor and joint; infinite for a rigid gear.
-      spring_damping_nm_s_rad: damping between motor and joint.
     """
 
     kp_factor: FloatArray
@@ -82,20 +80,12 @@ class Signals:
     sensor_delay_s: FloatArray
     gyro_bias_rad_s: FloatArray
 
-    @classmethod
-    def neutral(cls, n: int) -> "Signals":
-        """Signals of n model variants without delays and errors."""
-        return cls(np.zeros(n), np.zeros(n), np.zeros((n, 3)))
-
 
 @dataclass(eq=False)
 class Outside:
-    """Forces and ground bumps that act on n model variants.
+    """Pushes on each of n model variants, (n, bodies) drag, and (n,) ground bumps.
 
-    Attributes:
-      pushes: for each variant a list of pushes.
-      drag_n_s_m: (n, bodies) drag coefficients [N s/m], bodies in MuJoCo's order.
-      bump_height_m: (n,) largest height of bumps above or below the plane.
+    `bump_height_m` is the largest height of bumps above or below the plane.
     """
 
     pushes: list[list[Push]]
@@ -120,7 +110,7 @@ class Variants:
         self.plant = plant
         self.n = n
         self.joints = Joints.neutral(n, len(plant.joints))
-        self.signals = Signals.neutral(n)
+        self.signals = Signals(np.zeros(n), np.zeros(n), np.zeros((n, 3)))
         self.outside = Outside(
             [[] for _ in range(n)], np.zeros((n, plant.model.nbody)), np.zeros(n)
         )

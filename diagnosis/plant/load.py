@@ -68,8 +68,10 @@ def load_plant(
     else:
         own = model_servo(known, ours)
     own = with_gains(own, ours, servo)
-    has_options = description is not None or Path(source).suffix == ".xml"
-    options = ModelOptions.of(spec) if has_options else None
+    options = None
+    if description is not None or Path(source).suffix == ".xml":
+        own_step_s, flags = spec.option.timestep, int(spec.option.disableflags)
+        options = ModelOptions(own_step_s, int(spec.option.integrator), flags)
     _equip(spec, base, ours, own)
     model = _compiled(spec, name)
     if description is not None:

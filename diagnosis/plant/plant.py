@@ -31,19 +31,12 @@ class ModelOptions:
     integrator: int
     disableflags: int
 
-    @classmethod
-    def of(cls, spec: mujoco.MjSpec) -> "ModelOptions":
-        """The options of a MuJoCo specification."""
-        option = spec.option
-        return cls(option.timestep, int(option.integrator), int(option.disableflags))
-
 
 @dataclass(frozen=True, eq=False)
 class Plant:
     """A nominal robot model whose joints are driven by servos.
 
     Attributes:
-      name: name of the robot, or the stem of its file.
       spec: MuJoCo specification with one affine actuator for each driven joint, named
         as the joint; its control is a position target. A floating base has the free
         joint `root`.

@@ -52,12 +52,9 @@ class Drive:
     """Commands and torques for n R simulations: n variants in R runs, variant first."""
 
     def __init__(self, runs: Sequence[Run], delay_s: FloatArray, step_s: float) -> None:
-        """Collect the commands and torques of all runs.
+        """Collect the commands and torques of R runs, all with targets or all without.
 
-        Args:
-          runs: R recordings, either all with position targets or all with torques.
-          delay_s: (n,) time until a command takes effect.
-          step_s: time step of the replay.
+        `delay_s` (n,) is the time until a command takes effect.
         """
         # variants with the same delay share their commands
         self._delays_s, self._which = np.unique(delay_s, return_inverse=True)

@@ -32,12 +32,8 @@ class BatchFriction:
     ) -> None:
         """Set the friction torques that do not change.
 
-        Args:
-          batch: a `mujoco.batch.Batch` with a row for each simulation.
-          plant: the robot model.
-          joints: arrays of `Joints` by name, with a row for each simulation.
-          damping_nm_s_rad: (rows, j) all damping that is integrated implicitly.
-          step_s: time step of the physics.
+        `joints` are arrays of `Joints` by name with a row for each simulation in the
+        batch, `damping_nm_s_rad` (rows, j) all damping that is integrated implicitly.
         """
         self._joints, self._dofs = joints, columns(plant.dofs)
         self.varies = bool(joints["stribeck_nm"].any() or joints["load_share"].any())

@@ -31,11 +31,8 @@ class BatchLaws:
     ) -> None:
         """Set the constants of all simulations; call `begin` once they have states.
 
-        Args:
-          batch: a `mujoco.batch.Batch` of n R simulations, sorted by variant.
-          variants: n variants of the robot model.
-          servos: servos of the R runs.
-          step_s: time step of the physics.
+        The `batch` has n R simulations of n variants with the servos of R runs, sorted
+        by variant.
         """
         plant, runs = variants.plant, len(servos)
         self._batch, self._step_s = batch, step_s

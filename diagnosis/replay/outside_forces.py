@@ -13,14 +13,7 @@ class OutsideForces:
     def __init__(
         self, batch: Batch, variants: Variants, runs: int, step_s: float
     ) -> None:
-        """Find the simulations and bodies that forces act on.
-
-        Args:
-          batch: the simulations, sorted by variant, then by run.
-          variants: variants of the robot model, which state pushes and drag.
-          runs: number R of runs.
-          step_s: time step of the physics.
-        """
+        """Find the bodies that forces act on in simulations of variants in R `runs`."""
         model = variants.plant.model
         self._step_s, self._runs = step_s, runs
         pushes = [

@@ -49,14 +49,8 @@ def replay(
 ) -> list[Replayed]:
     """Simulate every variant of a robot model under the commands of every recording.
 
-    Args:
-      runs: R recordings or parts of them, each with its own start state.
-      variants: n variants of the robot model.
-      step_s: time step of the physics.
-      threads: number of threads of the batch of simulations.
-
-    Returns:
-      For each run the predicted measurements of all variants.
+    Returns for each run the predicted measurements of all variants. A run has its own
+    start state.
 
     Example:
       >>> predicted = replay(runs, variants, threads=4)
@@ -90,12 +84,8 @@ def replay(
 class ReplayBatch:
     """Simulations of all variants of a robot model in all runs, sorted by variant.
 
-    Attributes:
-      laws: applies servos, friction and forces.
-      n: number of simulations, variants times runs.
-      count: number of runs.
-      qpos: (n, nq) MuJoCo's positions, which change as the simulations step.
-      qvel: (n, nv) MuJoCo's velocities, which change as the simulations step.
+    `n` is the number of simulations, `count` that of runs. `qpos` (n, nq) and `qvel`
+    (n, nv) are MuJoCo's, which change as the simulations step.
     """
 
     def __init__(

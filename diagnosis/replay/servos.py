@@ -56,12 +56,8 @@ class BatchServos:
     ) -> None:
         """Give every simulation the servos of its run, changed as its variant says.
 
-        Args:
-          batch: a `mujoco.batch.Batch`, sorted by variant, then by run.
-          plant: the robot model.
-          servos: servos of the R runs.
-          joints: arrays of `Joints` by name, with a row for each simulation.
-          step_s: time step of the physics.
+        `joints` are arrays of `Joints` by name with a row for each simulation in the
+        batch, sorted by variant, then by run.
         """
         self._joints, self._actuators = joints, columns(plant.actuators)
         self.fades = bool(joints["fade_1_s"].any())

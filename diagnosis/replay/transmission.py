@@ -13,12 +13,8 @@ class ElasticJoints:
     A motor with inertia J, angle m and speed w follows (Spong 1987)
       J w' = servo(command, m) - (kd + emf) w - K (m - q) - D (w - q'),
     with q the link's angle, stepped implicitly, since J may be small and K large.
-    MuJoCo simulates the link, driven by an actuator that acts as the spring.
-
-    Attributes:
-      soft: whether a joint has a spring.
-      stiffness: K [N m/rad]; 1 where there is no spring.
-      damping: D [N m s/rad].
+    MuJoCo simulates the link, driven by an actuator that acts as the spring. `soft`
+    says whether a joint has a spring; `stiffness` K is 1 where there is none.
     """
 
     def __init__(
@@ -29,10 +25,8 @@ class ElasticJoints:
     ) -> None:
         """Make motors that start at the angles of their links.
 
-        Args:
-          joints: arrays of `Joints` by name, with a row for each simulation.
-          servo: gains and limits of the servos, `BatchServos.law`.
-          inertia: (rows, j) inertias of the rotors [kg m^2].
+        `joints` are arrays of `Joints` by name, `servo` is `BatchServos.law`, and
+        `inertia` (rows, j) that of the rotors [kg m^2].
         """
         self.soft = np.isfinite(joints["spring_nm_rad"])
         self.stiffness = np.where(self.soft, joints["spring_nm_rad"], 1.0)

@@ -101,7 +101,11 @@ class Predictor:
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
         self.scored = self._scored.reshape(-1)
-        blocks = np.repeat(_block_numbers(traces), c)
+        numbers = [  # none occurs in two traces
+            (trace.time_s - trace.time_s[0]) // BLOCK_S + 1000 * i
+            for i, trace in enumerate(traces)
+        ]
+        blocks = np.repeat(np.concatenate(numbers), c)
         self.block = np.unique(blocks, return_inverse=True)[1]
 
     def part(self, first: int, last: int) -> "Predictor":
@@ -248,13 +252,6 @@ class Predictor:
             stacks = [stacked(result, own) for result in results]
             parts.append(np.concatenate(stacks, axis=1))
         return np.concatenate(parts)
-
-
-def _block_numbers(traces: Sequence[Trace]) -> FloatArray:
-    """(rows,) numbers of the time blocks (0.5 s) of all traces; none occurs twice."""
-    return np.concatenate(
-        [(t.time_s - t.time_s[0]) // BLOCK_S + 1000 * i for i, t in enumerate(traces)]
-    )
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:

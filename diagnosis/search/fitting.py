@@ -72,12 +72,9 @@ class Coordinates:
     def of(self, model: Model) -> FloatArray:
         """(p,) scaled coordinates of a model's p values, clipped to their bounds."""
         values = [value for placed in model for value in placed.values]
-        return np.array(
-            [
-                self.scaled(i, min(max(v, p.low), p.high))
-                for i, (p, v) in enumerate(zip(self.parameters, values, strict=True))
-            ]
-        )
+        each = enumerate(zip(self.parameters, values, strict=True))
+        inside = [self.scaled(i, min(max(v, p.low), p.high)) for i, (p, v) in each]
+        return np.array(inside)
 
     def model_at(self, x: FloatArray) -> Model:
         """The model whose values have the (p,) scaled coordinates `x`."""

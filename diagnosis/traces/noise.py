@@ -56,11 +56,8 @@ def noise_of(time_s: FloatArray, values: FloatArray) -> Noise:
     Differences of high order cancel smooth motion and keep white noise. They are taken
     from the quietest quarter of all blocks of rows, so that motion counts as little as
     possible. Blocks in which a rounded value does not change are left out. The result
-    is an upper bound where the channel never rests.
-
-    Args:
-      time_s: (T,) increasing, may be uneven.
-      values: (T,) NaN where missing.
+    is an upper bound where the channel never rests. Times (T,) may be uneven; missing
+    values (T,) are NaN.
     """
     quantum = quantum_of(values)
     there = np.isfinite(values)

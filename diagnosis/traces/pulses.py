@@ -16,7 +16,7 @@ from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace, filled, stretches
 from diagnosis.verdict import Pulse, PulseSource
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 FILTER_S = 0.01
 """Width of the median filter [s] that removes outliers before pulses are looked for."""
@@ -264,15 +264,10 @@ def _felt(
     pulse = np.zeros(trace.ticks)
     for (first, last), size in zip(where, sizes, strict=True):
         pulse[first:last] = size
-    sure = _sure_rows(trace, where) & np.isfinite(needed)
+    edges = trace.time_s[[min(row, trace.ticks - 1) for one in where for row in one]]
+    unsure = (np.abs(trace.time_s[:, None] - edges) < UNSURE_S).any(axis=1)
+    sure = ~unsure & np.isfinite(needed)
     regressors = [np.ones_like(pulse), velocity, np.sign(velocity), pulse]
     design = np.stack(regressors, axis=1)[sure]
     rest = (needed - trace.torque_nm[:, column])[sure]
     return 1.0 + float(np.linalg.lstsq(design, rest, rcond=None)[0][3])
-
-
-def _sure_rows(trace: Trace, where: Sequence[Stretch]) -> BoolArray:
-    """(T,) whether a row is 20 ms or more away from the edges of all pulses."""
-    edges = trace.time_s[[min(row, trace.ticks - 1) for one in where for row in one]]
-    near = np.abs(trace.time_s[:, None] - edges) < UNSURE_S
-    return np.asarray(~near.any(axis=1), bool)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from diagnosis.plant.load import load_plant
-from diagnosis.plant.plant import Plant
+from diagnosis.plant.plant import Base, Plant
 from diagnosis.plant.servo import Gains, with_gains
 from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace
 from groundwalk.arrays import FloatArray
@@ -44,13 +44,9 @@ def read_traces(
     recordings = [read_recording(path) for path in paths]
     _check_alike(paths, recordings)
     gains = [_gains(recording, servo) for recording in recordings]
-    base = recordings[0].metadata.base
-    plant = load_plant(
-        source,
-        "floating" if base == "floating" else "fixed",
-        recordings[0].joints,
-        gains[0],
-    )
+    first = recordings[0]
+    base: Base = "floating" if first.metadata.base == "floating" else "fixed"
+    plant = load_plant(source, base, first.joints, gains[0])
     traces = [
         replace(
             trace_of(recording, plant, name),
@@ -62,10 +58,7 @@ def read_traces(
 
 
 def read_reference(
-    paths: Sequence[Path],
-    source: str | Path,
-    plant: Plant,
-    servo: Gains | None = None,
+    paths: Sequence[Path], source: str | Path, plant: Plant, servo: Gains | None = None
 ) -> list[Trace]:
     """Read reference recordings: those of the same robot while it was healthy.
 

@@ -28,11 +28,8 @@ class Smoothed(NamedTuple):
     """
 
     value: FloatArray
-    """In the channel's unit."""
     rate: FloatArray
-    """First derivative, per second."""
     acceleration: FloatArray
-    """Second derivative, per second squared."""
 
 
 def smooth(
@@ -43,12 +40,9 @@ def smooth(
     A quintic P-spline with a knot each tick and a third-difference penalty (Eilers
     and Marx 1996). The penalty's weight minimises Mallows' Cp: squared residual plus
     twice the noise's variance for every degree of freedom, which for even samples is
-    known in closed form (see `_freedom`). Missing values are filled by the spline.
-
-    Args:
-      time_s: (T,) increasing, may be uneven.
-      values: (T,) NaN where missing.
-      noise_std: standard deviation of the noise of one value; None to estimate it.
+    known in closed form (see `_freedom`). The spline fills in missing values (T,), NaN;
+    times (T,) may be uneven. `noise_std` is the standard deviation of the noise of one
+    value, None to estimate it.
     """
     valid = np.isfinite(values)
     if valid.sum() < _LEAST_ROWS:

@@ -103,7 +103,8 @@ def _bases(trace: Trace) -> FloatArray:
     quaternion, rate, _ = smooth_columns(trace.time_s, turned)
     length = np.linalg.norm(quaternion, axis=1, keepdims=True)
     quaternion, rate = quaternion / length, rate / length
-    turning = _body_rates(quaternion, rate)
+    w, v, dw, dv = quaternion[:, :1], quaternion[:, 1:], rate[:, :1], rate[:, 1:]
+    turning = 2 * (w * dv - dw * v - np.cross(v, dv))  # vector part of 2 q* q'
     velocity = _with_measured(trace, velocity, trace.base_linear_velocity_m_s)
     turning = _with_measured(trace, turning, trace.base_angular_velocity_rad_s)
     return np.hstack([position, quaternion, velocity, turning])
@@ -123,10 +124,3 @@ def continuous(quaternion: FloatArray) -> FloatArray:
     products = np.sum(quaternion[1:] * quaternion[:-1], axis=1)
     signs = np.cumprod(np.concatenate([[1.0], np.where(products < 0, -1.0, 1.0)]))
     return np.asarray(quaternion * signs[:, None])
-
-
-def _body_rates(quaternion: FloatArray, rate: FloatArray) -> FloatArray:
-    """(T, 3) angular velocity [rad/s] in the body frame: vector part of 2 q* q'."""
-    w, v = quaternion[:, :1], quaternion[:, 1:]
-    dw, dv = rate[:, :1], rate[:, 1:]
-    return np.asarray(2 * (w * dv - dw * v - np.cross(v, dv)))

@@ -7,8 +7,8 @@ from made_up_traces import arm
 from diagnosis.conclude.answer import (
     MOST,
     TIED_NATS,
+    alike,
     alternatives,
-    confusable,
     probability,
 )
 from diagnosis.search.result import VALUE_NATS, SearchResult
@@ -27,7 +27,7 @@ def sure(*models):
 def test_what_does_nearly_as_well_may_be_the_truth():
     near, far = 100 + 0.9 * TIED_NATS, 100 + 1.1 * TIED_NATS
     tied = found(ARM, (100.0, VISCOUS), (near, COULOMB), (far, GAIN))
-    assert confusable(tied, placed(VISCOUS)) == (COULOMB_AT,)
+    assert alike(tied, ARM, placed(VISCOUS)) == (COULOMB_AT,)
     assert alternatives(tied, "effects") == ((COULOMB_AT,),)
 
 
@@ -43,15 +43,15 @@ def test_more_values_must_do_better():
     three = "stribeck_friction@elbow"
     extra = 2 * VALUE_NATS
     tied = found(ARM, (100.0, VISCOUS), (101 + TIED_NATS - extra, three))
-    assert confusable(tied, placed(VISCOUS)) == ()
+    assert alike(tied, ARM, placed(VISCOUS)) == ()
     tied = found(ARM, (100.0, VISCOUS), (99 + TIED_NATS - extra, three))
-    assert len(confusable(tied, placed(VISCOUS))) == 1
+    assert len(alike(tied, ARM, placed(VISCOUS))) == 1
 
 
 def test_of_a_pair_each_effect_has_its_own_rivals():
     pair = found(ARM, (100.0, VISCOUS, GAIN), (102.0, COULOMB, GAIN))
-    assert confusable(pair, placed(VISCOUS)) == (COULOMB_AT,)
-    assert confusable(pair, placed(GAIN)) == ()
+    assert alike(pair, ARM, placed(VISCOUS)) == (COULOMB_AT,)
+    assert alike(pair, ARM, placed(GAIN)) == ()
     assert alternatives(pair, "effects") == (
         (COULOMB_AT, PlacedEffect("servo_gain", "shoulder")),
     )
