@@ -11,9 +11,8 @@ Example:
 """
 
 from terrain.catalog import TerrainSpec, configuration, make, names, parse
+from terrain.families import Flat, Lumps
 from terrain.heightfield import Heightfield
-from terrain.regular import Flat
-from terrain.rough import Lumps
 
 __all__ = [
     "Flat",

@@ -6,10 +6,9 @@ from dataclasses import dataclass, field
 
 from groundwalk.errors import BadValueError, UnknownNameError
 from groundwalk.json_data import from_plain, to_plain
+from terrain.families import Bumps, Flat, Lumps, Slope, Stairs, Waves
 from terrain.ground import Ground, Parameter, Seed, checked_seed
 from terrain.heightfield import Heightfield
-from terrain.regular import Flat, Slope, Stairs, Waves
-from terrain.rough import Bumps, Lumps
 
 FAMILIES: Mapping[str, type[Ground]] = {
     "flat": Flat,

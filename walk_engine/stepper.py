@@ -18,8 +18,6 @@ from walk_engine.step_plan import (
 )
 from walk_engine.support import (
     Sensing,
-    crossed,
-    next_swing,
     nothing_sensed,
     sense,
     sensor_lateral_m,
@@ -140,7 +138,7 @@ class Stepper:
     ) -> Progress:
         """End a tick: update robots whose step, crouching or rising is over."""
         config, period_s = self._config, now.plan.period_s
-        has_crossed = crossed(now.sensing, sensing)
+        has_crossed = now.sensing.side * sensing.side < 0
         least = self._gait["switch_min_phase"]
         changes = step_is_over(time_s, period_s, has_crossed, least, config)
         # The last step ends when both feet are down side by side.
@@ -149,7 +147,8 @@ class Stepper:
         step_over = steps & np.where(now.state == WalkState.STOPPING, stops, changes)
         move_over = ~steps & (time_s >= config.posture_s)
         over = step_over | move_over
-        swing = next_swing(sensing, now.left_swings)
+        # The foot that carries less weight swings next; if unknown, they take turns.
+        swing = np.where(sensing.side == 0, ~now.left_swings, sensing.side < 0)
         return now._replace(
             state=np.where(over, when_over(now.state), now.state),
             ticks=np.where(over, 0.0, now.ticks),

@@ -52,11 +52,6 @@ def sense(
     return Sensing(largest_n, np.where(cop_m == 0, before.side, np.sign(cop_m)))
 
 
-def crossed(before: Sensing, now: Sensing) -> BoolArray:
-    """(n,) whether the weight moved to the robot's other side between two states."""
-    return before.side * now.side < 0
-
-
 def step_is_over(
     time_s: FloatArray,
     period_s: FloatArray,
@@ -72,14 +67,6 @@ def step_is_over(
     late_enough = time_s > min_phase * period_s
     too_late = time_s > config.timeout_periods * period_s
     return (late_enough & has_crossed) | too_late
-
-
-def next_swing(now: Sensing, left_swings: BoolArray) -> BoolArray:
-    """(n,) whether the left foot swings next: the foot that carries less weight.
-
-    The feet take turns if it is unknown which one carries the weight.
-    """
-    return np.where(now.side == 0, ~left_swings, now.side < 0)
 
 
 def sensor_lateral_m(biped: Biped) -> FloatArray:

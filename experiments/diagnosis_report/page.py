@@ -32,7 +32,7 @@ from experiments.diagnosis_report.numbers import (
 )
 from experiments.diagnosis_report.place_words import place_words
 from experiments.diagnosis_report.text import answer, badge, doubts, next_step, question
-from experiments.reports.html import render
+from experiments.reports.report import render
 from groundwalk.files import write_text
 
 TEMPLATE = "diagnosis_report.html.jinja"

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from experiments.runs.folder import CONFIG, PROVENANCE, RunFolder
-from experiments.runs.repeat_command import NOT_REPEATED
+from experiments.runs.options import NOT_REPEATED
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,7 @@ class Origin:
     @classmethod
     def of(cls, provenance: Mapping[str, Any], settings: Mapping[str, Any]) -> Self:
         """Make the origin from the content of provenance.json and options by name."""
+        changed = ", with changes that were not committed"
         known = [provenance, *provenance.get("resumed", ())]
         versions = {
             "groundwalk": provenance.get("groundwalk"),
@@ -39,7 +40,10 @@ class Origin:
         }
         return cls(
             command=command_of(provenance),
-            commit="; resumed at ".join(map(_code, known)),
+            commit="; resumed at ".join(
+                (code["commit"] or "unknown") + changed * bool(code["changed"])
+                for code in known
+            ),
             settings={k: _text(v) for k, v in settings.items() if v is not None},
             versions={k: v for k, v in versions.items() if v},
         )
@@ -67,16 +71,8 @@ class Origin:
         ]
 
 
-def _code(provenance: Mapping[str, Any]) -> str:
-    changed = ", with changes that were not committed"
-    return (provenance["commit"] or "unknown") + changed * bool(provenance["changed"])
-
-
 def command_of(provenance: Mapping[str, Any]) -> str:
-    """The command line of a run, from its provenance.json.
-
-    Early versions of groundwalk stored only the arguments.
-    """
+    """The command line of a run; early provenance.json files hold only arguments."""
     known = provenance.get("command")
     return str(known or shlex.join(["groundwalk", *provenance["arguments"]]))
 

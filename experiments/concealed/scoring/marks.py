@@ -128,7 +128,7 @@ def _considered(verdict: Verdict) -> set[str]:
     return found | others | answers
 
 
-def _main(found: Found, true: Hidden) -> list[str]:
+def _main(true: Hidden) -> list[str]:
     known = all_effects().get(true.name)
     names = (known and known.main_parameters) or tuple(true.parameters)
     return [name for name in names if name in true.parameters]
@@ -144,7 +144,7 @@ def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
     key = f"{true.name}@{true.place}"
     neutral = oracle.neutral.get(key, {}) if oracle else {}
     wrong, size = [], []
-    for name in _main(found, true):
+    for name in _main(true):
         value, nothing = true.parameters[name], neutral.get(name) or 0.0
         stated = found.parameters.get(name)
         wrong.append((stated.value if stated else nothing) - value)
@@ -153,7 +153,7 @@ def _error(found: Found, true: Hidden, oracle: Oracle | None) -> float:
 
 
 def _covered(found: Found, true: Hidden) -> list[bool]:
-    stated = [(found.parameters.get(n), true.parameters[n]) for n in _main(found, true)]
+    stated = [(found.parameters.get(n), true.parameters[n]) for n in _main(true)]
     return [one is not None and one.low <= value <= one.high for one, value in stated]
 
 
@@ -185,7 +185,6 @@ def _controls(
     removed = without - fit.corrected
     if removed <= 0:
         return None, None
-
     place, wrong = (
         None if error is None else _bounded(closed * (without - error) / removed)
         for error in (fit.wrong_place, fit.wrong_effect)

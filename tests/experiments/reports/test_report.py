@@ -13,11 +13,10 @@ from experiments.diagnose import Diagnose
 from experiments.evaluate import Evaluate
 from experiments.optimize_gait import OptimizeGait
 from experiments.reports.figure_file import write_figure
-from experiments.reports.html import body_html, sentence_html
 from experiments.reports.origin import Origin
-from experiments.reports.report import Report, markdown_table
+from experiments.reports.report import Report, body_html, markdown_table, sentence_html
 from experiments.runs.folder import RunFolder
-from experiments.runs.repeat_command import repeat_command
+from experiments.runs.options import repeat_command
 from experiments.seeing.run_pictures import search_figure
 from experiments.seeing.score_page import score_answer, write_page
 from experiments.transfer.claims import Claim, claims_answer, write_transfer_page

@@ -31,7 +31,7 @@ class NoResume:
 HOLD = """
 import sys, time
 from pathlib import Path
-from experiments.runs.lock import FolderLock
+from experiments.runs.folder import FolderLock
 lock = FolderLock.of(Path(sys.argv[1]))
 print("locked", flush=True)
 time.sleep(60)
