@@ -121,9 +121,8 @@ def _walk_cells(
     places = config.places
     with progress("trials", len(places) * len(rows), len(cells) * len(rows)) as bar:
         for place in places[len(cells) :]:
-            walks = walk_at(
-                place, gaits, rows, config.seed, config.threads, bar.advance
-            )
+            own = config.seed, config.threads
+            walks = walk_at(place, gaits, rows, *own, bar.advance)
             trials = [dataclasses.asdict(trial) for trial, _ in walks]
             cells.append({**dataclasses.asdict(place), "trials": trials})
             folder.write_json(HISTORY, state)

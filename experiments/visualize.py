@@ -116,12 +116,9 @@ def gather(paths: Sequence[Path]) -> dict[str, Recording]:
 def default_out(paths: Sequence[Path]) -> Path:
     """The .rrd file that is written without --out; refuses one of other programs."""
     first = paths[0]
+    out = first / WALK_RERUN if first.is_dir() else first.with_suffix(".rrd")
     if len(paths) > 1:
         out = first.parent / "comparison.rrd"
-    elif first.is_dir():
-        out = first / WALK_RERUN
-    else:
-        out = first.with_suffix(".rrd")
     if out.exists() and not _is_ours(out):
         raise BadValueError(
             f"{out} exists and is no file of groundwalk: choose another --out"

@@ -27,10 +27,6 @@ class FolderLock:
 
     The operating system releases the lock when the process dies, so that the folder of
     a killed run can be used at once. One process can lock the same folder repeatedly.
-
-    Example:
-      >>> lock = FolderLock.of(Path("runs/mine"))
-      >>> del lock  # other processes may use the folder again
     """
 
     _held: ClassVar["weakref.WeakValueDictionary[Path, FolderLock]"] = (
@@ -57,11 +53,7 @@ class FolderLock:
 
     @classmethod
     def of(cls, folder: Path) -> Self:
-        """Lock a folder that exists.
-
-        Raises:
-          RunFolderError: another running process has locked it.
-        """
+        """Lock a folder that exists; RunFolderError if another process has it."""
         key = folder.resolve()
         lock = cls._held.get(key)
         if not isinstance(lock, cls):

@@ -112,10 +112,10 @@ class Stages:
     def cost(self, seconds: float) -> None:
         """Print the estimated duration of the work, if that is more than a minute."""
         if seconds > LONG_S:
-            threads = f"{self._threads} thread{'s' if self._threads > 1 else ''}"
             minutes = round(seconds / 60)
-            unit = "minutes" if minutes > 1 else "minute"
-            line = f"{self._work}: about {minutes} {unit} on {threads}"
+            spent = f"{minutes} minute{'s' * (minutes > 1)}"
+            threads = f"{self._threads} thread{'s' * (self._threads > 1)}"
+            line = f"{self._work}: about {spent} on {threads}"
             print(line, file=sys.stderr, flush=True)
 
     def stage(self, name: str, steps: int) -> None:

@@ -50,7 +50,8 @@ def score_answer(scores: Scores) -> Iterator[str]:
         if len(gaits) <= MOST_NAMED:
             said = ", ".join(f"{name} walks {_went(gaits[name])}" for name in gaits)
         else:
-            best = min(gaits, key=lambda name: _rank(gaits[name]))
+            share = {n: one["falls"] / one["trials"] for n, one in gaits.items()}
+            best = min(gaits, key=lambda n: (share[n], -gaits[n]["speed_cm_s"]))
             said = (
                 f"the one of {len(gaits)} gaits that falls least is {best}: "
                 f"{_went(gaits[best])}"
@@ -62,10 +63,6 @@ def _went(score: Mapping[str, Any]) -> str:
     falls, trials = score["falls"], score["trials"]
     often = f"falls in {falls} of {trials} trials" if falls else "never falls"
     return f"{score['speed_cm_s']:.1f} cm/s and {often}"
-
-
-def _rank(score: Mapping[str, Any]) -> tuple[float, float]:
-    return score["falls"] / score["trials"], -score["speed_cm_s"]
 
 
 def score_lines(scores: Scores) -> list[str]:

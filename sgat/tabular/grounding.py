@@ -30,10 +30,9 @@ def counted_forward_model(
 
 
 def inverse_model(sim: FiniteMdp) -> IntArray:
-    """(S, S) the sim's action that leads from a state (row) to another one (column).
+    """(S, S) a deterministic sim's action from one state (row) to another (column).
 
-    It is the first one if several do, and `NONE` (-1) if none does; BadValueError if
-    the sim is not deterministic.
+    It is the first one if several lead there, and `NONE` (-1) if none does.
     """
     if not np.isin(sim.transition, (0, 1)).all():
         raise BadValueError("only a deterministic sim has an inverse model")

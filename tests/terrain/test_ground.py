@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import terrain
 from groundwalk.errors import BadValueError
-from terrain import regular
+from terrain import families
 
 RANDOM = ("bumps", "lumps")
 
@@ -143,9 +143,9 @@ def test_grounds_that_make_no_sense_are_refused(name, parameters, message):
 
 
 def test_configurations_hold_plain_numbers_and_can_be_compared():
-    ground = regular.Stairs(step_m=np.float64(0.02), steps=np.int64(3), tread_m=1)
-    assert ground == regular.Stairs(step_m=0.02, steps=3, tread_m=1.0)
-    assert ground != regular.Stairs(step_m=0.02, steps=4, tread_m=1.0)
+    ground = families.Stairs(step_m=np.float64(0.02), steps=np.int64(3), tread_m=1)
+    assert ground == families.Stairs(step_m=0.02, steps=3, tread_m=1.0)
+    assert ground != families.Stairs(step_m=0.02, steps=4, tread_m=1.0)
     types = [type(value) for value in (ground.step_m, ground.steps, ground.tread_m)]
     assert types == [float, int, float]
     with pytest.raises(dataclasses.FrozenInstanceError):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import terrain
 from groundwalk.errors import BadValueError, UnknownNameError
-from terrain import TerrainSpec, regular
+from terrain import TerrainSpec, families
 
 
 @given(
@@ -45,7 +45,7 @@ def test_defaults_are_written_down():
             "start_radius_m": 0.35,
             "blend_m": 0.25,
             "amplitude_m": 0.02,
-            "wavelength_m": regular.Waves().wavelength_m,
+            "wavelength_m": families.Waves().wavelength_m,
             "heading_rad": 0.0,
         },
         "seed": 1,

@@ -124,8 +124,8 @@ class Goal:
         if value is None or not self.asked(score):
             return None
         below = self.high is None or value <= self.high
-        below = below and (limit is None or bool(value < limit))
-        return below and (self.low is None or value >= self.low)
+        less = limit is None or bool(value < limit)
+        return below and less and (self.low is None or value >= self.low)
 
     def asked(self, score: Mapping[str, Any]) -> str:
         """The goal in words, such as "at least 0.9"; "" without bounds."""
