@@ -1,32 +1,10 @@
-"""`Recording`: one rollout written down, in memory.
+"""`Recording`: one rollout written down, in memory, with the columns of format 1.
 
-Format 1 has one row a tick, SI units and radians, joint names as in the model.
-
-| column | meaning |
-|---|---|
-| `time` | [s], increasing, never missing; steps may be uneven |
-| `position.<joint>` | measured; every joint that appears at all has it |
-| `command.<joint>` | position target |
-| `command_torque.<joint>` | commanded torque |
-| `torque.<joint>` | measured torque |
-| `velocity.<joint>` | measured |
-| `base.position.{x,y,z}` | of the base's link frame, in the world frame |
-| `base.orientation.{w,x,y,z}` | unit quaternion, base to world |
-| `base.linear_velocity.{x,y,z}` | in the world frame |
-| `base.angular_velocity.{x,y,z}` | in the body frame |
-| `gyroscope.{x,y,z}`, `accelerometer.{x,y,z}` | measured, in the sensor's frame |
-| `foot_force.{left,right}` | [N], one sum a foot |
-| `foot_force.{left,right}.{front,rear}_{left,right}` | [N], each sensor |
-| `support` | leg on which the gait means to stand: -1 right, 0 both, 1 left |
-
-At least one column of `command`, `command_torque` or `torque` is there. Every other
-column but `time` and `position` is optional, but a vector comes whole. Values may
-be missing (NaN here, null in a file). Row k holds what was measured at `time[k]`
-before `command[k]` took effect; the command holds until `time[k + 1]`.
-
-A recording also has metadata (`worlds.recordings.metadata`): robot, base and source,
-and where they are known servo, terrain, gait, world and end. Files need not have the
-forces of single sensors, `support`, or any metadata beyond robot, base and source.
+docs/recordings.md lists the columns; units are SI and radians. At least one column of
+`command`, `command_torque` or `torque` is there; every other one but `time` and
+`position` is optional, but a vector comes whole. Values may be missing (NaN here, null
+in a file). Row k holds what was measured at `time[k]` before `command[k]` took effect;
+the command holds until `time[k + 1]`. Metadata: `worlds.recordings.metadata`.
 """
 
 from collections.abc import Sequence

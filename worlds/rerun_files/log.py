@@ -1,27 +1,8 @@
 """Writes recordings as Rerun files: robots, ground and curves.
 
-All paths of a scene begin with its name, so that one file can have several scenes:
-
-| entity | content |
-|---|---|
-| `<scene>/robot/<link>` | mesh or capsules, and pose of the link in the world |
-| `<scene>/robot/<foot>/{sole,rim,force}` | plate, its edge, arrows of forces |
-| `<scene>/ground` | the heightfield's triangles |
-| `<scene>/joints/<joint>/{position,velocity,command,...}` | as recorded |
-| `<scene>/contact/{left,right}` | force on each foot [N] |
-| `<scene>/imu/{gyroscope,accelerometer}` | x, y, z [rad/s, m/s^2] |
-| `<scene>/support` | leg on which the gait means to stand: left, right or both |
-| `<scene>/events` | why the rollout ended |
-| `<scene>/balance/centre_of_mass` | a point, and its whole path (`.../track`) |
-| `<scene>/balance/below` | that point, moved down to the lowest sole's height |
-| `<scene>/balance/pressure` | the centre of pressure that the force sensors measure |
-| `<scene>/balance/zmp` | the zero-moment point that follows from the motion |
-| `<scene>/balance/polygon` | the support polygon: the hull of the loaded soles |
-| `<scene>/balance/sideways/...` | y [m] of these points but `below`, over time |
-| `<scene>/contact/support` | loaded feet, as measured: left, right, both, none |
-| `<scene>/fall` | a ring where the robot fell, labelled with the time |
-
-A file may also hold further curves, each at a path of its own.
+All paths of a scene begin with its name, so that one file can have several scenes;
+docs/seeing.md lists the entities. A file may also hold further curves, each at a path
+of its own.
 
 Timelines are `sim_time`, the recording's time, and `tick`, its row. An entity has no
 value at a row in which one is missing. The recording's metadata are properties of the

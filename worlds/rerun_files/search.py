@@ -2,18 +2,8 @@
 
 The only timeline is `generation`. Curves show the whole search; the bars, the text and
 the robot show the generation at the time cursor. The mean gait is the centre of the
-distribution from which a generation is drawn.
-
-| entity | content |
-|---|---|
-| `search/reward/{best,middle}` | largest and median reward of a generation's gaits |
-| `search/reward/{mean,tried}` | of the mean gait; of every gait tried, as points |
-| `search/rewards` | histogram of a generation's rewards, as bars |
-| `search/falls` | share of the tried gaits that fell [%] |
-| `search/parameters/<name>/{mean,spread}` | mean gait; +- one standard deviation |
-| `search/parameters/<name>/best` | of the best gait, if it is known |
-| `search/gait` | table of parameters: best gait, mean gait and spread |
-| `search/walk/...` | walk of the best gait, see `worlds.rerun_files.search_walk` |
+distribution from which a generation is drawn. docs/seeing.md lists the entities, all
+below `search/`.
 """
 
 from pathlib import Path
