@@ -31,7 +31,7 @@ from experiments.runs.gait_files import short_name
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run
 from experiments.walking.evaluation import Study, evaluate, keep
-from experiments.walking.search import Budget, check_search, tune
+from experiments.walking.search import RATINGS, Budget, check_search, tune
 from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
@@ -71,6 +71,8 @@ class Humanoids(RunOptions):
       population: number of gaits tried in each generation.
       generations: number of generations of each search.
       sigma: spread of the first generation, as a share of each parameter's range.
+      ratings: number of times that the mean gait of each generation is rated after a
+        search, to choose the best of them.
       trials: number of walks in the sim that are counted, each from its own start pose.
       real_trials: number of walks in the real world, each on its own lumpy ground.
       threads: processor threads; 0 for all.
@@ -82,6 +84,7 @@ class Humanoids(RunOptions):
     population: int = 20
     generations: int = 10
     sigma: float = 0.1
+    ratings: int = RATINGS
     trials: int = 30
     real_trials: int = 10
     threads: int = 0
@@ -94,7 +97,7 @@ class Humanoids(RunOptions):
             raise BadValueError("name at least one robot, and none of them twice")
         check_search(self.population, self.sigma)
         self.studies()
-        check_at_least(self, generations=1)
+        check_at_least(self, generations=1, ratings=1)
         super().__post_init__()
 
     def studies(self) -> dict[str, Study]:
@@ -132,7 +135,7 @@ def _robot(
     # The seed follows from the name: the other robots of the run make no difference.
     own = [config.seed, *description.name.encode()]
     of_search, of_trials = np.random.SeedSequence(own).spawn(2)
-    budget = Budget(config.population, config.generations, config.sigma)
+    budget = Budget(config.population, config.generations, config.sigma, config.ratings)
     rater = partial(_rate, config, description)
     tuned = tune(folder.path / CHECKPOINT, START, budget, rater, of_search)
     of_world = dict(zip(config.studies(), of_trials.spawn(2), strict=True))

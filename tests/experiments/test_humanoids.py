@@ -126,6 +126,7 @@ def test_rows_fit_their_headings():
         ({"population": 2}, "population"),
         ({"generations": 0}, "generations"),
         ({"trials": 0}, "trials"),
+        ({"ratings": 0}, "ratings"),
         ({"seed": -1}, "seed"),
     ],
 )
@@ -162,7 +163,8 @@ def test_ranges_that_no_leg_can_have_make_a_robot_fall():
 @pytest.mark.slow
 def test_a_tiny_run(tmp_path, capsys):
     out = tmp_path / "run"
-    sizes = {"population": 4, "generations": 1, "trials": 1, "real_trials": 1}
+    sizes = {"population": 4, "generations": 1, "ratings": 1, "trials": 1}
+    sizes["real_trials"] = 1
     main(Humanoids(robots=("icub",), threads=1, out=out, **sizes))
     assert "icub" in capsys.readouterr().out
     result = json.loads((out / "result.json").read_text())

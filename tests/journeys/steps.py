@@ -243,7 +243,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
         "groundwalk list robots": Run(says="g1"),
         "groundwalk humanoids --robots my_robot.urdf": Run(
-            "--population 4 --generations 1 --trials 1 --real-trials 1 "
+            "--population 4 --generations 1 --ratings 1 --trials 1 --real-trials 1 "
             "--out runs/of-mine",
             writes=("runs/of-mine/report.html", "runs/of-mine/humanoids.png"),
         ),
