@@ -17,7 +17,7 @@ PICTURES = {
 }
 COLUMNS = ("world", "gait", "speed [cm/s] ± s.d.", "falls", "fall rate, 95 % interval")
 MOST_NAMED = 3
-"""Of more gaits than this, the page's answer describes only the best."""
+"""Most gaits that the answer on a page describes; of a longer list only the best."""
 
 
 def write_page(

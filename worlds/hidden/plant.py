@@ -89,7 +89,7 @@ class HiddenPlant:
         return self.joints.index(name)
 
     def with_gains(self, stiffness: float, damping: float = 1.0) -> "HiddenPlant":
-        """The same robot with all kp and kd multiplied; the motor's back-EMF stays."""
+        """A copy of this robot with all kp and kd multiplied, the back-EMF kept."""
         return replace(
             self,
             kp_nm_rad=self.kp_nm_rad * stiffness,
