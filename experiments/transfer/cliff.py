@@ -6,9 +6,10 @@ from experiments.command_line import run_verb
 from experiments.runs.folder import HISTORY, RESULT, RunFolder, open_run
 from experiments.runs.progress import progress
 from experiments.transfer.claims import print_study, write_picture
-from experiments.transfer.cliff_study.figure import FIGURE, cliff_figure
 from experiments.transfer.cliff_study.page import (
+    FIGURE,
     check_claims,
+    cliff_figure,
     returns_table,
     write_cliff_page,
 )

@@ -13,8 +13,7 @@ from experiments.transfer.gym_studies.environments import (
     INVERTED_PENDULUM,
     Domain,
 )
-from experiments.transfer.gym_studies.figure import returns_figure
-from experiments.transfer.gym_studies.page import write_gym_page
+from experiments.transfer.gym_studies.page import returns_figure, write_gym_page
 from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
 from experiments.transfer.gym_studies.sizes import SIZES, SizeName
 from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, do_job

@@ -6,11 +6,12 @@ from experiments.command_line import run_verb
 from experiments.runs.folder import RESULT, RunFolder, open_run
 from experiments.runs.progress import progress
 from experiments.transfer.claims import print_study, write_picture
-from experiments.transfer.nao_studies.figure import FIGURE, cells_figure
 from experiments.transfer.nao_studies.page import (
     CELLS,
+    FIGURE,
     HEADINGS,
     Cell,
+    cells_figure,
     table_of,
     write_nao_page,
 )

@@ -21,16 +21,15 @@ from experiments.runs.folder import HISTORY, RESULT, open_run
 from experiments.runs.options import RunOptions
 from experiments.runs.progress import progress
 from experiments.transfer.claims import print_study, write_picture
-from experiments.transfer.nao_studies.falls_figure import FIGURE, falls_figure
-from experiments.transfer.nao_studies.falls_measures import (
+from experiments.transfer.nao_studies.falls import (
+    FIGURE,
     GROUNDINGS,
-    MEASURES_FIGURE,
-    measures_figure,
-    measures_of,
-)
-from experiments.transfer.nao_studies.falls_page import (
     HEADINGS,
     MEASURES,
+    MEASURES_FIGURE,
+    falls_figure,
+    measures_figure,
+    measures_of,
     prediction_rows,
     table_of,
     write_falls_page,

@@ -1,7 +1,7 @@
-"""The NAO study's table, its claims and its page."""
+"""The NAO study's figure, its table, its claims and its page."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from experiments.grounded_walks.courses import RealCourse
 from experiments.grounded_walks.data import ON_COURSE, WALK
@@ -11,10 +11,47 @@ from experiments.reports.report import markdown_table
 from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.transfer.claims import Claim, write_transfer_page
-from experiments.transfer.nao_studies.figure import FIGURE
 from experiments.walking.trials import FALL_PENALTY_CM_S
 from sgat.transformers.catalogue import groundings
 from terrain import Flat, Lumps, configuration, parse
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FIGURE = "transfer_nao.png"
+COLOURS = ("0.6", "#56b4e9", "#0072b2")
+"""Colours of the grounding steps 0, 1 and 2."""
+
+
+def cells_figure(cells: Sequence[Mapping[str, Any]]) -> "Figure":
+    """A row for each cell: speed with standard deviation, falls with 95 % interval.
+
+    A cell is the result of one method after one grounding step.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 0.4 * len(cells) + 1.2), dpi=160)
+    figure.set_layout_engine("constrained")
+    speeds, falls = figure.subplots(1, 2, sharey=True)
+    rows = sorted(cells, key=lambda cell: cell["step"])
+    for y, cell in enumerate(rows):
+        colour = COLOURS[min(cell["step"], 2)]
+        speeds.barh(
+            y, cell["speed_mean"], xerr=cell["speed_std"], color=colour, ecolor="0.3"
+        )
+        share = cell["falls"] / cell["trials"]
+        low, high = wilson(cell["falls"], cell["trials"])
+        falls.plot([100 * low, 100 * high], [y, y], color=colour, linewidth=3)
+        falls.plot(100 * share, y, "o", color=colour)
+    labels = [f"{cell['method']}, step {cell['step']}" for cell in rows]
+    speeds.set_yticks(range(len(rows)), labels)
+    speeds.invert_yaxis()
+    speeds.set_xlabel("speed [cm/s]")
+    falls.set(xlabel="falls [%], 95 % interval", xlim=(0, 100))
+    for panel in (speeds, falls):
+        panel.spines[["top", "right"]].set_visible(False)
+    return figure
+
 
 CELLS = "cells"
 DIAGNOSED = "diagnosed"

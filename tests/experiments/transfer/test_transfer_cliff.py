@@ -7,10 +7,13 @@ from matplotlib.image import imread
 
 from experiments.transfer import cliff as transfer_cliff
 from experiments.transfer.cliff import main
-from experiments.transfer.cliff_study.figure import cliff_figure
-from experiments.transfer.cliff_study.grid import MOVES, cliff_walking, intended_path
-from experiments.transfer.cliff_study.page import check_claims
-from experiments.transfer.cliff_study.study import TransferCliff
+from experiments.transfer.cliff_study.page import check_claims, cliff_figure
+from experiments.transfer.cliff_study.study import (
+    MOVES,
+    TransferCliff,
+    cliff_walking,
+    intended_path,
+)
 from groundwalk.errors import BadValueError
 from sgat.tabular.mdp import expected_return, policy_iteration
 

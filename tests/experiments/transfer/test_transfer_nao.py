@@ -18,9 +18,9 @@ from experiments.grounded_walks.data import FLAT_TICKS, RealWalks, on_lumps
 from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN, GroundingStep
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao import main
-from experiments.transfer.nao_studies.figure import cells_figure
 from experiments.transfer.nao_studies.page import (
     DIAGNOSED_SIM,
+    cells_figure,
     claims_of,
     faster_p,
     more_falls_p,

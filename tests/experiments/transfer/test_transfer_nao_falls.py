@@ -6,10 +6,11 @@ import pytest
 from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao_falls import TransferNaoFalls, main
-from experiments.transfer.nao_studies.falls_figure import FIGURE
-from experiments.transfer.nao_studies.falls_measures import GROUNDINGS, MEASURES_FIGURE
-from experiments.transfer.nao_studies.falls_page import (
+from experiments.transfer.nao_studies.falls import (
+    FIGURE,
+    GROUNDINGS,
     MEASURES,
+    MEASURES_FIGURE,
     correlation,
     correlation_interval,
     prediction_rows,
