@@ -80,13 +80,17 @@ def choose(
         print(f"\n{program} {kind.upper()} --help shows the options of a {kind}")
         return
     verb = _guarded(lambda: _verb(kind, name, verbs))
-    home = verb.module or name.replace("-", "_")
-    module = importlib.import_module(f"experiments.{home}")
+    module = importlib.import_module(home(name, verb))
     config = getattr(module, verb.config)
     if isinstance(config, dict):
         choose(config, f"{program} {name}", options, "study")
     else:
         run_verb(config, module.main, f"{program} {name}", options)
+
+
+def home(name: str, verb: Verb) -> str:
+    """The full name of a verb's module."""
+    return f"experiments.{verb.module or name.replace('-', '_')}"
 
 
 def run_verb(

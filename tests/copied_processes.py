@@ -14,16 +14,27 @@ from types import SimpleNamespace
 
 import pytest
 
-from experiments.command_line import VERBS, main
+from experiments import concealed, transfer
+from experiments.command_line import VERBS, home, main
 
 IMPORTED = [
-    "mujoco",
-    "worlds.real.world",
+    *(home(*verb) for verb in VERBS.items()),
+    *(home(*study) for study in (concealed.STUDIES | transfer.STUDIES).items()),
+    "PIL.GifImagePlugin",
+    "cma",
+    "copied_processes",
+    "jinja2",
     "matplotlib.backends.backend_agg",
-    "matplotlib.figure",
-    "rerun",
+    "matplotlib.pyplot",
+    "mujoco",
+    "networkx",
+    "pyarrow.compute",
+    "rerun.blueprint",
+    "rich.markdown",
     "torch",
-    *(f"experiments.{verb.module}" for verb in VERBS.values()),
+    "trimesh",
+    "tyro",
+    "worlds.real.world",
 ]
 
 

@@ -1,3 +1,4 @@
+import importlib.util
 import json
 import os
 import signal
@@ -6,6 +7,7 @@ import sys
 import time
 
 import pytest
+from copied_processes import IMPORTED
 
 from experiments.command_line import VERBS, main, one_line, run_verb
 from experiments.concealed.run import ConcealedRun
@@ -155,6 +157,11 @@ def test_ctrl_c_in_the_real_world_says_one_thing(tmp_path):
     os.killpg(run.pid, signal.SIGINT)
     _, said = run.communicate(timeout=60)
     assert (run.returncode, said.count("\n")) == (130, 1), said
+
+
+def test_processes_of_tests_begin_with_what_there_is():
+    """A server of copies passes over what it cannot import, and says nothing."""
+    assert all(importlib.util.find_spec(name) for name in IMPORTED)
 
 
 def test_a_boxed_report_becomes_one_line():
