@@ -28,7 +28,7 @@ def biped(description: Description) -> Biped:
       >>> biped(robots.get("nao")).leg.thigh_m
       0.1
     """
-    left, right = (_chain(description, foot.joint) for foot in description.feet)
+    left, right = (description.chain(foot.joint) for foot in description.feet)
     for side, leg in (("left", left), ("right", right)):
         if len(leg) != LEG_JOINTS:
             names = ", ".join(description.joints[joint] for joint in leg)
@@ -68,15 +68,6 @@ def biped(description: Description) -> Biped:
         scale=description.scale,
         ankles_ahead_m=description.ankles_ahead_m,
     )
-
-
-def _chain(description: Description, joint: int) -> _Leg:
-    """Indices of the joints from the root to a joint, that joint included."""
-    chain: list[int] = []
-    while joint >= 0:
-        chain.insert(0, joint)
-        joint = description.links[joint].parent
-    return tuple(chain)
 
 
 def _by_role(description: Description, leg: _Leg) -> _Leg:

@@ -222,6 +222,11 @@ class Description:
         """(joints,) speed of each joint's motor without load [rad/s]."""
         return np.array([joint.motor.no_load_speed_rad_s for joint in self.links])
 
+    def chain(self, joint: int) -> tuple[int, ...]:
+        """Indices of the joints from the root to a joint, that joint included."""
+        above = self.links[joint].parent
+        return (*(self.chain(above) if above >= 0 else ()), joint)
+
     @property
     def mass_kg(self) -> float:
         """Mass of the whole robot [kg]."""

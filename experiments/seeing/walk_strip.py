@@ -76,11 +76,8 @@ def _joints(
     robot: Description, poses: dict[str, LinkPoses], joint: int
 ) -> list[FloatArray]:
     """Positions (ticks, 3) [m] of each joint on the way from the root to `joint`."""
-    chain: list[FloatArray] = []
-    while joint >= 0:
-        chain.insert(0, poses[robot.links[joint].link.name].position_m)
-        joint = robot.links[joint].parent
-    return chain
+    links = [robot.links[above].link for above in robot.chain(joint)]
+    return [poses[link.name].position_m for link in links]
 
 
 def _point(pose: LinkPoses, place_m: Sequence[float]) -> FloatArray:

@@ -18,8 +18,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError, BadValueError
 from robots.description import Description
 from terrain import Heightfield
-from worlds.recordings.columns import ORIENTATION, nearest
-from worlds.recordings.recording import Recording
+from worlds.recordings.recording import ORIENTATION, Recording, nearest
 
 
 class LinkPoses(NamedTuple):
@@ -178,17 +177,16 @@ class Scene:
 
     def pitch_joints(self, side: str) -> tuple[str, ...]:
         """Names of the recorded pitch joints of a leg ("left", "right"), hip first."""
-        links = self.description.links
-        if not self.description.feet:
+        robot = self.description
+        if not robot.feet:
             return ()
-        index = self.description.feet[SIDES.index(side)].joint
-        names: list[str] = []
-        while index >= 0:
-            joint = links[index]
-            if abs(joint.axis[1]) > 0.9 and joint.name in self.recording.joints:
-                names.insert(0, joint.name)
-            index = joint.parent
-        return tuple(names)
+        chain = robot.chain(robot.feet[SIDES.index(side)].joint)
+        links = [robot.links[joint] for joint in chain]
+        return tuple(
+            joint.name
+            for joint in links
+            if abs(joint.axis[1]) > 0.9 and joint.name in self.recording.joints
+        )
 
     @property
     def title(self) -> str:
