@@ -17,7 +17,7 @@ import terrain
 import worlds
 from benchmarks.ratios import judged, seconds
 from experiments.grounded_walks.courses import SimPlace
-from experiments.grounded_walks.data import walk
+from experiments.grounded_walks.walks import walk
 from experiments.walking import TrialRules, walk_trials
 from sgat.models.config import ForwardConfig, NetworkConfig
 from sgat.models.forward_model import ForwardModel

@@ -20,13 +20,7 @@ from experiments.humanoid_study.page import (
 )
 from experiments.reports.tables import print_result
 from experiments.runs.extras import extra
-from experiments.runs.folder import (
-    CHECKPOINT,
-    RECORDINGS,
-    RESULT,
-    RunFolder,
-    open_run,
-)
+from experiments.runs.folder import CHECKPOINT, RECORDINGS, RESULT, RunFolder, open_run
 from experiments.runs.gait_files import short_name
 from experiments.runs.options import RunOptions, check_at_least
 from experiments.seeing.run_pictures import picture_run

@@ -8,9 +8,7 @@ import numpy as np
 
 from experiments.command_line import run_verb
 from experiments.concealed.motion import FLOATING_STEP_S, STEP_S, motion_feed
-from experiments.motions import (
-    MOTIONS,
-)
+from experiments.motions import MOTIONS
 from experiments.runs.folder import check_new
 from experiments.runs.options import check_at_least
 from groundwalk.errors import BadValueError, GroundwalkError

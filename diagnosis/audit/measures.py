@@ -16,7 +16,7 @@ from diagnosis.traces.noise import noise_of
 from diagnosis.traces.smoothing import Smoothed
 from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace, runs
 from groundwalk.arrays import BoolArray, FloatArray
-from worlds.recordings.columns import vector_columns
+from worlds.recordings.recording import vector_columns
 
 COMMANDS = ("command.", "command_torque.")
 """Prefixes of the names of columns that are commanded, not measured."""

@@ -24,7 +24,7 @@ from robots import get as robot
 from robots import names as robot_names
 from robots.engine_models.mjcf import quiet_mujoco
 from robots.from_urdf.mesh_files import example_robots
-from worlds.recordings.columns import nearest
+from worlds.recordings.recording import nearest
 
 _SUFFIXES = (".xml", ".urdf")
 _HELD_AT_M = 1.0

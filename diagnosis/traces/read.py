@@ -14,9 +14,8 @@ from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 from worlds import read_recording
-from worlds.recordings.columns import nearest
 from worlds.recordings.metadata import ServoGains
-from worlds.recordings.recording import Recording
+from worlds.recordings.recording import Recording, nearest
 
 
 def read_traces(

@@ -22,7 +22,7 @@ from experiments.diagnosis_report.numbers import error_unit, unit_text
 from experiments.seeing.scenes import scene_names
 from robots.description import Description
 from worlds import Recording, RecordingMetadata
-from worlds.recordings.columns import vector_columns
+from worlds.recordings.recording import vector_columns
 from worlds.rerun_files.log import write_rrd
 from worlds.scenes.colours import accent
 from worlds.scenes.curves import Curve, Trace

@@ -18,11 +18,12 @@ from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
     bars_figure,
+    mismatch_figure,
     overlay_figure,
     unexplained_figure,
+    worst_cells,
 )
 from experiments.diagnosis_report.findings import parameter_rows
-from experiments.diagnosis_report.mismatch_figure import mismatch_figure, worst_cells
 from experiments.diagnosis_report.numbers import (
     DASH,
     amount_text,

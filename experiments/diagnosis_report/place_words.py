@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from diagnosis import PlacedEffect
 from diagnosis.effects import effect as kind_of
 from diagnosis.verdict import Found
-from worlds.recordings.columns import JOINT_QUANTITIES
+from worlds.recordings.recording import JOINT_QUANTITIES
 
 _SIDED = re.compile(r"([LR])([A-Z][a-z]+(?:[A-Z][a-z]+)*)")
 _SIDES = {"L": "left", "R": "right"}

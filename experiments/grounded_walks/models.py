@@ -7,18 +7,18 @@ import numpy as np
 
 import robots
 from experiments.grounded_walks.courses import LUMPS_M, SHORT_START_M, START_M, Places
-from experiments.grounded_walks.data import (
+from experiments.grounded_walks.walks import (
     ON_COURSE,
     ROBOT,
     WALK,
     GroundedSim,
     RealWalks,
     WalkRecords,
+    rate_in_sim,
     record_real,
     record_walks,
     walk_in_sim,
 )
-from experiments.grounded_walks.raters import rate_in_sim
 from experiments.walking.search import Rater
 from groundwalk.arrays import FloatArray
 from sgat.models.config import ForwardConfig

@@ -10,7 +10,7 @@ from experiments.stress.families import leg_length_m
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.sole import contact_points
-from worlds.recordings.columns import SUPPORT
+from worlds.recordings.recording import SUPPORT
 from worlds.scenes.scene import LinkPoses, Scene, link_poses
 
 

@@ -9,14 +9,14 @@ import numpy as np
 import robots
 from experiments.command_line import run_verb
 from experiments.grounded_walks.courses import Places, RealCourse
-from experiments.grounded_walks.data import (
+from experiments.grounded_walks.models import WalkModels
+from experiments.grounded_walks.walks import (
     ROBOT,
     record_real,
     record_walks,
     walk,
     walk_in_sim,
 )
-from experiments.grounded_walks.models import WalkModels
 from experiments.runs.folder import HISTORY, RESULT, open_run
 from experiments.runs.options import RunOptions
 from experiments.runs.progress import progress

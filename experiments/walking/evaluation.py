@@ -20,13 +20,7 @@ from groundwalk.errors import BadValueError
 from robots import Description
 from terrain import Heightfield, TerrainSpec, configuration, parse
 from walk_engine import Gait
-from worlds import (
-    Recording,
-    RecordingMetadata,
-    World,
-    WorldOptions,
-    write_recording,
-)
+from worlds import Recording, RecordingMetadata, World, WorldOptions, write_recording
 from worlds.hidden.effects import Hidden
 
 MOST_AT_ONCE = 60

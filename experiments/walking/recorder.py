@@ -8,7 +8,7 @@ import numpy.typing as npt
 from groundwalk.arrays import BoolArray, FloatArray
 from robots import Description
 from worlds import Observation, Recording, RecordingMetadata, ServoGains, Truth
-from worlds.recordings.columns import SUPPORT, TIME, vector_columns
+from worlds.recordings.recording import SUPPORT, TIME, vector_columns
 
 
 class Recorder:

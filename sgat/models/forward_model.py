@@ -11,10 +11,7 @@ from groundwalk.arrays import FloatArray, IntArray
 from sgat.models.config import ForwardConfig
 from sgat.models.heads import Head
 from sgat.models.network import Float32Array, Scaling
-from sgat.models.scaled_network import (
-    NetworkModel,
-    ScaledNetwork,
-)
+from sgat.models.scaled_network import NetworkModel, ScaledNetwork
 from sgat.models.training import Stage, raw_outputs, squared_error
 from sgat.noise import NoiseStream
 from sgat.transitions import Transitions

@@ -7,10 +7,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from sgat.measures import r_squared
 from sgat.models.config import NetworkConfig
-from sgat.models.scaled_network import (
-    NetworkModel,
-    ScaledNetwork,
-)
+from sgat.models.scaled_network import NetworkModel, ScaledNetwork
 from sgat.models.training import Stage, squared_error
 from sgat.transitions import Transitions
 

@@ -10,7 +10,7 @@ from experiments.walking.trials import TrialRules
 
 SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
 TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
-"""What is learned of real begins after 3 s: see `grounded_walks.data.FLAT_TICKS`."""
+"""What is learned of real begins after 3 s: see `grounded_walks.walks.FLAT_TICKS`."""
 
 SEARCHED = TrialRules(limit_s=3.0)
 
@@ -33,14 +33,14 @@ def short_searches(monkeypatch):
 @pytest.fixture
 def short_walks(monkeypatch):
     """Walks of the NAO studies that end soon: where they lead to does not matter."""
-    from experiments.grounded_walks.data import walk, walk_in_sim
+    from experiments.grounded_walks.walks import walk, walk_in_sim
 
     def short_walk(place, robot, vectors, seed, exploration_rad=(0.0,), rules=SHORT):
         return walk(place, robot, vectors, seed, exploration_rad, rules)
 
     short = {
-        "grounded_walks.data.ON_COURSE": TO_THE_LUMPS,
-        "grounded_walks.data.walk": short_walk,
+        "grounded_walks.walks.ON_COURSE": TO_THE_LUMPS,
+        "grounded_walks.walks.walk": short_walk,
         "grounded_walks.models.ON_COURSE": SHORT,
         "grounded_walks.models.WALK": SHORT,
         "transfer.nao_falls.walk": short_walk,

@@ -14,7 +14,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, UnknownNameError
 from robots.description import Description
 from robots.engine_models.mjcf import ROOT_JOINT, mujoco_spec
-from robots.engine_models.model_urdf import model_urdf
+from robots.engine_models.urdf import model_urdf
 from worlds.recordings.metadata import ServoGains
 
 if TYPE_CHECKING:

@@ -11,9 +11,8 @@ from groundwalk.errors import BadValueError
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.run import Run
-from worlds.recordings.columns import vector_columns
 from worlds.recordings.metadata import RecordingMetadata
-from worlds.recordings.recording import Recording
+from worlds.recordings.recording import Recording, vector_columns
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from robots.description import Description
-from robots.engine_models.model_urdf import model_urdf
+from robots.engine_models.urdf import model_urdf
 from terrain import Heightfield
 from worlds.hidden.drive import HiddenDrive, HiddenJoints
 from worlds.hidden.effects.placed import Hidden, surroundings

@@ -13,9 +13,8 @@ import pyarrow.parquet as pq
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 from groundwalk.files import write_bytes, write_text
-from worlds.recordings.columns import bad_value, check_names
 from worlds.recordings.metadata import RecordingMetadata
-from worlds.recordings.recording import Recording
+from worlds.recordings.recording import Recording, bad_value, check_names
 
 _KEY = b"groundwalk"
 

@@ -7,7 +7,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from groundwalk.arrays import FloatArray
-from worlds.recordings.columns import SUPPORT
+from worlds.recordings.recording import SUPPORT
 from worlds.scenes.balance import loaded_feet
 from worlds.scenes.curves import MEASURED_SUPPORT, Curve, plots
 from worlds.scenes.scene import Scene

@@ -5,7 +5,7 @@ import rerun as rr
 
 from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Link
-from worlds.recordings.columns import SUPPORT
+from worlds.recordings.recording import SUPPORT
 from worlds.rerun_files.columns import ColumnLog, tick_times
 from worlds.rerun_files.meshes import link_mesh
 from worlds.scenes import colours

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from groundwalk.arrays import FloatArray, IntArray
-from worlds.recordings.columns import JOINT_QUANTITIES, SUPPORT, VECTORS
+from worlds.recordings.recording import JOINT_QUANTITIES, SUPPORT, VECTORS
 from worlds.scenes import colours
 from worlds.scenes.scene import SIDES, Scene
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import robots
-from experiments.grounded_walks.data import ROBOT
 from experiments.grounded_walks.models import (
     ENSEMBLE,
     GAT,
@@ -15,6 +14,7 @@ from experiments.grounded_walks.models import (
     UNEVEN,
     WalkModels,
 )
+from experiments.grounded_walks.walks import ROBOT
 from experiments.reports.report import markdown_table
 from experiments.reports.statistics import NORMAL_95
 from experiments.runs.folder import RunFolder

@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from experiments.grounded_walks.courses import RealCourse
-from experiments.grounded_walks.data import ON_COURSE, WALK
 from experiments.grounded_walks.models import GAT, LUMPS_MARGIN, NONE, SGAT, UNEVEN
-from experiments.grounded_walks.raters import FALL_PENALTY_WALK_CM_S
+from experiments.grounded_walks.walks import FALL_PENALTY_WALK_CM_S, ON_COURSE, WALK
 from experiments.reports.report import markdown_table
 from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder

@@ -15,7 +15,6 @@ import numpy as np
 import robots
 import worlds
 from experiments.grounded_walks.courses import Places, RealCourse
-from experiments.grounded_walks.data import ROBOT, WALK, GroundedSim
 from experiments.grounded_walks.models import (
     GAT,
     NONE,
@@ -24,7 +23,10 @@ from experiments.grounded_walks.models import (
     GroundingStep,
     action_envelope,
 )
-from experiments.grounded_walks.raters import (
+from experiments.grounded_walks.walks import (
+    ROBOT,
+    WALK,
+    GroundedSim,
     rate_in_sim,
     rate_on_real,
     rate_randomised,

@@ -14,8 +14,8 @@ from experiments.grounded_walks.courses import (
     SimPlace,
     world_at,
 )
-from experiments.grounded_walks.data import FLAT_TICKS, RealWalks, on_lumps
 from experiments.grounded_walks.models import GAT, NONE, SGAT, UNEVEN, GroundingStep
+from experiments.grounded_walks.walks import FLAT_TICKS, RealWalks, on_lumps
 from experiments.runs.folder import HISTORY, RunFolder
 from experiments.transfer.nao import main
 from experiments.transfer.nao_studies.page import (

@@ -17,9 +17,8 @@ import robots
 import terrain
 import worlds
 from experiments.grounded_walks.models import action_envelope
-from experiments.walk_env.env import WalkEnv
+from experiments.walk_env.env import WalkEnv, episode_seeds
 from experiments.walk_env.ids import IDS, register_envs
-from experiments.walk_env.world import episode_seeds
 from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.models.config import ForwardConfig, NetworkConfig

@@ -6,7 +6,7 @@ import pytest
 
 import robots
 from groundwalk.errors import BadValueError, UnknownNameError
-from robots.engine_models.model_urdf import model_urdf
+from robots.engine_models.urdf import model_urdf
 from worlds.hidden.effects import Hidden, surroundings
 from worlds.hidden.mujoco_engine import hidden_model
 from worlds.hidden.plant import SO101_ROTOR_KG_M2, hidden_plant

@@ -1,7 +1,7 @@
 import pytest
 
 from groundwalk.errors import BadRecordingError
-from worlds.recordings.columns import check_names, joints_with
+from worlds.recordings.recording import check_names, joints_with
 
 LEAST = ["time", "position.knee", "command.knee"]
 XYZ = ("x", "y", "z")

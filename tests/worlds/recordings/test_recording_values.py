@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadRecordingError
-from worlds.recordings.columns import check_values, frozen_columns
+from worlds.recordings.recording import check_values, frozen_columns
 
 NAN = float("nan")
 

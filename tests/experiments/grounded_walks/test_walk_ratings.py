@@ -1,12 +1,14 @@
 import numpy as np
 import pytest
 
-from experiments.grounded_walks.data import WALK, GroundedSim, walk_in_sim
 from experiments.grounded_walks.models import GroundingStep
-from experiments.grounded_walks.raters import (
+from experiments.grounded_walks.walks import (
+    WALK,
+    GroundedSim,
     random_dynamics,
     rate_in_sim,
     rate_randomised,
+    walk_in_sim,
 )
 from groundwalk.errors import UnknownNameError
 from sgat.walks.gait_cloud import GaitCloud
@@ -67,7 +69,7 @@ def test_worlds_are_closed_after_a_walk_and_after_an_error(monkeypatch, fails):
         if fails:
             raise RuntimeError
 
-    name = "experiments.grounded_walks.data."
+    name = "experiments.grounded_walks.walks."
     monkeypatch.setattr(name + "world_at", lambda *_: Inside())
     monkeypatch.setattr(name + "walk_trials", walked)
     if fails:
