@@ -4,7 +4,8 @@ docs/recordings.md lists the columns; units are SI and radians. At least one col
 `command`, `command_torque` or `torque` is there; every other one but `time` and
 `position` is optional, but a vector comes whole. Values may be missing (NaN here, null
 in a file). Row k holds what was measured at `time[k]` before `command[k]` took effect;
-the command holds until `time[k + 1]`. Metadata: `worlds.recordings.metadata`.
+the command holds until `time[k + 1]`. Names and values of columns are checked here.
+Metadata: `worlds.recordings.metadata`.
 """
 
 import difflib

@@ -1,4 +1,7 @@
-"""How well sims predict real falls and speeds of gaits: numbers, figures and page."""
+"""How well sims predict real falls and speeds of gaits: numbers, figures and page.
+
+Before gaits walk in grounded sims, the groundings' forward models are measured.
+"""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
