@@ -1,5 +1,7 @@
 """Recordings of a two-link arm that another library integrated."""
 
+from dataclasses import replace
+
 import numpy as np
 from joint_rigs import arm_law, integrated, ticks, trace_of
 from made_up_traces import GAINS, arm, arm_command
@@ -20,6 +22,8 @@ LEAN = Rules(
     largest=2,
 )
 """Looks less far, in a fraction of the time."""
+SINGLE = replace(LEAN, finished=2, pairs=0, swaps=1, largest=1)
+"""Looks for a single effect only."""
 
 
 def measured(seed, more_nm=None, duration_s=3.0, gain=(1.0, 1.0)):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from known_arms import LEAN, measured
+from known_arms import SINGLE, measured
 from made_up_traces import arm
 from swinger_rig import moved, swinger
 
@@ -57,7 +57,7 @@ def told(plant, traces, store, reference=()):
     seed = np.random.SeedSequence(3)
     hooks = Hooks(reports, store)
     verdict = diagnose(
-        plant, traces, seed, LEAN, reference=reference, hooks=hooks
+        plant, traces, seed, SINGLE, reference=reference, hooks=hooks
     ).verdict
     return reports, replace(verdict, seconds=0.0)
 
@@ -82,7 +82,7 @@ def test_a_diagnosis_goes_on_after_a_round_to_the_same_verdict():
 
 @pytest.mark.slow
 def test_what_was_learned_from_a_reference_is_not_learned_again():
-    before = [moved(seed, duration_s=1.5) for seed in range(3)]
+    before = [moved(seed, duration_s=1.5) for seed in range(2)]
     now = [moved(seed, gain=(1.0, 0.8), duration_s=1.5) for seed in range(10, 13)]
     store = Store()
     reports, whole = told(swinger(), now, store, before)

@@ -5,7 +5,7 @@ import threading
 
 import numpy as np
 import pytest
-from known_arms import CHANNELS, LEAN, NOISE_RAD
+from known_arms import CHANNELS, NOISE_RAD, SINGLE
 from made_up_traces import arm, recorded
 
 from diagnosis.effects import (
@@ -92,10 +92,10 @@ def searched(*truth):
     """The best model for two recordings of an arm with an effect (name, place, ...)."""
     predictors = []
     for seed in range(2):
-        trace = recorded(PLANT, truth, duration_s=3.0, seed=seed, noise_rad=NOISE_RAD)
+        trace = recorded(PLANT, truth, duration_s=2.0, seed=seed, noise_rad=NOISE_RAD)
         predictors.append(Predictor(PLANT, [trace], CHANNELS, step_s=0.004))
         predictors[-1].calibrate()
-    return Search(Judge(*predictors, LEAN)).run().winner.model
+    return Search(Judge(*predictors, SINGLE)).run().winner.model
 
 
 @pytest.mark.parametrize(

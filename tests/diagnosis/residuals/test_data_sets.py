@@ -15,7 +15,7 @@ from diagnosis.residuals.predictor import STEPS_S
 def test_stiff_joints_take_short_steps(kp, kd, wanted_s):
     plant = plant_of(ARM, kp=kp, kd=kd)
     traces = [
-        recorded(plant, noise_rad=1e-4, seed=seed, duration_s=3.0) for seed in range(4)
+        recorded(plant, noise_rad=1e-4, seed=seed, duration_s=2.0) for seed in range(4)
     ]
     data = DataSets.of(plant, traces, shared_channels(plant, traces), None, 1)
     assert data.learned.step_s == wanted_s

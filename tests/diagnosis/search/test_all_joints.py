@@ -1,7 +1,5 @@
-from dataclasses import replace
-
 import pytest
-from known_arms import CHANNELS, LEAN, measured
+from known_arms import CHANNELS, SINGLE, measured
 from made_up_traces import arm
 
 from diagnosis.conclude.answer import probability
@@ -60,13 +58,13 @@ def searched(**truth):
     )
     fit.calibrate()
     select.calibrate()
-    judge = Judge(fit, select, replace(LEAN, largest=1))
+    judge = Judge(fit, select, SINGLE)
     return judge, Search(judge).run()
 
 
 @pytest.mark.slow
 def test_what_both_joints_lack_is_found_at_both():
-    judge, found = searched(gain=(0.9, 0.8), duration_s=4.0)
+    judge, found = searched(gain=(0.9, 0.8), duration_s=2.5)
     wide = all_joints(judge, found)
     values = {placed.key: placed.values[0] for placed in wide.winner.model}
     assert values == {
@@ -83,5 +81,5 @@ def test_what_both_joints_lack_is_found_at_both():
 
 @pytest.mark.slow
 def test_a_single_effect_is_not_spread():
-    judge, found = searched(gain=(0.9, 1.0), duration_s=4.0)
+    judge, found = searched(gain=(0.9, 1.0), duration_s=2.5)
     assert all_joints(judge, found) is found

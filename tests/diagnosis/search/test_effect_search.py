@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from known_arms import CHANNELS, LEAN, NOISE_RAD, measured
+from known_arms import CHANNELS, LEAN, NOISE_RAD, SINGLE, measured
 from made_up_search import judged
 from made_up_traces import arm, recorded
 
@@ -20,21 +20,21 @@ from diagnosis.traces.usage import Usage
 PLANT = arm()
 
 
-def search_of(*traces):
+def search_of(*traces, rules=LEAN):
     """The first is fitted, the second selects."""
     predictors = [Predictor(PLANT, [trace], CHANNELS, step_s=0.004) for trace in traces]
     for predictor in predictors:
         predictor.calibrate()
-    return Search(Judge(*predictors, LEAN))
+    return Search(Judge(*predictors, rules))
 
 
 @cache
-def searched(*effects):
+def searched(*effects, rules=LEAN):
     traces = [
-        recorded(PLANT, *effects, duration_s=3.0, seed=seed, noise_rad=NOISE_RAD)
+        recorded(PLANT, *effects, duration_s=2.0, seed=seed, noise_rad=NOISE_RAD)
         for seed in range(2)
     ]
-    search = search_of(*traces)
+    search = search_of(*traces, rules=rules)
     return search, search.run()
 
 
@@ -149,10 +149,11 @@ def test_the_smallest_size_is_just_seen(key, values_of):
         search.judge.fit, search.signatures, search.judge.least_gain
     )
     name, place = key.split("@")
-    _, found = searched((name, place, values_of(1.25 * sizes[key].value)))
+    size = sizes[key].value
+    _, found = searched((name, place, values_of(1.25 * size)), rules=SINGLE)
     assert found.chosen == 1
     assert found.winner.keys == {key}
-    _, found = searched((name, place, values_of(0.5 * sizes[key].value)))
+    _, found = searched((name, place, values_of(0.5 * size)), rules=SINGLE)
     assert found.chosen == 0
 
 

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from known_arms import LEAN, measured
+from known_arms import SINGLE, measured
 from made_up_traces import arm
 from swinger_rig import moved, swinger, with_speeds
 
@@ -35,24 +35,26 @@ def waving(t, q, v):
 @cache
 def of_arm(first, gain=(1.0, 1.0)):
     return [
-        replace(measured(seed, rubbing, gain=gain), name=f"recording {seed}")
+        replace(
+            measured(seed, rubbing, duration_s=2.0, gain=gain), name=f"recording {seed}"
+        )
         for seed in range(first, first + 3)
     ]
 
 
 @cache
 def of_swinger(first, **options):
-    return [moved(seed, **options) for seed in range(first, first + 3)]
+    return [moved(seed, duration_s=2.0, **options) for seed in range(first, first + 3)]
 
 
-def verdict_of(plant, traces, reference):
-    return diagnose(plant, traces, SEED, LEAN, reference=reference).verdict
+def verdict_of(plant, traces, reference, rules=SINGLE):
+    return diagnose(plant, traces, SEED, rules, reference=reference).verdict
 
 
 @pytest.mark.slow
 def test_what_an_arm_lacked_before_is_part_of_it():
     plant, before = arm(), of_arm(0)
-    found = diagnose(plant, of_arm(10), SEED, LEAN, reference=before)
+    found = diagnose(plant, of_arm(10), SEED, SINGLE, reference=before)
     (given,) = found.given
     assert given.place == "elbow"
     assert given.name in ("viscous_friction", "servo_damping")
@@ -70,7 +72,7 @@ def test_of_an_arm_only_the_change_is_named():
 
 @pytest.mark.slow
 def test_without_a_reference_the_arm_still_lacks_its_friction():
-    verdict = diagnose(arm(), of_arm(10), SEED, LEAN).verdict
+    verdict = diagnose(arm(), of_arm(10), SEED, SINGLE).verdict
     assert {found.place for found in verdict.effects} == {"elbow"}
 
 
