@@ -26,7 +26,8 @@ def servo_torque(
     measured position; all arguments have shapes that broadcast against each other.
     """
     asked = kp_nm_rad * error_rad - kd_nm_s_rad * velocity_rad_s
-    return np.asarray(np.clip(asked, -max_torque_nm, max_torque_nm))
+    # several times as fast as np.clip for the few values of a physics step
+    return np.asarray(np.minimum(np.maximum(asked, -max_torque_nm), max_torque_nm))
 
 
 @dataclass(frozen=True, eq=False)

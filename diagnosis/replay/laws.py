@@ -51,7 +51,10 @@ class BatchLaws:
         damping = self._servos.damping_nm_s_rad
         self._friction = BatchFriction(batch, plant, joints, damping, step_s)
         # most variants have none of these effects, so computing them is skipped
-        self._slews = bool(np.isfinite(joints["setpoint_speed_rad_s"]).any())
+        self._slow = np.isfinite(joints["setpoint_speed_rad_s"])
+        self._slews = bool(self._slow.any())
+        self._most_rad = np.minimum(joints["setpoint_speed_rad_s"], FAST) * step_s
+        self._stiff = np.isinf(joints["spring_nm_rad"])
         loose = bool(joints["gap_rad"].any())
         self._gaps = BatchGaps(joints, self._servos.law, step_s) if loose else None
         self._torques = [
@@ -103,8 +106,7 @@ class BatchLaws:
             asked_rad = self._servos.equal(mean_rad, ends, seen_rad, velocity)
         if self._slews:
             slewed_rad = self._slewed(mean_rad, ends or (mean_rad, mean_rad))
-            slow = np.isfinite(self.joints["setpoint_speed_rad_s"])
-            asked_rad = np.where(slow, slewed_rad, asked_rad)
+            asked_rad = np.where(self._slow, slewed_rad, asked_rad)
         if self._servos.fades:
             self._servos.fade(time_s)
         if self._friction.varies:
@@ -129,11 +131,9 @@ class BatchLaws:
         """
         if ends is None:
             return []
-        least = self._servos.least_jump_rad
-        return [
-            (before, after) if (np.abs(after - before) > least).any() else None
-            for before, after in zip(*ends, strict=True)
-        ]
+        jumps = np.abs(ends[1] - ends[0]) > self._servos.least_jump_rad
+        each = zip(*ends, np.any(jumps, axis=(1, 2)), strict=True)
+        return [(before, after) if far else None for before, after, far in each]
 
     def push_joints(self, torque_nm: FloatArray, time_s: FloatArray) -> None:
         """Apply motor torques (n R, j) to joints without servos, at (R,) times [s]."""
@@ -171,8 +171,7 @@ class BatchLaws:
         joint; `added_nm` (n R, j) are torques of motors without a servo.
         """
         driven_nm = self._force[:, self._actuators] + added_nm
-        stiff = np.isinf(self.joints["spring_nm_rad"])
-        induced_nm = np.where(stiff, self._servos.law["emf"] * velocity, 0.0)
+        induced_nm = np.where(self._stiff, self._servos.law["emf"] * velocity, 0.0)
         self._friction.follow(velocity, driven_nm - induced_nm)
 
     def _own_nm(
@@ -198,11 +197,10 @@ class BatchLaws:
         """(n R, j) mean set-points of a step that follow targets at limited speed."""
         if self._setpoint is None:
             self._setpoint = ends[0].copy()
-        most = np.minimum(self.joints["setpoint_speed_rad_s"], FAST) * self._step_s
         first = first_share(asked_rad, ends)
         mean = np.zeros_like(asked_rad)
         for share, target in zip((first, 1 - first), ends, strict=True):
-            way = share * most
+            way = share * self._most_rad
             change = np.minimum(np.maximum(target - self._setpoint, -way), way)
             mean += share * (self._setpoint + change / 2)
             self._setpoint = self._setpoint + change

@@ -51,7 +51,7 @@ class OutsideForces:
         begin = np.maximum(time_s, self._start_s[:, None])
         end = np.minimum(time_s + self._step_s, self._end_s[:, None])
         share = np.maximum(end - begin, 0.0) / self._step_s
-        if np.array_equal(share, self._share):
+        if (share == self._share).all():
             return
         self._share = share
         pushed = self._row[:, None] * self._runs + np.arange(self._runs)

@@ -44,6 +44,7 @@ class BatchServos:
       law: present gains and limits of the servos, arrays (rows, j): `kp` [N m/rad],
         `kd` [N m s/rad], `limit` [N m] and `emf`, the back-EMF [N m s/rad].
       fades: whether any servo becomes weaker with time.
+      least_jump_rad: (rows, j) smallest change of a target [rad] that counts as a jump.
     """
 
     def __init__(
@@ -61,8 +62,11 @@ class BatchServos:
         """
         self._joints, self._actuators = joints, columns(plant.actuators)
         self.fades = bool(joints["fade_1_s"].any())
+        self._stiff = np.isinf(joints["spring_nm_rad"])
         self.law = _laws(servos, joints)
         self._full_kp = kp = self.law["kp"]
+        reach = self.law["limit"] / np.maximum(kp, LEAST_KP)
+        self.least_jump_rad = JUMP * reach
         self._gain = np.asarray(batch.expand("actuator_gainprm"))
         self._bias = np.asarray(batch.expand("actuator_biasprm"))
         self._range = np.asarray(batch.expand("actuator_forcerange"))
@@ -80,12 +84,6 @@ class BatchServos:
         # a servo whose torque is below this leaves saturation within the step
         self._held_from = self._limit * (1 + step_s * self.law["kd"] / inertia)
         self._relaxed = False  # whether some actuator's range exceeds the limit
-
-    @property
-    def least_jump_rad(self) -> FloatArray:
-        """(rows, j) smallest change of a target [rad] that counts as a jump."""
-        reach = self.law["limit"] / np.maximum(self._full_kp, LEAST_KP)
-        return np.asarray(JUMP * reach)
 
     @property
     def damping_nm_s_rad(self) -> FloatArray:
@@ -125,8 +123,7 @@ class BatchServos:
         are (rows, j).
         """
         kp, kd = self.law["kp"], self.law["kd"]
-        unlimited = np.asarray(np.inf)
-        torque = np.abs(servo_torque(kp, kd, unlimited, asked_rad - angle, velocity))
+        torque = np.abs(kp * (asked_rad - angle) - kd * velocity)  # without a limit
         free = (torque > self._limit) & (torque < self._held_from)
         relaxed = bool(free.any())
         if relaxed or self._relaxed:
@@ -141,12 +138,11 @@ class BatchServos:
     def fade(self, time_s: FloatArray) -> None:
         """Set the stiffness of fading servos at (R,) times [s], one for each run."""
         time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
-        left = np.clip(1 - self._joints["fade_1_s"] * time_s, 0, None)
+        left = np.maximum(1 - self._joints["fade_1_s"] * time_s, 0)
         self.law["kp"] = kp = self._full_kp * left  # also for motors of elastic joints
-        stiff = np.isinf(self._joints["spring_nm_rad"])
         for field, column, value in ((self._gain, 0, kp), (self._bias, 1, -kp)):
             old = field[:, self._actuators, column]
-            field[:, self._actuators, column] = np.where(stiff, value, old)
+            field[:, self._actuators, column] = np.where(self._stiff, value, old)
 
     def soften(self, elastic: ElasticJoints, step_s: float) -> None:
         """Turn actuators of elastic joints into springs between motors and links."""

@@ -132,18 +132,18 @@ class BatchGaps:
         half = self._half
         low, high = position - half, position + half
         if self._motor_rad is None:
-            self._motor_rad = np.clip(asked_rad, low, high)
+            self._motor_rad = np.minimum(np.maximum(asked_rad, low), high)
         free = self._followed(asked_rad, self._motor_rad)
         apart: BoolArray = (free > low) & (free < high)
-        self._motor_rad = np.clip(free, low, high)
+        self._motor_rad = np.minimum(np.maximum(free, low), high)
         arrives = np.where(apart, 0.0, asked_rad - self._motor_rad)
         return position + arrives, apart
 
     def drag_nm(self, velocity: FloatArray) -> FloatArray:
         """Damping torque [N m] of servos whose motors are free, at (rows, j) speeds."""
         law = self._law
-        servo_nm = np.clip(law["kd"] * velocity, -law["limit"], law["limit"])
-        return np.asarray(servo_nm + law["emf"] * velocity)
+        servo_nm = np.maximum(law["kd"] * velocity, -law["limit"])
+        return np.asarray(np.minimum(servo_nm, law["limit"]) + law["emf"] * velocity)
 
     def _followed(self, asked_rad: FloatArray, motor_rad: FloatArray) -> FloatArray:
         """(rows, j) angles of free motors after one implicit step, torque limited."""
@@ -152,4 +152,4 @@ class BatchGaps:
         moved = law["kp"] * (asked_rad - motor_rad) / (law["kp"] + drag)
         emf = np.maximum(law["emf"], LEAST_DRAG)
         most = self._step_s * law["limit"] / emf
-        return np.asarray(motor_rad + np.clip(moved, -most, most))
+        return np.asarray(motor_rad + np.minimum(np.maximum(moved, -most), most))
