@@ -5,6 +5,7 @@ PYTHON ?= $(shell python3.11 -c "" 2>/dev/null && echo python3.11 || echo python
 
 VENV := .venv
 READY := $(VENV)/ready
+PYTEST := $(VENV)/bin/python -m pytest -n 3 --maxschedchunk 1
 RUN := runs/walk
 RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.
@@ -21,18 +22,19 @@ SLOW_KNEES := speed_limit@LKneePitch:speed=2.5 speed_limit@RKneePitch:speed=2.5
 DATA := data
 REAL := so101 emps go2
 
-.PHONY: help env walk test lint results results-walk results-pictures results-nao \
+.PHONY: help env walk test journeys lint results results-walk results-pictures results-nao \
 	$(STUDIES:%=results-%) \
 	results-terrain-stress results-humanoids results-diagnosed-gait \
 	results-diagnosis $(REAL:%=results-diagnosis-%) results-concealed bench
 
 help:
-	@echo "make walk    tune a gait in simulation and try it in both worlds (into runs/)"
-	@echo "make test    run the tests"
-	@echo "make lint    check style, types and imports"
-	@echo "make results write docs/results again (many hours; one page: make results-NAME)"
-	@echo "make bench   measure speed"
-	@echo "make env     only set up the environment (in $(VENV))"
+	@echo "make walk     tune a gait in simulation and try it in both worlds (into runs/)"
+	@echo "make test     run the tests, except for the journeys"
+	@echo "make journeys run what the pages tell people to type (about four minutes on two cores)"
+	@echo "make lint     check style, types and imports"
+	@echo "make results  write docs/results again (many hours; one page: make results-NAME)"
+	@echo "make bench    measure speed"
+	@echo "make env      only set up the environment (in $(VENV))"
 
 env: $(READY)
 
@@ -41,7 +43,11 @@ walk: $(READY)
 		$(if $(wildcard $(RUN)),$(RUN)-$(shell date +%Y-%m-%d-%H%M%S),$(RUN))
 
 test: $(READY)
-	$(VENV)/bin/python -m pytest -n 3 --maxschedchunk 1
+	$(PYTEST) --ignore tests/journeys
+
+# What the pages tell people to type, each page from its top in one folder.
+journeys: $(READY)
+	$(PYTEST) tests/journeys
 
 lint: $(READY)
 	$(VENV)/bin/ruff check .

@@ -71,6 +71,9 @@ def make(target: str, reason: str) -> NotRun:
     return NotRun(reason, f"make -n {target}", says="groundwalk")
 
 
+TESTS = NotRun("minutes, beside this test", "make -n test", says="--ignore")
+IT_RUNS_THIS = NotRun("it runs this test", "make -n journeys", says="tests/journeys")
+
 REAL = NotRun(
     "minutes to an hour, with recordings of real robots that are not in the repository",
     "groundwalk real-robots so101 --data nowhere",
@@ -82,7 +85,8 @@ REAL = NotRun(
 JOURNEYS: dict[str, dict[str, Step]] = {
     "README.md": {
         "make walk": make("walk", "six minutes; optimize-gait below is the same"),
-        "make test": NotRun("it runs this test", "make -n test", says="pytest"),
+        "make test": TESTS,
+        "make journeys": IT_RUNS_THIS,
         "groundwalk optimize-gait --population 150 --generations 15 --seed 1 "
         "--out runs/mine": Run(SEARCH, writes=below("runs/mine", TUNED), says="sim"),
         "groundwalk optimize-gait --resume runs/mine": Run(says="tuned"),
@@ -202,6 +206,8 @@ JOURNEYS: dict[str, dict[str, Step]] = {
     },
     "architecture.md": {
         "make lint": NotRun("a minute, beside the tests", "make -n lint", says="ruff"),
+        "make test": TESTS,
+        "make journeys": IT_RUNS_THIS,
         "python docs/draw_rooms.py docs/architecture.png": Run(
             "rooms.png", without=("docs/architecture.png",), writes=("rooms.png",)
         ),
