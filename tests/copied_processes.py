@@ -56,13 +56,27 @@ def copy_instead(patch):
 def groundwalk(folder, words):
     """Run `groundwalk WORDS` in a folder: the exit status, and what it printed."""
     with tempfile.NamedTemporaryFile() as said:
-        process = copying().Process(target=_type_in, args=(folder, words, said.name))
-        process.start()
+        process = started(folder, words, said.name)
         process.join()
         return process.exitcode, Path(said.name).read_text()
 
 
-def _type_in(folder, words, said):
+def nothing(patch):
+    """What a process changes before it begins, unless it is told more."""
+
+
+def started(folder, words, said=os.devnull, before=nothing):
+    """The process of `groundwalk WORDS` in a folder, which prints into a file.
+
+    It first calls `before` (of a module) with a pytest.MonkeyPatch.
+    """
+    arguments = (folder, words, said, before)
+    process = copying().Process(target=_type_in, args=arguments)
+    process.start()
+    return process
+
+
+def _type_in(folder, words, said, before):
     os.chdir(folder)
     for source, copies in ((os.devnull, [0]), (said, [1, 2])):
         file = os.open(source, os.O_RDWR)
@@ -71,6 +85,7 @@ def _type_in(folder, words, said):
     sys.argv = ["groundwalk", *words]
     patch = pytest.MonkeyPatch()
     copy_instead(patch)
+    before(patch)
     # A copy does not know that the server that made it still runs.
     patch.setattr(forkserver._forkserver, "ensure_running", lambda: None)
     main()

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import pytest
+from short_walks import shorten_searches
 
 from experiments.runs import processes
 from experiments.walking.trials import TrialRules
@@ -11,8 +12,6 @@ from experiments.walking.trials import TrialRules
 SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
 TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
 """What is learned of real begins after 3 s: see `grounded_walks.walks.FLAT_TICKS`."""
-
-SEARCHED = TrialRules(limit_s=3.0)
 
 
 @pytest.fixture
@@ -25,9 +24,8 @@ def in_this_process(monkeypatch):
 
 @pytest.fixture
 def short_searches(monkeypatch):
-    """Searches of optimize-gait whose walks end soon after the flat start area."""
-    for name in ("SEARCH_TRIAL", "RATED"):
-        monkeypatch.setattr(f"experiments.walking.gait_search.{name}", SEARCHED)
+    """See `shorten_searches`."""
+    shorten_searches(monkeypatch)
 
 
 @pytest.fixture

@@ -1,60 +1,63 @@
 import json
 import signal
-import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from copied_processes import started
+from short_walks import shorten_searches
 
-from experiments.optimize_gait import OptimizeGait
+from experiments import command_line
+from experiments.optimize_gait import OptimizeGait, main
 from experiments.runs.folder import RunFolder, open_run
 from experiments.walking.gait_search import SearchPlan, search_gait
 from groundwalk.errors import BadValueError, GroundwalkError, RunFolderError
 from walk_engine import PARAMETERS, Gait
 
-SIZES = {"population": 4, "generations": 2, "ratings": 1, "trials": 1, "course-m": 0.2}
-SMALL = [f"--{name}={size}" for name, size in SIZES.items()]
+SMALL = {"population": 4, "generations": 2, "ratings": 1, "trials": 1, "course_m": 0.2}
 PATIENCE_S = 300
 
 
-def script(*arguments):
-    return [sys.executable, "-m", "experiments.optimize_gait", *arguments]
-
-
 def history_of(tmp_path, name, **settings):
-    plan = SearchPlan(population=6, generations=2, ratings=1, **settings)
+    plan = SearchPlan(population=4, generations=2, ratings=1, **settings)
     folder = RunFolder(tmp_path / name)
     search_gait(plan, folder)
     return (folder.path / "history.json").read_bytes()
 
 
 @pytest.mark.slow
-def test_a_killed_run_resumes_to_the_same_bits(tmp_path):
+@pytest.mark.usefixtures("short_searches")
+def test_a_killed_run_resumes_to_the_same_bits(tmp_path, capsys):
     whole, cut = tmp_path / "whole", tmp_path / "cut"
-    done = subprocess.run(
-        script(*SMALL, "--out", str(whole), "--json"),
-        capture_output=True,
-        text=True,
-        timeout=PATIENCE_S,
-        check=True,
-    )
-    result = json.loads(done.stdout)  # nothing but the result on standard output
-    run = subprocess.Popen(script(*SMALL, "--out", str(cut)), stderr=subprocess.DEVNULL)
+    main(OptimizeGait(**SMALL, out=whole))
+    result = json.loads((whole / "result.json").read_text())
+    words = [f"--{name.replace('_', '-')}={size}" for name, size in SMALL.items()]
+    command = ["optimize-gait", *words, "--out", "cut"]
+    run = started(tmp_path, command, before=shorten_searches)
     deadline = time.monotonic() + PATIENCE_S
     while generations(cut) < 1 and time.monotonic() < deadline:
         time.sleep(0.02)
-    run.send_signal(signal.SIGKILL)
-    run.wait()
+    run.kill()
+    run.join()
+    assert run.exitcode == -signal.SIGKILL
     assert not (cut / "result.json").exists()
-    resumed = script("--resume", str(cut), "--json")
-    again = subprocess.run(
-        resumed, capture_output=True, text=True, timeout=PATIENCE_S, check=True
-    )
+    capsys.readouterr()
+    main(OptimizeGait(resume=cut, json=True))
     history = "history.json"
     assert (cut / history).read_bytes() == (whole / history).read_bytes()
-    assert json.loads(again.stdout) == result
+    # nothing but the result on standard output
+    assert json.loads(capsys.readouterr().out) == result
     check_run_folder(whole, result)
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """The history of a search as it is."""
+    with pytest.MonkeyPatch.context() as patch:
+        shorten_searches(patch)
+        return history_of(tmp_path_factory.mktemp("plain"), "run", threads=1)
 
 
 def generations(folder):
@@ -88,26 +91,27 @@ def check_run_folder(folder: Path, result):
 @pytest.mark.usefixtures("short_searches")
 def test_an_extended_search_has_the_bits_of_a_long_one(tmp_path):
     folder = RunFolder(tmp_path / "extended")
-    search_gait(SearchPlan(population=6, generations=1), folder)
-    longer = search_gait(SearchPlan(population=6, generations=2), folder)
+    short = SearchPlan(population=4, generations=1, ratings=2)
+    long = replace(short, generations=2)
+    search_gait(short, folder)
+    longer = search_gait(long, folder)
     whole = RunFolder(tmp_path / "whole")
-    assert search_gait(SearchPlan(population=6, generations=2), whole) == longer
+    assert search_gait(long, whole) == longer
     name = "history.json"
     assert (folder.path / name).read_bytes() == (whole.path / name).read_bytes()
 
 
 @pytest.mark.usefixtures("short_searches")
-def test_the_same_seed_gives_the_same_history_on_any_number_of_threads(tmp_path):
-    one = history_of(tmp_path, "one", threads=1)
-    assert one == history_of(tmp_path, "two", threads=2)
-    assert one != history_of(tmp_path, "other", threads=1, seed=2)
+def test_the_same_seed_gives_the_same_history_on_any_number_of_threads(plain, tmp_path):
+    assert plain == history_of(tmp_path, "two", threads=2)
+    assert plain != history_of(tmp_path, "other", threads=1, seed=2)
 
 
 @pytest.mark.usefixtures("short_searches")
-def test_on_uneven_ground_every_generation_walks_on_new_ground(tmp_path):
+def test_on_uneven_ground_every_generation_walks_on_new_ground(plain, tmp_path):
     uneven = history_of(tmp_path, "uneven", terrain="lumps:amplitude_m=0.004")
     assert uneven == history_of(tmp_path, "again", terrain="lumps:amplitude_m=0.004")
-    assert uneven != history_of(tmp_path, "flat")
+    assert uneven != plain
 
 
 def corrected(folder, **changes):
@@ -125,12 +129,11 @@ def corrected(folder, **changes):
 
 
 @pytest.mark.usefixtures("short_searches")
-def test_the_search_walks_in_the_corrected_sim(tmp_path):
+def test_the_search_walks_in_the_corrected_sim(plain, tmp_path):
     late = history_of(tmp_path, "late", sim=corrected(tmp_path / "found"))
-    nominal = history_of(tmp_path, "nominal")
-    assert late != nominal
+    assert late != plain
     nothing = corrected(tmp_path / "nothing", native=[])
-    assert history_of(tmp_path, "same", sim=nothing) == nominal
+    assert history_of(tmp_path, "same", sim=nothing) == plain
 
 
 def test_only_the_sim_is_corrected(tmp_path):
@@ -150,30 +153,30 @@ def test_a_resumed_run_has_its_corrected_sim_again(tmp_path):
         open_run("optimize-gait", again)
 
 
-def test_a_folder_that_is_no_diagnosis_is_refused_before_anything(tmp_path):
+def test_a_folder_that_is_no_diagnosis_is_refused_before_anything(
+    tmp_path, monkeypatch, capsys
+):
     found = corrected(tmp_path / "found", robot="so101")
     for bad, words in (
         (tmp_path / "gone", "gone: no such folder or file"),
         (tmp_path, "is no folder of a diagnosis"),
         (found, "these effects are of 'so101', the robot is 'nao'"),
     ):
-        done = subprocess.run(
-            script("--sim", str(bad), "--out", str(tmp_path / "run")),
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE_S,
-        )
-        assert done.returncode == 2
-        assert words in done.stderr
-        assert done.stderr.count("\n") == 1
+        typed = ["optimize-gait", "--sim", str(bad), "--out", str(tmp_path / "run")]
+        monkeypatch.setattr(sys, "argv", ["groundwalk", *typed])
+        with pytest.raises(SystemExit) as stop:
+            command_line.main()
+        said = capsys.readouterr().err
+        assert stop.value.code == 2
+        assert words in said
+        assert said.count("\n") == 1
         assert not (tmp_path / "run").exists()
 
 
-@pytest.mark.usefixtures("short_searches")
-def test_the_history_says_what_the_search_did(tmp_path):
-    entry = json.loads(history_of(tmp_path, "run"))["generations"][0]
-    assert len(entry["rewards"]) == 6
-    assert 0 <= entry["falls"] <= 6
+def test_the_history_says_what_the_search_did(plain):
+    entry = json.loads(plain)["generations"][0]
+    assert len(entry["rewards"]) == 4
+    assert 0 <= entry["falls"] <= 4
     assert len(entry["spread"]) == len(PARAMETERS)
     assert set(entry["mean_gait"]) == {parameter.name for parameter in PARAMETERS}
 

@@ -15,10 +15,11 @@ from scipy.spatial.transform import Rotation
 from groundwalk.errors import GroundwalkError
 from robots import biped
 from walk_engine import Velocity, WalkEngine, gaits
-from worlds import End, WorldOptions
+from worlds import TICK_S, End, WorldOptions
 from worlds.real.robot import BulletRobot
 
 PATIENCE_S = 120
+WALK_S = 4.5
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -197,7 +198,7 @@ def test_the_same_gait_is_about_as_fast_in_both_worlds(make_world, nao):
         world = make_world(name)
         engine = WalkEngine(biped(nao), [gaits.get("start")])
         observation = world.reset(engine.start_pose())
-        for _ in range(750):
+        for _ in range(round(WALK_S / TICK_S)):
             observation = world.step(
                 engine.step(
                     Velocity.forward(),
@@ -206,7 +207,7 @@ def test_the_same_gait_is_about_as_fast_in_both_worlds(make_world, nao):
                 )
             )
         assert world.ended == [End.NONE]
-        speeds_m_s.append(world.truth().base_position_m[0, 0] / 7.5)
+        speeds_m_s.append(world.truth().base_position_m[0, 0] / WALK_S)
     sim, real = speeds_m_s
     assert min(sim, real) > 0.14
     assert abs(sim - real) < 0.15 * max(sim, real)
