@@ -1,4 +1,4 @@
-"""Makes one case with concealed physics: draws it, simulates it, writes its files."""
+"""Makes a test case with concealed physics: draws, simulates and writes it."""
 
 import json
 import shutil
@@ -28,17 +28,17 @@ REFERENCES = (0, 2)
 _SCALE_STEP_S = 0.0005
 """Physics step [s] in the search for an effect's size: coarse, and therefore fast."""
 _ATTEMPTS = 30
-"""Largest number of times that a case is drawn before it is given up."""
+"""Largest number of times that a test case is drawn before it is given up."""
 _SOURCE = "groundwalk concealed"
 
 
 def case_name(number: int) -> str:
-    """The name of a case, such as "case_007"."""
+    """The name of a test case by its number, such as "case_007"."""
     return f"case_{number:03d}"
 
 
 def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
-    """Make one case: write its truth (the hidden effects), then its complete folder.
+    """Make a test case: write its truth (the hidden effects), then its whole folder.
 
     `cases` and `truths` are the folders of all cases and truths, `seed` is that of the
     set. GroundwalkError if in every attempt the robot fell, or no size of the effect
@@ -62,7 +62,10 @@ def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
 
 
 class _Maker:
-    """One attempt to make a case; robot, kind and engine are the same in each."""
+    """One attempt to make a test case: recordings with hidden physics, and their truth.
+
+    All attempts at a case have the same robot, kind of case and physics engine.
+    """
 
     def __init__(self, seed: int, number: int, attempt: int) -> None:
         # Seeds are lists of numbers, so that a case does not depend on the others.
@@ -104,9 +107,10 @@ class _Maker:
     def _concealed(self, does: Scales) -> Concealed | None:
         """Draw the hidden effects with their sizes; None if no size fits.
 
-        A single effect on a fixed base gets the size at which the recordings carry the
-        drawn information about it. Other sizes are drawn directly: on a robot that
-        stands or walks, tiny differences grow, so that this information says little.
+        A single effect on a fixed base gets a size at which the recordings carry as
+        much information about it as was drawn. Other sizes are drawn directly: on a
+        robot that stands or walks, tiny differences grow, so that this information says
+        little.
         """
         motion = self._motion
         case = self._sort, motion.plant, does, motion.places, motion.duration_s
@@ -167,7 +171,7 @@ class _Maker:
                 write_recording(recording, folder / part / name)
 
     def truth(self) -> dict[str, Any]:
-        """The case's entry in the sealed file, such as its kind and hidden effects."""
+        """The test case's entry in the sealed file: its kind, hidden effects ..."""
         hidden, motion = self._hidden, self._motion
         if hidden is None:
             raise GroundwalkError("the case has not been run")

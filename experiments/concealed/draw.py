@@ -1,4 +1,4 @@
-"""Draws a case with concealed physics: robot, engine, effects and sensors.
+"""Draws a test case with concealed physics: robot, engine, effects and sensors.
 
 Only effects that perfect recordings would distinguish from all others are drawn: each
 effect only at places where it differs from the other effects (its `spots`), and two
@@ -21,7 +21,7 @@ PLANTS = {
     "nao_standing": 0.10,
     "nao_walking": 0.05,
 }
-"""Share of the cases for each robot; a NAO is fixed in the air, stands or walks."""
+"""Share of the test cases for each robot; a NAO is held in the air, stands or walks."""
 CASE_KINDS = {
     "single": 0.45,
     "pair": 0.15,
@@ -30,8 +30,8 @@ CASE_KINDS = {
     "outside": 0.10,
     "unexcited": 0.10,
 }
-"""Share of the cases for each kind: one, two, three or no hidden effects; one effect
-that a diagnosis does not know ("outside"); one at a joint that is held still."""
+"""Share of the test cases for each kind: one, two, three or no hidden effects; one
+effect that a diagnosis does not know ("outside"); one at a joint that is held still."""
 CONFUSABLE = (
     ("coulomb_friction", "backlash"),
     ("command_latency", "viscous_friction"),
@@ -41,18 +41,19 @@ CONFUSABLE = (
 )
 """Pairs of effects that are hard to distinguish from each other."""
 _CONFUSABLE_SHARE = 0.6
-"""Share of the cases with two or three effects that contain a pair of `CONFUSABLE`."""
+"""Share of the test cases with two or three effects that contain a pair of
+`CONFUSABLE`."""
 _COMPOUND_EASE = 0.5
 """Smallest ease (0 hard, 1 easy to see) of the effects in pairs and triples."""
 _QUANTA_RAD = (0.0015, 2 * np.pi / 2**14)
 """Possible resolutions of the encoders [rad]: of 12 and of 14 bits per turn."""
 _COUNT = {"single": 1, "unexcited": 1, "outside": 1, "pair": 2, "triple": 3, "none": 0}
-"""Number of hidden effects by kind of case."""
+"""Number of hidden effects by kind of test case."""
 
 
 @dataclass(frozen=True)
 class CaseSort:
-    """What is drawn first: keys of `PLANTS` and `CASE_KINDS`, "bullet" or "mujoco"."""
+    """Robot (key of `PLANTS`), kind (of `CASE_KINDS`) and engine of a test case."""
 
     plant: str
     kind: str
@@ -70,7 +71,7 @@ class CaseSort:
 
 @dataclass(frozen=True, eq=False)
 class Concealed:
-    """The effects hidden in a case, with their sizes.
+    """The effects hidden in a test case, with their sizes.
 
     `ease` says how easy they are to see: 1 is easiest, 0 hard, below 0 even harder.
     """
@@ -80,7 +81,7 @@ class Concealed:
 
 
 def drawn_sensors(kind: str, rng: np.random.Generator) -> tuple[HiddenSensors, float]:
-    """Draw the sensors of a case, and the largest error of its time stamps [s].
+    """Draw the sensors of a test case, and the largest error of its time stamps [s].
 
     For cases of the kind "none" the noise is up to three times as strong.
     """
@@ -103,7 +104,7 @@ def drawn_effects(
     rng: np.random.Generator,
     ease: float | None = None,
 ) -> Concealed:
-    """Draw the effects of a case: their names, places (among `joints`) and sizes.
+    """Draw the effects of a test case: their names, places (among `joints`) and sizes.
 
     `scales` are torques, speeds and ranges of the motion without hidden effects;
     `ease` says how easy the effects are to see, 0 to 1; None to draw it.

@@ -1,4 +1,4 @@
-"""`groundwalk concealed make`: draw cases, write recordings, seal the truth.
+"""`groundwalk concealed make`: draw test cases, write recordings, seal the truth.
 
 docs/concealed.md describes how cases are drawn.
 """
@@ -22,15 +22,15 @@ from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.files import write_text
 
 _PARTS, _SET = "parts", "set.json"
-"""In the sealed folder: subfolder with the truths of the cases made so far, and file
-with seed and number of cases of the set."""
+"""In the sealed folder: subfolder with the truths of the test cases made so far, and
+file with seed and number of cases of the set."""
 _MOST_CASES = 1000
-"""Largest number of cases in a set, because their names have three digits."""
+"""Largest number of test cases in a set, because their names have three digits."""
 
 
 @dataclass(frozen=True)
 class ConcealedMake:
-    """Draw cases with hidden physics, and seal their truth in a file with a hash.
+    """Draw test cases with hidden physics, and seal their truth in a file with a hash.
 
     Attributes:
       folder: folder of the set of cases; an unfinished set there is continued.
@@ -54,7 +54,7 @@ class ConcealedMake:
 
 
 def main(config: ConcealedMake) -> None:
-    """Make the missing cases of a set, and print the hash of its sealed truth."""
+    """Make the missing test cases of a set, and print the hash of its sealed truth."""
     sealed = config.folder / SEALED
     _open(config)
     if not (config.folder / HASH).exists():
@@ -80,7 +80,7 @@ def _open(config: ConcealedMake) -> None:
 
 
 def _make_all(config: ConcealedMake, parts: Path) -> None:
-    """Make the missing cases of a set, several at a time."""
+    """Make the missing test cases of a set, several at a time."""
     cases = config.folder / CASES
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
@@ -99,7 +99,7 @@ def _make_all(config: ConcealedMake, parts: Path) -> None:
 
 
 def _seal(config: ConcealedMake) -> None:
-    """Write the truths of all cases into one file, and its SHA-256 into another."""
+    """Write the truths of all test cases into a file, and its SHA-256 into another."""
     sealed, cases = config.folder / SEALED, {}
     for name in map(case_name, range(config.cases)):
         cases[name] = json.loads((sealed / _PARTS / f"{name}.json").read_text())

@@ -1,4 +1,4 @@
-"""Motions of a case with concealed physics: robot, ticks, servo gains and commands.
+"""Motions of a test case with concealed physics: robot, ticks, gains and commands.
 
 With a fixed base two of the four recordings, chirp and ramps, are made with half the
 servo gains, as their metadata state. The effect of a wrong gain is proportional to the
@@ -44,7 +44,7 @@ joint is held still, so that it has sagged under its load by then [s]."""
 
 @dataclass(frozen=True, eq=False)
 class CaseMotion:
-    """The motions of a case, one for each of its recordings.
+    """The motions of a test case, one for each of its recordings.
 
     Attributes:
       plant: the robot's model with its own servo gains.

@@ -1,4 +1,4 @@
-"""Names of the files of a set of concealed cases; reads a case without its truth."""
+"""Names of the files of a set of concealed test cases; reads one without its truth."""
 
 import json
 from pathlib import Path
@@ -7,11 +7,11 @@ from diagnosis import Plant, Trace, read_reference, read_traces
 from groundwalk.errors import RunFolderError
 
 CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"
-"""In the folder of a set: folder of the cases, folder of the sealed truth, file of the
-truth (all hidden effects), and file with its SHA-256."""
+"""In the folder of a set: folder of the test cases, folder of the sealed truth, file of
+the truth (all hidden effects), and file with its SHA-256."""
 RECORDINGS, REFERENCE, PLANT_FILE = "recordings", "reference", "plant.json"
-"""In the folder of a case: folder of recordings, folder of reference recordings (the
-healthy robot), and file that names the robot model."""
+"""In the folder of a test case: folder of recordings, folder of reference recordings
+(the healthy robot), and file that names the robot model."""
 ANSWERS, BASELINE_ANSWERS = "answers", "baselines"
 """In the folder of a set: folder of the diagnosis' verdicts, and folder with a
 subfolder of verdicts for each baseline."""
@@ -20,7 +20,7 @@ FORMAT = 1
 
 
 def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
-    """Robot model, recordings and reference recordings of a case, not its truth.
+    """Robot model, recordings and reference recordings of a test case, not its truth.
 
     Only robots that stand or walk have reference recordings.
     """

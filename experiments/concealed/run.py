@@ -1,4 +1,4 @@
-"""`groundwalk concealed run`: answer every case without reading its truth."""
+"""`groundwalk concealed run`: diagnose every test case, without reading its truth."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ VERB = "concealed-run"
 
 @dataclass(frozen=True)
 class ConcealedRun:
-    """Diagnose the cases of a set; cases with an answer are not diagnosed again.
+    """Diagnose the test cases of a set; cases with an answer are not diagnosed again.
 
     Attributes:
       folder: folder of the set of cases.
@@ -44,14 +44,14 @@ class ConcealedRun:
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse a folder without cases, and negative numbers."""
+        """Refuse a folder without test cases, and negative numbers."""
         if not (self.folder / CASES).is_dir():
             raise RunFolderError(f"{self.folder} holds no {CASES}: make them first")
         check_at_least(self, seed=0, threads=0)
 
 
 def main(config: ConcealedRun) -> None:
-    """Answer the cases that have no answer yet, and store the version of the code."""
+    """Answer all test cases without an answer, and store the version of the code."""
     kind: str = ANSWERS
     answer: Answer = diagnosed
     if config.by != "diagnosis":
@@ -76,23 +76,23 @@ def _note_code(config: ConcealedRun, kind: str) -> None:
 
 
 def unanswered(folder: Path, kind: str) -> list[Path]:
-    """Folders of the cases in a set that have no answer in the subfolder `kind` yet."""
+    """Folders of test cases of a set without an answer in the subfolder `kind`."""
     return [case for case in cases_of(folder) if not _path(folder, kind, case).exists()]
 
 
 def cases_of(folder: Path) -> list[Path]:
-    """Folders of all cases of a set, in the order of their names."""
+    """Folders of the test cases in the folder of a set, in the order of their names."""
     return sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
 
 
 Answer = Callable[[Path, int], Verdict]
-"""A function that returns a verdict for the folder of a case and a seed."""
+"""A function that returns a verdict for the folder of a test case and a seed."""
 
 
 def answer_all(
     folder: Path, kind: str, answer: Answer, seed: int, threads: int
 ) -> None:
-    """Write the missing answers; a case that fails does not stop the others.
+    """Write the missing answers; a test case that fails does not stop the others.
 
     `kind` is the subfolder for the answers, such as "baselines/bic". The error of the
     first case that failed is raised once all others are done.
@@ -118,7 +118,7 @@ def answer_all(
 
 
 def diagnosed(case: Path, seed: int) -> Verdict:
-    """The diagnosis' verdict on a case; "not_identifiable" if it refuses a recording.
+    """The verdict on a test case; "not_identifiable" if it refuses a recording.
 
     The seed and the case's number together are the seed of the random numbers.
     """
@@ -132,7 +132,7 @@ def diagnosed(case: Path, seed: int) -> Verdict:
 
 @one_blas_thread
 def by_baseline(name: str, case: Path, seed: int) -> Verdict:
-    """A baseline's verdict, from all recordings of a case but the held-out ones.
+    """A baseline's verdict, from all recordings of a test case but the held-out ones.
 
     `seed` is not used: baselines draw no random numbers.
     """

@@ -37,12 +37,12 @@ FORMAT = 1
 DIAGNOSIS = "diagnosis"
 ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
 Answers = Mapping[str, Mapping[str, Verdict]]
-"""Verdicts by method ("diagnosis" or the name of a baseline) and name of the case."""
+"""Verdicts by method ("diagnosis" or name of a baseline) and name of the test case."""
 
 
 @dataclass(frozen=True)
 class ConcealedScore:
-    """Open the sealed truth of a set of cases and score all answers to it.
+    """Open the sealed truth of a set of test cases and score all answers to it.
 
     Attributes:
       folder: folder of the set of cases, with answers. The results are written there:
@@ -89,7 +89,7 @@ def score_of(
 ) -> dict[str, Any]:
     """The scores of all methods, in the form of score.json.
 
-    `answers` are verdicts by method and case, "diagnosis" is one of the methods;
+    `answers` are verdicts by method and test case, "diagnosis" is one of the methods;
     `oracles` are fits of the true effects, by the names of the cases in which an effect
     that the diagnosis knows is hidden.
     """
@@ -115,7 +115,7 @@ def score_of(
 def consult_all(
     folder: Path, cases: Mapping[str, TrueCase], answers: Answers, threads: int
 ) -> dict[str, Oracle]:
-    """The oracles (fits of the true effects) of all cases with a known hidden effect.
+    """Fits of the true effects (oracles) of all test cases with known hidden effects.
 
     Each is stored in the set's folder, and only computed again if an answer changed.
     The effects of all `answers` are replayed on the held-out recordings.
@@ -147,7 +147,7 @@ def consult_all(
 def _consult(
     folder: Path, case: TrueCase, found: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """Fit the true effects of a case, and store the result at once."""
+    """Fit the true effects of a test case, and store the result at once."""
     oracle = consult(folder / CASES / case.name, case, found)
     write_text(_path(folder, case.name), oracle.to_json())
     return oracle
@@ -160,7 +160,7 @@ def _path(folder: Path, name: str) -> Path:
 def _kept(
     folder: Path, name: str, asked: Mapping[str, Sequence[Found]]
 ) -> Oracle | None:
-    """The stored oracle of a case; None if there is none for the same answers."""
+    """The stored oracle of a test case; None if there is none for the same answers."""
     path = _path(folder, name)
     if not path.is_file():
         return None

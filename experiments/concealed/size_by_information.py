@@ -22,8 +22,8 @@ MOST_NATS = 1e5
 """Largest information [nats per recording] that is drawn, in the easiest level, L1."""
 
 SHARES = {"L1": 0.40, "L2": 0.35, "L3": 0.15, "L4": 0.10}
-"""Share of the cases that is drawn for each level; the level measured later, by a fit
-of the true effects, is often another one."""
+"""Share of the test cases that is drawn for each level; the level measured later, by a
+fit of the true effects, is often another one."""
 
 KEPT = 0.6
 """Rough share of the information [nats] that a diagnosis can use: it replays short
@@ -33,21 +33,22 @@ LEAST_EASE, MOST_EASE = -2.0, 1.0
 """Range of the search for the ease, a measure of an effect's size from 0 (hard to see)
 to 1 (easy) that may go beyond 0 here."""
 NEAR = math.log(1.3)
-"""Logarithm of the factor between reached and wanted nats at which a search ends."""
+"""Logarithm of the factor between reached and wanted information at which a search for
+the size of an effect ends."""
 FAR = math.log(3.0)
-"""Logarithm of the factor above which the nats of the best trial are too far from the
-wanted ones: the search then has no result."""
+"""Logarithm of the factor above which the information of the best trial is too far from
+the wanted one: the search then has no result."""
 MOST_TRIALS = 8
-"""Largest number of trials of a search; each simulates all motions of the case."""
+"""Largest number of trials of a search; each simulates all motions of the test case."""
 _LEAST_TOLD, _MOST_TOLD = 0.1, 1e9
-"""Bounds to which nats are clipped before their logarithm is taken."""
+"""Bounds [nats] to which an information is clipped before its logarithm is taken."""
 _INNER = 0.1
 """Least distance of a trial from the ends of the bracket that encloses the solution, as
 a share of its width, so that the bracket shrinks."""
 
 
 def drawn_nats(rng: np.random.Generator) -> float:
-    """Draw the nats per recording: a level by its share, then log-uniform within it."""
+    """Draw an information [nats per recording]: a level, then log-uniform within it."""
     ends = [MOST_NATS, *LEVELS.values()]
     level = int(rng.choice(len(LEVELS), p=[SHARES[name] for name in LEVELS]))
     high, low = ends[level], ends[level + 1]

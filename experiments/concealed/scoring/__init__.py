@@ -1,1 +1,1 @@
-"""Scores the answers to concealed cases against the sealed truth."""
+"""Scores the answers to concealed test cases against the sealed truth."""

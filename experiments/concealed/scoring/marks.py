@@ -11,8 +11,8 @@ from experiments.concealed.scoring.truth import TrueCase
 from worlds.hidden.effects import Hidden
 
 NAMED_KINDS = ("single", "pair", "triple")
-"""Kinds of cases whose hidden effects are known to the diagnosis and excited by the
-motion."""
+"""Kinds of test cases whose hidden effects are known to the diagnosis and excited by
+the motion."""
 
 _BOUND = 1.0
 """Limit, in both directions, of the share of the error that an answer removes, so that
@@ -21,7 +21,7 @@ a single bad answer does not decide a mean."""
 
 @dataclass(frozen=True)
 class Mark:
-    """The comparison of an answer (a verdict on a case) with the truth.
+    """The comparison of an answer (a verdict on a test case) with the truth.
 
     Attributes:
       case: the truth.
@@ -160,8 +160,8 @@ def _covered(found: Found, true: Hidden) -> list[bool]:
 def _closed(oracle: Oracle, method: str) -> float | None:
     """Held-out error removed by an answer, as a share of that by the true effects.
 
-    From -1 to 1; 0 for an answer that is missing or names nothing; None in cases that
-    are too hard (levels L3, L4) or if the true effects remove nothing.
+    From -1 to 1; 0 for an answer that is missing or names nothing; None in test cases
+    that are too hard (levels L3, L4) or if the true effects remove nothing.
     """
     if oracle.level not in ("L1", "L2") or oracle.nominal <= oracle.fitted:
         return None
@@ -198,5 +198,5 @@ def _bounded(share: float) -> float:
 
 
 def by_kind(marks: Sequence[Mark], *kinds: str) -> list[Mark]:
-    """Select the marks (answers compared with the truth) of cases of some kinds."""
+    """Select the marks (comparisons with the truth) of test cases of some kinds."""
     return [each for each in marks if each.case.kind in kinds]

@@ -1,8 +1,9 @@
 """The figures of a method's score: shares, means and medians with their intervals.
 
 Each figure is a dict {"value", "n", "low", "high"} with a 95 % interval: Wilson's for
-shares of right answers, otherwise by the bootstrap over cases (Efron 1979). If there is
-nothing to count, n is 0 and the others are None. Definitions: docs/concealed.md.
+shares of right answers, otherwise by the bootstrap over test cases (Efron 1979). If
+there is nothing to count, n is 0 and the others are None. Definitions:
+docs/concealed.md.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -87,7 +88,7 @@ def calibration_error(marks: Sequence[Mark]) -> float:
     """Expected calibration error of the probabilities stated for the first effects.
 
     It is the mean gap between stated probability and share of right names over ten
-    equal bins, weighted by their cases (Guo et al. 2017, equation 3).
+    equal bins, weighted by their test cases (Guo et al. 2017, equation 3).
     """
     rows = reliability(marks)
     gaps = (row["n"] * abs(row["stated"] - row["right"]["value"]) for row in rows)
@@ -95,7 +96,7 @@ def calibration_error(marks: Sequence[Mark]) -> float:
 
 
 def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
-    """Calibration by bins of stated probability; bins without cases are left out.
+    """Calibration by bins of stated probability; bins without test cases are left out.
 
     Each has the mean stated probability ("stated"), the number of cases ("n") and the
     share whose first effect has a true name ("right").
@@ -116,7 +117,7 @@ def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
 
 
 def verdicts(marks: Sequence[Mark]) -> dict[str, dict[str, int]]:
-    """Number of cases by kind of case and kind of verdict."""
+    """Number of test cases by kind of case and kind of verdict."""
     table: dict[str, dict[str, int]] = {}
     for each in marks:
         row = table.setdefault(each.case.kind, {})

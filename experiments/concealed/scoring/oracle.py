@@ -1,4 +1,4 @@
-"""The oracle of a case: how much its recordings can tell about its hidden effects.
+"""The oracle of a test case: how much its recordings can tell about its hidden effects.
 
 The true effects at their true places are fitted to the recordings that a diagnosis
 fits. The log-likelihood by which they beat the nominal model gives the case's level.
@@ -24,7 +24,7 @@ from groundwalk.json_data import from_plain, parse_json, to_plain
 
 @dataclass(frozen=True)
 class Oracle:
-    """Result of fitting the true effects of one case to its recordings.
+    """Result of fitting the true effects of one test case to its recordings.
 
     Attributes:
       gain: log-likelihood [nats] per recording by which the fitted true effects beat
@@ -43,16 +43,16 @@ class Oracle:
 
     @property
     def level(self) -> str:
-        """Level of difficulty of the case, from "L1" (easiest) to "L4"."""
+        """Level of difficulty of the test case, from "L1" (easiest) to "L4"."""
         return level_of(self.gain)
 
     def to_json(self) -> str:
-        """The oracle as JSON."""
+        """The fit of the true effects as JSON text."""
         return json.dumps(to_plain(self), indent=1) + "\n"
 
     @classmethod
     def from_json(cls, text: str) -> "Oracle":
-        """Read an oracle from the text that `to_json` returns; else BadValueError."""
+        """Read a fit of true effects from the text of `to_json`; else BadValueError."""
         return from_plain(cls, parse_json(text, "oracle"), "oracle")
 
 
@@ -65,7 +65,7 @@ def answer_key(found: Sequence[Found]) -> str:
 def consult(
     folder: Path, case: TrueCase, answers: Mapping[str, Sequence[Found]]
 ) -> Oracle:
-    """Fit the true effects of a case, and replay the answers on held-out recordings.
+    """Fit a test case's true effects, and replay the answers on held-out recordings.
 
     `answers` are the effects found by each method. An effect that the diagnosis does
     not know, or not at that place, is left out.

@@ -1,4 +1,4 @@
-"""The score of a set of concealed cases as a report page, a table and a figure."""
+"""The score of a set of concealed test cases as a report page, a table and a figure."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -222,7 +222,7 @@ def _answer(score: Mapping[str, Any]) -> list[str]:
 
 
 def _unanswered(score: Mapping[str, Any]) -> list[str]:
-    """A line for each method that left cases unanswered."""
+    """A line for each method that left test cases unanswered."""
     methods = {"diagnosis": score["missing"]}
     methods |= {name: each["missing"] for name, each in score["baselines"].items()}
     lines = [

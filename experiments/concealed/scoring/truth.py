@@ -1,4 +1,4 @@
-"""Reads the sealed truth of a set of concealed cases, and the answers to it."""
+"""Reads the sealed truth of a set of concealed test cases, and the answers to it."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from worlds.hidden.effects import Hidden
 
 @dataclass(frozen=True)
 class TrueCase:
-    """The truth of one case, as `make_case` writes it.
+    """The truth of one test case, as `make_case` writes it.
 
     Attributes:
       plant: name of the robot model, such as "so101".
@@ -38,7 +38,7 @@ class TrueCase:
 
 @dataclass(frozen=True)
 class Truth:
-    """The truth of a set of cases, drawn from a seed, and its sealed file's hash."""
+    """The truth of a set of test cases drawn from a seed; its sealed file's hash."""
 
     seed: int
     cases: Mapping[str, TrueCase]
@@ -70,7 +70,7 @@ def read_truth(folder: Path) -> Truth:
 
 
 def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
-    """The verdicts in a folder, by the names of the cases that have one."""
+    """The verdicts in a folder, by the names of the test cases that have one."""
     if not folder.is_dir():
         raise RunFolderError(f"{folder} is missing: run groundwalk concealed run first")
     answers = {}
@@ -86,7 +86,7 @@ def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
 
 
 def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Verdict]]:
-    """The verdicts of each baseline that answered, by baseline and case."""
+    """The verdicts of each baseline that answered, by baseline and test case."""
     parent = folder / BASELINE_ANSWERS
     found = sorted(path for path in parent.glob("*") if path.is_dir())
     return {path.name: read_answers(path, names) for path in found}
