@@ -19,6 +19,10 @@ class Verb(NamedTuple):
         (dict of `Verb`) of the verb's own verbs.
       summary: a few words for the list of verbs.
       module: the module in the package experiments; by default named like the verb.
+
+    Example:
+      >>> Verb("Export", "write a robot as MJCF or URDF").config
+      'Export'
     """
 
     config: str

@@ -77,7 +77,7 @@ class Diagnose(RunOptions):
       audit_only: only check the recordings, print their limits, and stop.
 
     Example:
-      See docs/python.md.
+      See docs/python.md, "Diagnose your own recording".
     """
 
     recordings: Annotated[

@@ -53,7 +53,8 @@ class Record:
       seed: every random number follows from it.
 
     Example:
-      See docs/python.md.
+      >>> Record(Path("air.parquet"), robot="pendulum", duration=2.0).on_feet
+      False
     """
 
     out: Path
@@ -108,7 +109,6 @@ def make_recording(config: Record) -> Recording:
 
     Example:
       >>> make_recording(Record(Path("air.parquet"), robot="pendulum", world="sim"))
-      See docs/python.md.
     """
     plant, effects = config.plant(), config.effects()
     seed = np.random.SeedSequence(config.seed)

@@ -76,13 +76,16 @@ class LegGeometry:
     """Geometry of the left leg for closed inverse kinematics; the right leg mirrors it.
 
     Six hinges: yaw, roll (axis +x), pitch, knee, ankle pitch (axes +y) and ankle roll
-      (axis
-    +x), all axes given with the leg straight. The three at the hip meet in the point
-    `hip_m` of the torso frame (x forward, y left, z up), the two at the ankle in
+    (axis +x), all axes given with the leg straight. The three at the hip meet in the
+    point `hip_m` of the torso frame (x forward, y left, z up), the two at the ankle in
     another, at `ankle_height_m` above the sole; the knee divides thigh and tibia. The
     unit vector of the yaw axis leans by 45 degrees on the NAO. Mirror image means that
     equal yaw, pitch, knee and ankle pitch angles, and opposite roll angles, mirror the
     pose.
+
+    Example:
+      >>> robots.biped(robots.get("nao")).leg.thigh_m
+      0.1
     """
 
     hip_m: tuple[float, float, float]
@@ -131,6 +134,9 @@ class Biped:
       scale: size relative to the NAO.
       ankles_ahead_m: distance of the ankles ahead of the hips when the gait parameter
         `com_offset` is zero.
+
+    Example:
+      >>> robots.biped(robots.get("nao")).left_arm
     """
 
     leg: LegGeometry

@@ -126,7 +126,12 @@ PARAMETERS: tuple[Parameter, ...] = (
         source="none in Walk2014; 0.025 and 0.055 in HULKs",
     ),
 )
-"""The 16 parameters of a gait, in the order of the values in a gait's vector."""
+"""The 16 parameters of a gait, in the order of the values in a gait's vector.
+
+Example:
+  >>> PARAMETERS[0].name, PARAMETERS[0].unit
+  ('step_period', 's')
+"""
 
 NAMES: tuple[str, ...] = tuple(parameter.name for parameter in PARAMETERS)
 """Names of the 16 gait parameters, in the order of `PARAMETERS`."""

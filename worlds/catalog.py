@@ -42,7 +42,12 @@ WORLDS = {
     ),
 }
 """The worlds by name. "real" differs from "sim" by its physics engine and, by default,
-by its latency, its sensor noise and its ground."""
+by its latency, its sensor noise and its ground.
+
+Example:
+  >>> sorted(WORLDS)
+  ['real', 'sim']
+"""
 
 
 def kind(name: str) -> WorldKind:
@@ -75,6 +80,9 @@ def make(
 
     Raises:
       GroundwalkError: the world is unknown, or its options do not fit the robot.
+
+    Example:
+      See docs/python.md, "Walk on your own ground".
     """
     chosen = kind(name)
     return chosen.world(description, grounds, seeds, options or chosen.options)

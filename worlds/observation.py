@@ -38,6 +38,10 @@ class Observation(_PerRobot):
     (n, 3) are in the torso frame; the latter shows +9.81 upward at rest. The forces (n,
     8) are those on the front left, front right, rear left and rear right sensor of the
     left foot, then of the right foot. Times (n,) count from the start of the rollout.
+
+    Example:
+      >>> observation = world.step(command_rad)
+      >>> observation.foot_force_n[:, :4].sum(axis=1)  # on the left foot
     """
 
     time_s: FloatArray
@@ -55,6 +59,9 @@ class Truth(_PerRobot):
     The torso's position and linear velocity (n, 3) are in the world frame, its angular
     velocity (n, 3) in the torso frame; unit quaternions w, x, y, z (n, 4) turn torso to
     world.
+
+    Example:
+      >>> world.truth().base_position_m[:, 0]  # how far each robot has walked
     """
 
     base_position_m: FloatArray

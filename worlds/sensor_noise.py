@@ -21,6 +21,9 @@ class SensorNoise:
     Sources: gyroscope and accelerometer: the NAO simulator of the RoboCup team HULKs
     (2025); gyroscope bias: the team rUNSWift's configurations of single robots, up to
     0.023 rad/s; joints, 12 bit per turn, and feet, sensitivity 40 g: datasheet.
+
+    Example:
+      >>> WorldOptions(noise=SensorNoise(foot_force_n=1.0))
     """
 
     gyroscope_rad_s: tuple[float, float, float] = (0.0039, 0.0055, 0.0024)

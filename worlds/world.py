@@ -23,7 +23,12 @@ Example:
 
 
 class End(enum.StrEnum):
-    """Why one robot's rollout ended; NONE while it goes on."""
+    """Why one robot's rollout ended; NONE while it goes on.
+
+    Example:
+      >>> End.LEFT_GROUND.value
+      'left the ground'
+    """
 
     NONE = ""
     FALL = "fall"
@@ -105,7 +110,13 @@ class WorldOptions:
 
 
 class World(Protocol):
-    """n robots, each on its own ground, stepped together by joint commands."""
+    """n robots, each on its own ground, stepped together by joint commands.
+
+    Example:
+      >>> world = worlds.make("sim", robot, [ground], [np.random.SeedSequence(1)])
+      >>> observation = world.reset(np.zeros((1, len(robot.joints))))
+      >>> observation = world.step(observation.position_rad)
+    """
 
     @property
     def description(self) -> Description:

@@ -60,6 +60,9 @@ class EffectWords(NamedTuple):
         lacks" and `{usual}` for "in the sim"; the last two have other words where
         recordings of the healthy robot are the reference.
       meaning: explanation for a reader of the report, in one sentence.
+
+    Example:
+      >>> EffectWords("water drag", "{joint} has {coefficient} of drag {lacking}", "")
     """
 
     label: str
@@ -79,6 +82,10 @@ class JointMotion:
 
     Commands are position targets, `kp_nm_rad` is the servo's stiffness, and `torque_nm`
     the torque for this motion by inverse dynamics of the nominal model.
+
+    Example:
+      >>> def torque_column(self, motion: JointMotion) -> FloatArray:
+      ...     return -motion.direction  # of an effect: dry friction of 1 N m
     """
 
     since_s: FloatArray

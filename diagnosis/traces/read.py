@@ -35,7 +35,8 @@ def read_traces(
       BadModelError: the robot's file is no model.
 
     Example:
-      See docs/python.md.
+      >>> plant, traces = read_traces([Path("air.parquet")], "nao")
+      >>> plant.joints[:2], traces[0].position_rad.shape
     """
     paths = _files(paths)
     if not paths:
@@ -68,7 +69,8 @@ def read_reference(
       BadRecordingError: one has other joints or another base than the plant.
 
     Example:
-      See docs/diagnosis.md.
+      >>> plant, traces = read_traces([Path("today.parquet")], "nao")
+      >>> healthy = read_reference([Path("last_year.parquet")], "nao", plant)
     """
     if not paths:
         return []

@@ -10,6 +10,11 @@ from groundwalk.json_data import NOT_IN_JSON, check_number
 
 Course = Literal["always", "burst", "drift"]
 PulseSource = Literal["actuator input", "torque sensor", "position sensor"]
+"""Origin of a `Pulse`, a torque that a servo did not ask for.
+
+Example:
+  >>> [pulse.joint for pulse in verdict.pulses if pulse.source == "torque sensor"]
+"""
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Amount:
-    """A size, 0 or more, such as the smallest effect that the data could show."""
+    """A size, 0 or more, such as the smallest effect that the data could show.
+
+    Example:
+      >>> Amount(0.004, "rad").unit
+      'rad'
+    """
 
     value: float
     unit: str
@@ -124,6 +134,9 @@ class Found:
         the recordings about as well.
       when: whether it acts always, for a while, or growing.
       native: whether MuJoCo can simulate it, so that the corrected MJCF contains it.
+
+    Example:
+      >>> Found("drag", "torso", {"coefficient": Estimate(2.0, 1.5, 2.5, "N s/m")}, 0.9)
     """
 
     name: str
@@ -152,6 +165,10 @@ class MismatchCell:
       regimes: rms error as a multiple of the noise in rows of one kind of motion, by
         its name, such as "reversals" or "fast".
       bursts: times (start, end) [s] during which the error stands out.
+
+    Example:
+      >>> MismatchCell("position.knee", "rad", 0.8, 0.02, 0.001, {"fast": 25.0}).share
+      0.8
     """
 
     channel: str
@@ -189,6 +206,10 @@ class Pulse:
         signal ("torque", "position", "command").
       felt: share of the pulse's torque that, by inverse dynamics, moved the joint;
         0 if the measured torque has no pulse.
+
+    Example:
+      >>> pulse = verdict.pulses[0]
+      >>> pulse.joint, pulse.torque, pulse.end_s - pulse.start_s
     """
 
     recording: str
@@ -224,6 +245,10 @@ class Unexplained:
       at: middle of each bin.
       mean: mean of measured less simulated values in each bin, in `unit`.
       spread: standard error of each mean, in `unit`.
+
+    Example:
+      >>> rest = verdict.unexplained
+      >>> rest.channel, max(rest.mean), rest.unit
     """
 
     share: float
@@ -249,7 +274,12 @@ class Unexplained:
 
 @dataclass(frozen=True)
 class NextExperiment:
-    """The recording that would best decide what is still open: a joint's, or all's."""
+    """The recording that would best decide what is still open: of one joint, or of all.
+
+    Example:
+      >>> NextExperiment("chirp", "LKneePitch", "two effects are left").joint
+      'LKneePitch'
+    """
 
     motion: str
     joint: str | None
@@ -262,6 +292,10 @@ class Recordings:
 
     Parameters are fitted to `fit`, `select` decides between fitted models, and `test`
     gives the final errors.
+
+    Example:
+      >>> Recordings(fit=("a",), select=("b",), test=("c",)).test
+      ('c',)
     """
 
     fit: tuple[str, ...] = ()

@@ -75,7 +75,12 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelFit(Errors):
-    """Rms errors of simulations in one channel of held-out recordings."""
+    """Rms errors of simulations in one channel of held-out recordings, in its `unit`.
+
+    Example:
+      >>> ChannelFit(nominal=5.0, corrected=1.2, floor=1.0, unit="rad").excess
+      5.0
+    """
 
     unit: str
 
@@ -85,6 +90,10 @@ class Fit(Errors):
     """Errors of simulations over all channels together, as multiples of noise floors.
 
     An error is the root of the mean over channels of (rms error / noise floor) squared.
+
+    Example:
+      >>> Fit(nominal=5.0, corrected=1.2, floor=1.0, channels={}).closed(1.2)
+      0.95
     """
 
     channels: Mapping[str, ChannelFit]
@@ -92,7 +101,12 @@ class Fit(Errors):
 
 FORMAT = 1
 VerdictKind = Literal["effects", "none", "unknown", "not_identifiable"]
-"""The answer of a diagnosis in one word. See docs/diagnosis_json.md."""
+"""The answer of a diagnosis in one word. `Verdict` explains each.
+
+Example:
+  >>> verdict.kind
+  'effects'
+"""
 
 
 @dataclass(frozen=True)

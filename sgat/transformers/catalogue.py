@@ -125,6 +125,9 @@ def write_transformer(folder: Path, transformer: KeptTransformer) -> None:
     """Write a transformer into a folder, which is made if it does not exist.
 
     BadValueError if it is not fitted, or has other noise than white noise.
+
+    Example:
+      See docs/python.md, "Learn with Gymnasium".
     """
     low, high = (bound.tolist() for bound in transformer.bounds)
     header: dict[str, Any] = {"format": _FORMAT, "low": low, "high": high}
@@ -136,6 +139,9 @@ def read_transformer(folder: Path) -> KeptTransformer:
     """Read a folder that `write_transformer` wrote; BadModelError if it holds none.
 
     The transformer gives the same actions as the one that was written, to the last bit.
+
+    Example:
+      >>> read_transformer(Path("runs/sgat")).bounds
     """
     try:
         header = json.loads((folder / HEADER).read_text())

@@ -58,6 +58,10 @@ class HiddenPlant:
       range_rad: (j, 2) lowest and highest angle.
       speed_rad_s: highest speed of commands.
       description: of a robot of `groundwalk list robots`; else None.
+
+    Example:
+      >>> hidden_plant("pendulum").with_gains(0.5).joints
+      ('swing',)
     """
 
     name: str

@@ -44,6 +44,10 @@ class Scales:
       lever_m: (b, j) largest lever arm of the body's weight about a joint's axis.
       branch_lever_m: (j,) the same for the weight of all bodies beyond a joint.
       arm_m: (j, 3) from a joint's axis to its link's centre of mass, link frame.
+
+    Example:
+      >>> measured = scales(plant, [run])  # of `worlds.hidden.scales`
+      >>> measured.torque_nm, measured.moves("forearm")
     """
 
     torque_nm: FloatArray
@@ -88,6 +92,10 @@ class Spot(NamedTuple):
     """Where an effect may be: index of a joint, and the name of its link or the trunk.
 
     An effect on a joint uses the first, an effect on a body the second.
+
+    Example:
+      >>> Spot(0, "forearm").body
+      'forearm'
     """
 
     joint: int
@@ -102,6 +110,9 @@ class Setting:
     effect and the length of each recording. `ease` says how easy the effect is to
     detect, from 0 (hard) to 1 (easy), or below 0; `rng` draws signs, directions and
     times.
+
+    Example:
+      >>> Setting(plant, scales, Spot(0, "link"), 0.5, 8.0, rng).torque_nm
     """
 
     plant: HiddenPlant
@@ -133,7 +144,7 @@ class Setting:
         return float(self.rng.choice([-1.0, 1.0]))
 
     def part(self, easy: float, hard: float) -> float:
-        """Size between those of ease 1 and ease 0, interpolated logarithmically."""
+        """Size between `hard` (ease 0) and `easy` (ease 1), on a logarithmic scale."""
         return float(hard * (easy / hard) ** self.ease)
 
     @property

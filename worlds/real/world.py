@@ -83,6 +83,9 @@ class RealWorld(RolloutWorld):
     The motors are the sim's (`ServoTwin`), unless the options have hidden effects.
     Robot i's rollout has the same bits whatever n is and however many `processes` run;
     that list is empty once the world is closed.
+
+    Example:
+      >>> world = RealWorld(robot, [ground], [SeedSequence(1)], WorldOptions())
     """
 
     def _open(self) -> None:

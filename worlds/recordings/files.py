@@ -163,6 +163,10 @@ def read_recording(path: Path, metadata: RecordingMetadata | None = None) -> Rec
     Raises:
       BadRecordingError: the file cannot be read or is no recording. The message names
         the file, and the column and row of the first fault.
+
+    Example:
+      >>> recording = read_recording(Path("walk.parquet"))
+      >>> recording.joint_values("position", recording.joints).shape
     """
     is_csv = _is_csv(path)
     with _naming(path):

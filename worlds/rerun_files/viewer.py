@@ -19,6 +19,9 @@ def open_viewer(paths: Sequence[Path]) -> "subprocess.Popen[bytes]":
     listens on the loopback interface only, on a free port. It sends usage statistics to
     its makers unless `rerun analytics disable` has been run once. Returns its process.
     GroundwalkError if a file or the program `rerun` does not exist.
+
+    Example:
+      >>> open_viewer([Path("walk.rrd")])
     """
     for path in paths:
         if not path.is_file():

@@ -36,6 +36,10 @@ class SceneCamera:
 
     Attributes:
       parts: names of the robot's links, and capsules that draw them, in their frames.
+
+    Example:
+      >>> SceneCamera(scene, colours.accent(0), (320, 240)).picture(tick=0).shape
+      (240, 320, 3)
     """
 
     def __init__(

@@ -103,6 +103,9 @@ class Scene:
     The name, such as "sim" or "start/real", begins all paths in a viewer; BadValueError
     if it is no path of letters, digits, `_`, `-` and `.`. The ground is None if there
     was none or it is unknown. BadRecordingError if the robot lacks a recorded joint.
+
+    Example:
+      >>> Scene("sim", read_recording(Path("walk.parquet")), robots.get("nao")).title
     """
 
     name: str

@@ -151,6 +151,9 @@ class SimWorld(RolloutWorld):
 
     Robot i's rollout has the same bits whatever n is and however many threads run.
     `qvel` (n, v) is a live view of MuJoCo's velocities of all v degrees of freedom.
+
+    Example:
+      >>> world = SimWorld(robot, [ground], [SeedSequence(1)], WorldOptions())
     """
 
     def _open(self) -> None:

@@ -39,7 +39,7 @@ class DryFriction:
 
     @classmethod
     def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
-        """Friction of these torques, its bristle as stiff as the time step allows."""
+        """Friction of given torques [N m]; it sticks as stiffly as the step allows."""
         stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
         return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
 

@@ -16,7 +16,7 @@ class _OnFeet(HiddenKind):
     """Hidden physics that only a robot standing on its feet can have."""
 
     def possible(self, plant: HiddenPlant) -> bool:
-        """Whether the base is free."""
+        """Whether the base is free, so that the robot stands on its feet."""
         return plant.floating
 
 
@@ -30,7 +30,7 @@ class CommandLatency(HiddenKind):
     sizes = (0.06, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add this delay to that of the commands."""
+        """Make the commands later by the delay [s]."""
         surroundings.command_delay_s += values["delay"]
 
 
@@ -44,7 +44,7 @@ class SensorDelay(_OnFeet):  # on a fixed base, late commands look the same
     sizes = (0.04, 0.002)
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add this delay to that of the encoders' readings."""
+        """Make the encoders' readings later by the delay [s]."""
         surroundings.encoder_delay_s += values["delay"]
 
 
@@ -57,7 +57,7 @@ class GyroBias(HiddenKind):
     quantities = tuple(Quantity(axis, "rad/s", -5.0, 5.0) for axis in "xyz")
 
     def change_surroundings(self, surroundings: Surroundings, values: Values) -> None:
-        """Add this bias to that of each axis of the gyroscope."""
+        """Add the bias [rad/s] of each axis to the gyroscope's."""
         surroundings.gyroscope_bias_rad_s += [values[axis] for axis in "xyz"]
 
     def size(self, s: Setting) -> dict[str, float]:
@@ -123,7 +123,7 @@ class GroundSlope(HiddenKind):
         surroundings.roll_rad += values["roll"]
 
     def size(self, s: Setting) -> dict[str, float]:
-        """Tilt of 0.5 degrees (hard to detect) to 4 on feet or 8 on a fixed base."""
+        """Tilt of 0.5 (hard to detect) to 4 degrees on feet, to 8 on a fixed base."""
         most_deg = 4.0 if s.plant.floating else 8.0
         tilt = math.radians(s.part(most_deg, 0.5))
         way = s.rng.uniform(0, 2 * math.pi)

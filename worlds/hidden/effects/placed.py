@@ -29,7 +29,12 @@ def _found() -> Iterator[HiddenKind]:
 KINDS: Mapping[str, HiddenKind] = {
     kind.name: kind for kind in sorted(_found(), key=lambda one: (one.rank, one.name))
 }
-"""All kinds of hidden physics by name, in the order from which test cases are drawn."""
+"""All kinds of hidden physics by name, in the order from which test cases are drawn.
+
+Example:
+  >>> KINDS["backlash"].parameters["gap"].unit
+  'rad'
+"""
 
 
 @dataclass(frozen=True)
@@ -128,7 +133,12 @@ class Hidden:
 
 
 def surroundings(effects: Iterable[Hidden]) -> Surroundings:
-    """Signal delays, gyroscope bias and ground of a robot with these hidden effects."""
+    """Signal delays, gyroscope bias and ground of a robot with these hidden effects.
+
+    Example:
+      >>> surroundings([Hidden.parse("ground_slope:pitch=0.1,roll=0")]).pitch_rad
+      0.1
+    """
     changed = Surroundings()
     for effect in effects:
         effect.kind.change_surroundings(changed, effect.values)
