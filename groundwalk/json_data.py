@@ -77,7 +77,7 @@ plain JSON value may become one."""
 
 @cache
 def converter(complete: bool) -> Converter:
-    """The converter that checks kinds and keys; `complete` as in `from_plain`."""
+    """The converter that checks kinds and, if `complete`, refuses missing keys."""
     made = Converter(unstruct_collection_overrides={tuple: list})
     made.register_unstructure_hook(float, float)
     made.register_unstructure_hook(Path, str)

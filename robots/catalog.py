@@ -80,7 +80,7 @@ def read_description(path: Path) -> Description:
 
 
 def _parent(name: str, joints: dict[str, Table], root: str) -> tuple[str, FloatArray]:
-    """The next moving joint (or root) above, and the direct parent's place there."""
+    """The next moving joint (or root) above; the direct parent's place there [m]."""
     offset = np.zeros(3)
     parent = joints[name]["parent"]
     while parent != root:

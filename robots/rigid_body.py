@@ -33,7 +33,7 @@ class Inertial:
             )
 
     def moved(self, offset_m: FloatArray) -> "Inertial":
-        """This body as seen from a parallel frame at -offset_m, (3,) [m]."""
+        """The body in a parallel frame whose origin is at -offset_m (3,) [m]."""
         return Inertial(self.mass_kg, self.com_m + offset_m, self.inertia_kg_m2)
 
     def with_rotor(self, axis: FloatArray, rotor_kg_m2: float) -> "Inertial":

@@ -71,7 +71,7 @@ class Transitions:
         return self.next_state - self.state[:, : self.outcomes]
 
     def joined(self, other: Self) -> Self:
-        """These transitions, then those of `other`, whose episodes get new numbers."""
+        """All transitions: these, then those of `other` with new episode numbers."""
         theirs = other.episode - other.episode.min() + self.episode.max() + 1
         other = replace(other, episode=theirs)
         pairs = zip(vars(self).values(), vars(other).values(), strict=True)

@@ -27,7 +27,7 @@ class Flat(Ground):
 
 
 def _ladder(heading_rad: float) -> Ladder:
-    """Ladder of slopes of 1.7 to 14 degrees that climb in one direction [rad]."""
+    """Severities for stress tests: slopes of 1.7 to 14 degrees in a heading [rad]."""
     return Ladder(
         *("angle", "rad", 0.03, 0.25),
         lambda angle_rad, leg_m: {"angle_rad": angle_rad, "heading_rad": heading_rad},

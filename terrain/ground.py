@@ -63,7 +63,7 @@ class Ladder:
       quantity: its name, such as "step height".
       unit: "m", "rad" or "1".
       mildest: mildest value; if the unit is "m", as a share of the robot's leg length.
-      hardest: hardest value, given like `mildest`; smaller for such as friction.
+      hardest: hardest value, given like `mildest`; the smaller one for friction.
       parameters: gives the terrain's parameters from a value of the quantity (SI units)
         and the robot's leg length [m].
     """

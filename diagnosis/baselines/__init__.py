@@ -18,5 +18,9 @@ BASELINES: Mapping[str, Callable[[Plant, Sequence[Trace]], Verdict]] = {
     "bic": bic.answer,
     "sparse": sparse.answer,
 }
-"""The baselines by name. Sets of test cases keep answers in folders of these names.
+"""Simple ways to make a verdict from a robot model and recordings, by name, with which
+the diagnosis is compared. Sets of test cases keep answers in folders of these names.
+
+Example:
+  >>> verdict = BASELINES["sparse"](plant, traces)
 """

@@ -60,7 +60,7 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
 
 
 def criterion(fit: FittedModel, samples: int) -> float:
-    """BIC (Bayesian information criterion) of a fit, up to a constant of all fits."""
+    """BIC (Bayesian information criterion) of a fit, less what all fits share."""
     return 2 * fit.energy + float(fit.jacobian.shape[1] * np.log(samples))
 
 

@@ -67,12 +67,12 @@ class Torques:
         )
 
     def weighted(self, values: FloatArray) -> FloatArray:
-        """(R j,) torques (R, j) times the weights."""
+        """(R j,) torques (R, j) [N m] of R rows times the joints' weights."""
         return np.asarray((values * self.weight_rad_nm).reshape(-1))
 
 
 def _rows(trace: Trace, every: int) -> list[FloatArray]:
-    """Arrays (rows, j) that `Torques.of` names, at some rows of a trace."""
+    """Time, motion, commands, gains and torque (rows, j), at some rows of a trace."""
     q, v, a = smooth_columns(trace.time_s, trace.position_rad)
     command = trace.position_rad if trace.command_rad is None else trace.command_rad
     # around a row the one before it holds as long as its own
@@ -105,7 +105,7 @@ class Column:
     damping_nm_s_rad: float = 1.0
 
     def named(self, size: float, error: float) -> tuple[str, float, float]:
-        """Effect name, parameter value and standard error for a fitted coefficient."""
+        """Effect name, parameter value, standard error for a fitted coefficient."""
         if not self.effect:
             return "", size, error
         return effect(self.effect).from_column(size, error, self.damping_nm_s_rad)
@@ -114,7 +114,7 @@ class Column:
 def torque_columns(
     plant: Plant, traces: Sequence[Trace], torques: Torques
 ) -> list[Column]:
-    """Columns of all effects that are linear, or nearly so, in a parameter."""
+    """Regression columns of all effects that are nearly linear in a parameter."""
     columns = [
         column
         for joint in range(len(plant.joints))
@@ -130,12 +130,12 @@ def torque_columns(
 
 
 def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Column]:
-    """Columns of effects at one joint alone, and of a constant torque there."""
+    """Regression columns of effects at one joint, and of a constant torque there."""
     motion, place = _motion_of(torques, joint), plant.joints[joint]
     damping = float(torques.damping_nm_s_rad[joint])
 
     def column(name: str, parameter: int, values: FloatArray) -> Column:
-        """The column of an effect whose torque (rows,) acts at this joint only."""
+        """The regression column of an effect whose torque (rows,) acts here only."""
         whole = np.zeros_like(torques.motion.position_rad)
         whole[:, joint] = values
         return Column(name, place, parameter, torques.weighted(whole), damping)
@@ -148,7 +148,7 @@ def _joint_columns(plant: Plant, torques: Torques, joint: int) -> Iterator[Colum
 
 
 def _signal_columns(plant: Plant, torques: Torques, kind: Effect) -> Iterator[Column]:
-    """The column of an effect on the commands of all joints, if it has one."""
+    """The regression column, if any, of an effect on the commands of all joints."""
     every = [
         kind.torque_column(_motion_of(torques, joint))
         for joint in range(len(plant.joints))
@@ -168,7 +168,7 @@ def _motion_of(torques: Torques, joint: int) -> JointMotion:
 def _changed_columns(
     plant: Plant, torques: Torques, kind: Effect, place: str
 ) -> Iterator[Column]:
-    """Columns of an effect that changes model or pose, by finite differences."""
+    """Regression columns, by finite differences, of effects on model or pose."""
     motion = torques.motion
     parameters = kind.parameters(plant, place)
     for number, parameter in enumerate(parameters):
@@ -213,7 +213,7 @@ sum of columns."""
 
 
 def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
-    """Name the effects whose columns remain after sequential thresholding, or none.
+    """Name the effects that sequential thresholding leaves in a regression, or none.
 
     Contact forces of a floating base are not known, so there is no answer for one.
 

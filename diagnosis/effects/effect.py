@@ -102,7 +102,7 @@ class Effect(ABC):
     changed model or pose, instead of by `torque_column`."""
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Make `words` for a subclass that has a name and states no words."""
+        """Make the report texts `words` of a subclass that has a name but no words."""
         super().__init_subclass__(**options)
         stated = vars(cls)
         if "name" in stated and "words" not in stated:
@@ -131,7 +131,9 @@ class Effect(ABC):
     def apply_to_sim(
         self, copies: Variants, row: int, place: str, values: FloatArray
     ) -> None:
-        """Do as `apply`, for a sim world, whose ground is a heightfield of its own.
+        """Put the effect into a model of a sim world, whose ground is a heightfield.
+
+        The arguments are those of `apply`.
 
         Raises:
           BadModelError: a sim world cannot have this effect.
@@ -284,7 +286,11 @@ class NumberEffect(Effect):
 
 
 class TorqueEffect(JointEffect):
-    """A torque at a joint by a law that MuJoCo lacks: `torque_nm`, for every step."""
+    """A torque at a joint by a law that MuJoCo lacks: `torque_nm`, for every step.
+
+    Example:
+      See docs/python.md, "Physics of your own".
+    """
 
     native: ClassVar[bool] = False
 

@@ -43,7 +43,7 @@ class ViscousFriction(NumberEffect, JointEffect):
         return (Parameter("coefficient", "N m s/rad", 0.0, scale, 0.0, 0.1 * scale),)
 
     def twins(self, plant: Plant, place: str) -> tuple[PlacedEffect, ...]:
-        """Larger servo damping, if the motor has back-EMF: the torque is the same."""
+        """Effects that look alike: larger servo damping, if there is back-EMF."""
         if place not in plant.joints:
             return ()
         has_emf = plant.servo.back_emf_nm_s_rad[plant.joints.index(place)] > 0
@@ -56,7 +56,7 @@ class ViscousFriction(NumberEffect, JointEffect):
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """Name, value, error; a negative coefficient becomes weaker servo damping."""
+        """Effect name, value, error; a coefficient below 0 is weaker servo damping."""
         if size >= 0 or damping_nm_s_rad <= 0:
             return self.name, size, error
         share = 1 / damping_nm_s_rad
@@ -122,7 +122,7 @@ class StribeckFriction(JointEffect):
         )
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Add the torques to a variant's; speeds v_s are averaged by extra torque."""
+        """Add the friction to one variant; speeds v_s are averaged by extra torque."""
         coulomb_nm, extra_nm, speed_rad_s = values
         joints, at = copies.joints, (row, copies.column(place))
         joints.coulomb_nm[at] += coulomb_nm
@@ -134,7 +134,7 @@ class StribeckFriction(JointEffect):
             joints.stribeck_nm[at] = total_nm
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """Start values from plain dry friction: half as much torque again at rest."""
+        """Stribeck friction to try after dry friction: half as much more at rest."""
         if other.name != "coulomb_friction":
             return ()
         (torque_nm,) = other.values
@@ -149,7 +149,7 @@ class StribeckFriction(JointEffect):
         return [(coulomb, extra, speed) for speed in (0.03, 0.2)]
 
     def simpler(self, placed: PlacedEffect) -> PlacedEffect:
-        """Plain dry friction, halfway between the torques at high speed and at rest."""
+        """Dry friction alone, between the torques at high speed and at rest."""
         coulomb_nm, extra_nm, _ = placed.values
         mean_nm = coulomb_nm + extra_nm / 2
         return PlacedEffect("coulomb_friction", placed.place, (mean_nm,))

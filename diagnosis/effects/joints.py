@@ -182,7 +182,7 @@ class JointSpring(JointEffect):
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
-        """Stiffness k [N m/rad] and rest angle [rad], first the reference pose's."""
+        """Stiffness k [N m/rad]; rest angle [rad], by default the reference pose's."""
         scale = torque_nm(plant, place)
         low, high = range_rad(plant, place)
         reference = plant.model.qpos0[plant.qpos[plant.joints.index(place)]]
@@ -278,11 +278,11 @@ class EndStop(JointEffect):
     def sizes_to_scan(
         self, plant: Plant, placed: PlacedEffect, traces: Sequence[Trace]
     ) -> list[PlacedEffect]:
-        """Only the guess: scaling a stop's angle does not scale the effect."""
+        """Only the guess `placed`: a scaled angle would not scale the effect."""
         return [placed]
 
     def neutral_values(self, plant: Plant, placed: PlacedEffect) -> Values:
-        """Angle at the end of the joint's range on the stop's side, and the side +1."""
+        """Values without effect: the range's end on the stop's side, and side +1."""
         angle, side = self.parameters(plant, placed.place)
         if placed.values and placed.values[1] < 0:
             return angle.low, side.neutral

@@ -51,7 +51,7 @@ class ServoGain(NumberEffect, ServoEffect):
     def from_column(
         self, size: float, error: float, damping_nm_s_rad: float
     ) -> tuple[str, float, float]:
-        """Name, factor and error, from the share of the stiffness that is missing."""
+        """Effect name, factor and its error, from the missing share of stiffness."""
         return self.name, 1 - size, error
 
 
@@ -220,7 +220,7 @@ class CommandLatency(NumberEffect):
         return ("commands",) if has_commands else ()
 
     def twins(self, plant: Plant, place: str) -> tuple[PlacedEffect, ...]:
-        """Late encoders if the base is fixed: joint positions then look the same."""
+        """Effects that look alike: late encoders, if the base is fixed."""
         late = PlacedEffect("sensor_delay", "encoders")
         return (late,) if plant.base == "fixed" else ()
 

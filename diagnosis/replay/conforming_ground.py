@@ -82,7 +82,7 @@ def _above(
 
 
 def _stands(runs: Sequence[Run], lowest: FloatArray) -> BoolArray:
-    """(N, feet) whether a foot carries the robot, from (N, feet) heights `lowest`."""
+    """(N, feet) whether feet carry robots, from N runs and heights (N, feet) [m]."""
     found = lowest - lowest.min(axis=1, keepdims=True) <= ABOVE_M
     for row, run in enumerate(runs):
         force = run.trace.foot_force_n

@@ -48,7 +48,7 @@ class BatchFriction:
         np.asarray(batch.expand("dof_solref"))[:] = solref
 
     def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
-        """Set the friction that depends on speed and on torque through the gears."""
+        """Set friction by (rows, j) speeds [rad/s] and by torques in gears [N m]."""
         joints = self._joints
         speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
         more = joints["stribeck_nm"] * np.exp(-(speed**2))

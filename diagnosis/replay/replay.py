@@ -91,7 +91,7 @@ class ReplayBatch:
     def __init__(
         self, runs: Sequence[Run], variants: Variants, step_s: float, threads: int
     ) -> None:
-        """Put every simulation into its run's start state; arguments of `replay`."""
+        """Put the simulations of n variants in R runs into the runs' start states."""
         self.plant, self.step_s = variants.plant, step_s
         self.n, self.count = variants.n * len(runs), len(runs)
         self._batch = Batch(self.plant.model, self.n, threads)

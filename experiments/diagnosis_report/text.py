@@ -35,7 +35,10 @@ given, so that the question is what has changed since then."""
 
 
 def badge(verdict: Verdict, changed: bool = False) -> str:
-    """The kind of a verdict in a few words; `changed` as in `answer`."""
+    """The kind of a verdict in a few words.
+
+    With `changed` they are about changes since reference recordings.
+    """
     return (CHANGE_BADGES if changed else BADGES)[verdict.kind]
 
 

@@ -164,7 +164,7 @@ class GroundingStep:
 
     @cached_property
     def real(self) -> RealWalks:
-        """This step's walks in the real world."""
+        """Walks in the real world that this grounding step adds."""
         if self._beside is not None:
             return self._beside.real
         vectors = self._cloud.draw(self._around, self._walks[0], self._seeds[0])

@@ -123,7 +123,7 @@ class WalkRecords(NamedTuple):
     uneven: Transitions
 
     def joined(self, other: "WalkRecords") -> "WalkRecords":
-        """These walks, followed by those of another step."""
+        """The walks of both in one object: first these, then those of `other`."""
         real, more = self.real, other.real
         return WalkRecords(
             RealWalks(

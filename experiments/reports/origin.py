@@ -30,7 +30,7 @@ class Origin:
 
     @classmethod
     def of(cls, provenance: Mapping[str, Any], settings: Mapping[str, Any]) -> Self:
-        """Make the origin from the content of provenance.json and options by name."""
+        """Origin of a page, from the content of provenance.json and options by name."""
         changed = ", with changes that were not committed"
         known = [provenance, *provenance.get("resumed", ())]
         versions = {
@@ -50,7 +50,7 @@ class Origin:
 
     @classmethod
     def of_run(cls, folder: RunFolder) -> Self:
-        """Read the origin from a run's folder."""
+        """Read a page's origin (command, settings, versions) from a run's folder."""
         config = folder.read_json(CONFIG)
         chosen = {k: v for k, v in config.items() if k not in {"verb", *NOT_REPEATED}}
         return cls.of(folder.read_json(PROVENANCE), chosen)

@@ -40,7 +40,7 @@ class State(enum.StrEnum):
 
     OK = "ok"
     NOTE = "note"
-    """It works, but in another version than tested; or it is optional and missing."""
+    """A package works in another version than tested, or is optional and missing."""
     FAIL = "fail"
 
 

@@ -21,7 +21,7 @@ def load_gait(name: str) -> Gait:
 
 
 def load_gaits(names: Sequence[str]) -> dict[str, Gait]:
-    """Load gaits like `load_gait`, by their short names (see `short_name`).
+    """Load gaits by names, from JSON files or from run folders, by their short names.
 
     Raises:
       BadValueError: two gaits have the same short name.

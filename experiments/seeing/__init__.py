@@ -1,1 +1,1 @@
-"""Pictures and films of walks and searches."""
+"""Pictures, films and Rerun files of walks and of searches for gaits."""

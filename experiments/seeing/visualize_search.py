@@ -144,7 +144,7 @@ def read_history(entries: Entries) -> SearchHistory:
 
 
 def _columns(entries: Entries, key: str) -> dict[str, FloatArray]:
-    """Each parameter (generations,) of the entries' gait `key`; NaN where missing."""
+    """By parameter: (generations,) values in the gait stored under `key`, or NaN."""
     gaits = [entry.get(key, {}) for entry in entries]
     return {
         parameter.name: np.array([gait.get(parameter.name, np.nan) for gait in gaits])

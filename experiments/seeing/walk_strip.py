@@ -196,7 +196,7 @@ def _piece(time_s: FloatArray, x_m: FloatArray, ended: bool) -> slice:
 
 
 def _apart(x_m: FloatArray, stills: IntArray, room_m: float) -> IntArray:
-    """Those of the stills, from the last one back, whose heads are `room_m` apart."""
+    """Choose stills, from the last one back, whose heads are `room_m` [m] apart."""
     chosen: list[int] = []
     for still in stills[::-1].tolist():
         if (np.abs(x_m[chosen] - x_m[still]) >= room_m).all():

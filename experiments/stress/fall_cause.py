@@ -208,7 +208,8 @@ _EVENTS = {
 class FallCause(NamedTuple):
     """The cause of a fall, and the time [s] in the recording when it first showed.
 
-    For a tip it is the time at which balance was lost; None if the cause is unknown.
+    If the robot just tipped over, it is the time at which balance was lost; None if the
+    cause is unknown.
     """
 
     cause: Cause

@@ -73,7 +73,7 @@ TOYS = {
         best={"sim": "a3", "GAT": "a1", "SGAT": "a2", "real": "a2"},
     ),
 }
-"""The toys, by whether their real world is deterministic or stochastic."""
+"""The SGAT paper's toy worlds, by whether the real one is deterministic or random."""
 
 
 @dataclass(frozen=True)

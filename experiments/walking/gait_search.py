@@ -37,7 +37,7 @@ from walk_engine import Gait
 from worlds import WorldOptions
 
 SEARCH_VERB = "optimize-gait"
-"""Name of the verb whose run folders hold such a search."""
+"""Name of the verb whose run folders hold a search for a gait."""
 
 RATED = dataclasses.replace(SEARCH_TRIAL, start_spread_rad=0.01)
 """Rules for rating the generations' mean gaits after the search. The start poses have a

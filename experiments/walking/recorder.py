@@ -38,7 +38,7 @@ class Recorder:
         """Add one tick of those of the n robots that are still active (n,).
 
         Observation and truth are from before the command (n, joints) [rad] took effect;
-        a target is NaN for none. Support (n,) is 1 for left, -1 for right, 0 for both.
+        NaN is no command. Support (n,) is 1 for left, -1 for right, 0 for both.
         """
         for robot in self._robots:
             if active[robot]:

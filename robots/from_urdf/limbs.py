@@ -27,7 +27,7 @@ _CLEAR = 0.9
 class Legs(NamedTuple):
     """Names of both legs' joints from hip to foot, and the robot's rotation.
 
-    It leads (3, 3) from the root link's frame to x forward, y left, z up.
+    The rotation (3, 3) turns the root link's frame to x forward, y left, z up.
     """
 
     left: tuple[str, ...]

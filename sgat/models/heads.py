@@ -159,7 +159,7 @@ class LowRankHead(Head):
 
     @property
     def width(self) -> int:
-        """Number of raw outputs: means, logarithms of D, and the entries of U."""
+        """Number of raw outputs, for covariance U U^T + D: means, log D, then U."""
         return self.dimensions * (2 + self.rank)
 
     def parts(self, raw: Any, xp: Any) -> Parts:
@@ -181,7 +181,7 @@ class LowRankHead(Head):
         return FullHead(self.dimensions).sample(self._triangular(parts), z, choice)
 
     def residuals(self, parts: Parts, y: FloatArray, choice: FloatArray) -> FloatArray:
-        """(n, d) noise z with y - mean = L z, where L is the Cholesky factor."""
+        """(n, d) noise z with L z = y - mean, L the covariance's Cholesky factor."""
         return FullHead(self.dimensions).residuals(self._triangular(parts), y, choice)
 
     def _triangular(self, parts: Parts) -> Parts:
@@ -193,7 +193,8 @@ class LowRankHead(Head):
 
 
 _LARGEST_LOGIT = 8.0
-"""Bound of a component's logit, so that training can bring back a light component."""
+"""Bound of the logit of a mixture's component, so that training can bring back a light
+component."""
 
 
 @dataclass(frozen=True)

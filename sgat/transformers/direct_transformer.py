@@ -134,7 +134,7 @@ class DirectTransformer:
 
 
 def _told(sim: ForwardModel, tried: Transitions, real: Transitions) -> FloatArray:
-    """(N, k + p) states and changes of `real`, scaled as in the sim's forward model."""
+    """(N, s + p) states (of the sim) and changes in `real`, scaled as in its model."""
     inputs, targets = sim.scalings
     columns = slice(tried.state.shape[1])
     state = real.state[:, columns] - inputs.mean[columns]

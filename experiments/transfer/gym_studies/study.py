@@ -199,7 +199,7 @@ def _policy(study: GymStudy, folder: Path, job: Job) -> tuple[Any, dict[str, flo
 def _best_envelope(
     study: GymStudy, folder: Path, job: Job
 ) -> tuple[Any, dict[str, float]]:
-    """The policy of ANE: of those for all noise levels, the best in the real world."""
+    """The policy by action noise envelope: of all noise levels the best on real."""
     seed = number(study.seed_of(job.k, OF_SEARCH))
     found, steps = [], 0
     for level in study.envelopes:

@@ -84,10 +84,12 @@ SMALLEST = {"trials": 2, "generations": 1, "ratings": 1, "repeats": 1, "real_wal
 """Least value of each option with which the study can run."""
 
 ENVELOPES_RAD = (0.02, 0.05)
-"""Standard deviations [rad] of the noise on commands that ANE chooses from."""
+"""Standard deviations [rad] of the noise on commands that the action noise envelope
+(ANE) chooses from."""
 
 ENVELOPE_WALKS = 12
-"""Number of real walks by which ANE judges each standard deviation of its noise."""
+"""Number of real walks by which the action noise envelope (ANE) judges each of its
+standard deviations."""
 
 OF_DATA, OF_SEARCH, OF_TRIALS, OF_ENVELOPES = range(4)
 """Numbers by which seeds are derived for different uses; all methods share the seeds,
@@ -277,7 +279,7 @@ class NaoStudy:
         return gait, {"real_walks": walks}
 
     def _best_envelope(self, checkpoint: Path) -> tuple[Gait, dict[str, Any]]:
-        """The gait of ANE: of those tuned at each noise level, the best on real."""
+        """The gait by action noise envelope: of all noise levels the best on real."""
         found = []
         for level in ENVELOPES_RAD:
             path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.pkl")
