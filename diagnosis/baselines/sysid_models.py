@@ -83,7 +83,7 @@ class SysidModels:
         }
 
     def build(self, parameters: Any, spec: mujoco.MjSpec) -> mujoco.MjModel:
-        """Make the model of the recording whose number the specification's name has."""
+        """Make a recording's model; its number is in the specification's name."""
         nominal, servo = self._nominal[spec.modelname]
         variants = Variants(self._plant, 1)
         for one, count in zip(self._free, parameters.as_vector(), strict=True):

@@ -129,7 +129,7 @@ class Found:
       place: where it is: a joint, a body, "feet", "commands" or "world".
       parameters: the estimates by the parameters' names.
       probability: probability from 0 to 1 that this is the right effect at the right
-        place, calibrated on concealed cases (`diagnosis.conclude.answer`).
+        place, calibrated on test cases (`diagnosis.conclude.answer`).
       confusable_with: other effects, each of which could replace this one and explain
         the recordings about as well.
       when: whether it acts always, for a while, or growing.

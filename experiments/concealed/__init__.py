@@ -7,4 +7,4 @@ STUDIES = {
     "run": Verb("ConcealedRun", "diagnose the cases", "concealed.run"),
     "score": Verb("ConcealedScore", "open the truth and count", "concealed.score"),
 }
-"""The verbs of `groundwalk concealed`, the steps of a study, by name."""
+"""The steps of a study of concealed test cases (`groundwalk concealed`), by name."""

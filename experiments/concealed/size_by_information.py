@@ -56,7 +56,7 @@ def drawn_nats(rng: np.random.Generator) -> float:
 
 
 def level_of(nats_per_recording: float) -> str:
-    """The easiest level whose least nats per recording are reached; else "L4"."""
+    """Level of difficulty, "L1" (easiest) to "L4", of an information [nats]."""
     *_, last = LEVELS
     reached = (name for name, least in LEVELS.items() if nats_per_recording >= least)
     return next(reached, last)

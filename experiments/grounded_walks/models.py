@@ -54,7 +54,8 @@ class WalkModels:
       places: the real world and the sim of the walks.
 
     Example:
-      See docs/python.md, "Learn with Gymnasium".
+      >>> models = GroundingStep(gait, GaitCloud(), (96, 200), seed).models
+      >>> models.grounded("sgat").transformer
     """
 
     records: WalkRecords

@@ -170,7 +170,8 @@ class GroundedSim:
       place: the sim behind the transformer.
 
     Example:
-      See docs/python.md, "Learn with Gymnasium".
+      >>> GroundedSim(None, SimPlace()).transformer is None  # the plain sim
+      True
     """
 
     transformer: Transformer | None = None

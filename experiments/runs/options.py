@@ -30,7 +30,8 @@ class RunOptions:
       json: print the result as JSON.
 
     Example:
-      See docs/python.md.
+      >>> OptimizeGait(out=Path("runs/mine"), seed=2).seed
+      2
     """
 
     if_interrupted: ClassVar[str] = RESUMABLE

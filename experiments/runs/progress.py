@@ -93,7 +93,7 @@ class Stages:
     """
 
     def __init__(self, work: str, threads: int) -> None:
-        """Show `work` (its name) and `threads` when the duration is announced."""
+        """Prepare the display of `work` (its name), which runs in `threads` threads."""
         self._work, self._threads = work, max(threads, 1)
         self._open = ExitStack()
         self._task: Task | None = None

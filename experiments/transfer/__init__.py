@@ -20,4 +20,4 @@ STUDIES = {
         "transfer.nao_falls",
     ),
 }
-"""The studies of this folder, by their names on the command line."""
+"""The studies of `groundwalk transfer`, by their names on the command line."""

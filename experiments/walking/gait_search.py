@@ -46,7 +46,7 @@ standard deviation of 0.01 rad, so that no gait wins that needs one exact pose."
 
 @dataclass(frozen=True)
 class SearchPlan:
-    """Options of a search, as of `groundwalk optimize-gait`.
+    """Options of a search for a gait, as of `groundwalk optimize-gait`.
 
     `start` is the name or file of a gait; `sim` is the run folder of a diagnosis, whose
     effects are added to the sim.

@@ -1,10 +1,10 @@
 """Makes the description of a walking robot from its URDF.
 
 Legs, feet, arms and the direction in which the robot faces follow from the kinematics
-(`limbs`), soles from collision shapes (`link_shapes`), motors
-from effort and speed limits (`servo_size`), and the scaling of gaits from the leg
-length (`scale`). Joints of legs and shoulders have motors; waist, neck, elbows, wrists
-and fingers are held still, and their links are merged into the links above them.
+(`limbs`), soles from collision shapes (`link_shapes`), motors from effort and speed
+limits (`servo_size`), and the scaling of gaits from the leg length (`scale`). Joints of
+legs and shoulders have motors; waist, neck, elbows, wrists and fingers are held still,
+and their links are merged into the links above them.
 """
 
 import math

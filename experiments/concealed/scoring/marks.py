@@ -1,4 +1,4 @@
-"""Compares the answer (a verdict) to one concealed case with the hidden effects."""
+"""Compares the answer (a verdict) to a test case with the effects hidden in it."""
 
 import math
 from collections.abc import Sequence
