@@ -149,8 +149,8 @@ class Ground(ABC):
     def past_start(self, distance_m: FloatArray) -> FloatArray:
         """Factor from 0 to 1 for the terrain's heights that leaves the start area flat.
 
-        By distance from the world's origin [m]: 0 up to `start_radius_m`, 1 from
-        `blend_m` further on, between them the cubic t^2 (3 - 2 t), t = 0 to 1.
+        By distance from the world's origin [m] (any shape): 0 up to `start_radius_m`, 1
+        from `blend_m` further on, between them the cubic t^2 (3 - 2 t), t = 0 to 1.
         """
         t = np.clip((distance_m - self.start_radius_m) / self.blend_m, 0.0, 1.0)
         return t * t * (3.0 - 2.0 * t)

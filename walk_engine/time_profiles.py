@@ -14,7 +14,7 @@ Times = float | FloatArray
 
 
 def linear_step(time_s: Times, period_s: Times) -> FloatArray:
-    """Profile that rises from 0 to 1 over the period at constant speed."""
+    """Profile, 0 to 1, of constant speed over the period [s]; shapes broadcast."""
     return np.clip(np.divide(time_s, period_s), 0.0, 1.0)
 
 
@@ -23,8 +23,8 @@ def parabolic_step(
 ) -> FloatArray:
     """Profile from 0 to 1 with constant acceleration, then constant deceleration.
 
-    Times are in [s]; `dead_fraction` is the share of the period without motion, half of
-    it at each end.
+    Times are in [s] and broadcast; `dead_fraction` is the share of the period without
+    motion, half of it at each end.
     """
     dead_s = period_s * np.multiply(0.5, dead_fraction)
     part = np.clip((time_s - dead_s) / (period_s - 2 * dead_s), 0.0, 1.0)
@@ -35,8 +35,8 @@ def parabolic_step(
 def parabolic_return(phase: FloatArray) -> FloatArray:
     """Profile that rises from 0 at phase 0 to 1 at 0.5, and falls to 0 at phase 1.
 
-    It consists of parabolas: its second derivatives by phase in the four quarters are
-    16, -16, -16 and 16.
+    Phases have any shape. The profile consists of parabolas: its second derivatives by
+    phase in the four quarters are 16, -16, -16 and 16.
     """
     to_end = 0.5 - np.abs(np.clip(phase, 0.0, 1.0) - 0.5)
     to_apex = 0.5 - to_end

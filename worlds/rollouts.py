@@ -86,7 +86,7 @@ class DelayLine:
         self._commands.extend([command] * (self._ticks + 2))
 
     def tick(self, command: FloatArray) -> Iterator[tuple[FloatArray, int]]:
-        """Take the command of one tick, and give the delayed ones that act in it.
+        """Take a tick's command (n, joints), and give the delayed ones that act in it.
 
         Each of the one or two comes with the number of physics steps for which it acts.
         """
@@ -140,7 +140,7 @@ class RolloutWorld(ABC):
         return len(self._grounds)
 
     def reset(self, pose_rad: FloatArray) -> Observation:
-        """Start n rollouts: put every robot on its ground; see `World.reset`."""
+        """Start n rollouts: put robots on its ground, in poses (n, joints) [rad]."""
         targets = self._targets(pose_rad)
         if not (np.abs(targets) < MOST_RAD).all():
             raise BadValueError(
@@ -159,7 +159,7 @@ class RolloutWorld(ABC):
         return self._as_measured()
 
     def step(self, command_rad: FloatArray) -> Observation:
-        """Advance the active robots by one tick of 10 ms; see `World.step`."""
+        """Advance active robots by a tick of 10 ms with commands (n, joints) [rad]."""
         targets = self._targets(command_rad)
         # A NaN, which is not below the limit, would be zero to MuJoCo.
         in_range = np.all(np.abs(targets) < MOST_RAD, axis=1)

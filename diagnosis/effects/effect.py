@@ -279,7 +279,7 @@ class NumberEffect(Effect):
         return self.usual
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Change the quantity in one variant by the effect's value or vector."""
+        """Change the quantity in one variant by the effect's value or vector (p,)."""
         numbers, at = copies.at(self.quantity, row, place)
         change = values if self.components > 1 else values[0]
         numbers[at] = self.combined(numbers[at], change)
@@ -295,7 +295,7 @@ class TorqueEffect(JointEffect):
     native: ClassVar[bool] = False
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Store the values for one variant; those of several effects are added.
+        """Store the values (p,) for one variant; those of several effects are added.
 
         A law that is not linear in its values has to override this.
         """

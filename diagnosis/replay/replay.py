@@ -110,7 +110,7 @@ class ReplayBatch:
             self.qpos[error.ids] = np.nan
 
     def bind(self, name: str) -> FloatArray:
-        """View of a field of `MjData` of all simulations; it changes as they step."""
+        """(n, ...) live view of a field of `MjData` of all n simulations."""
         return np.asarray(self._batch.bind(name))
 
     def _start(self, runs: Sequence[Run], variants: Variants) -> None:
@@ -233,9 +233,9 @@ def hermite(
 ) -> tuple[FloatArray, FloatArray]:
     """Positions by cubic Hermite interpolation, velocities by linear interpolation.
 
-    `before` and `after` are positions and velocities at two steps `step_s` apart,
-    `share` is what has passed of the step, 0 to 1. SciPy's `CubicHermiteSpline` is not
-    used, since it needs the same times in all rows.
+    `before` and `after` are positions and velocities at two steps `step_s` apart, arrays
+    of one shape; `share` is what has passed of the step, 0 to 1. SciPy's
+    `CubicHermiteSpline` is not used, since it needs the same times in all rows.
     """
     h, t = step_s, share
     (q0, v0), (q1, v1) = before, after

@@ -49,7 +49,7 @@ def add_link(robot: Element, name: str, inertial: Inertial) -> Element:
 
 
 def add_sphere(link: Element, kind: str, place_m: FloatArray, radius_m: float) -> None:
-    """Add a sphere to a link; `kind` is "visual" or "collision"."""
+    """Add a sphere at (3,) [m] to a link; `kind` is "visual" or "collision"."""
     element = SubElement(link, kind)
     add_origin(element, place_m)
     SubElement(SubElement(element, "geometry"), "sphere", radius=repr(radius_m))

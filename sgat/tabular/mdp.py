@@ -177,7 +177,7 @@ def action_values(mdp: FiniteMdp, values: FloatArray) -> FloatArray:
 
 
 def expected_return(mdp: FiniteMdp, policy: IntArray, step_limit: int) -> float:
-    """Exact expected sum of rewards of an episode, cut after `step_limit` steps."""
+    """Exact mean sum of rewards of a policy (S,) in episodes of `step_limit` steps."""
     steps = _steps(mdp, policy)
     now = steps @ mdp.reward
     values = np.zeros(mdp.states)

@@ -135,7 +135,7 @@ def bad_value(column: str, row: int, problem: str) -> BadRecordingError:
 
 
 def frozen_columns(columns: Mapping[str, npt.ArrayLike]) -> dict[str, FloatArray]:
-    """Turn columns into read-only arrays of floats, all of the same length.
+    """Turn columns into read-only arrays of floats, all (ticks,).
 
     An array that can be written to is copied.
     """

@@ -12,7 +12,7 @@ from worlds.scenes.curves import Trace
 
 
 def tick_times(time_s: FloatArray) -> dict[str, npt.NDArray[Any]]:
-    """Rerun's timelines of a recording: `sim_time`, and `tick`, the row from 0."""
+    """Rerun's timelines (ticks,) of a recording: `sim_time`, and `tick`, from 0."""
     # Rounded, because Rerun cuts off fractions of a nanosecond.
     nanoseconds = np.rint(time_s * 1e9).astype("timedelta64[ns]")
     return {"sim_time": nanoseconds, "tick": np.arange(time_s.size)}
@@ -60,7 +60,7 @@ class ColumnLog:
         self.send_rows(path, columns, rows)
 
     def send_rows(self, path: str, columns: Any, rows: IntArray | None = None) -> None:
-        """Write columns of a Rerun archetype at the times numbered `rows`, or all."""
+        """Write columns of a Rerun archetype at times numbered `rows` (k,), or all."""
         rows = self._all if rows is None else rows
         indexes = [
             rr.TimeColumn(name, duration=times[rows])
