@@ -37,7 +37,7 @@ class Inertial:
         return Inertial(self.mass_kg, self.com_m + offset_m, self.inertia_kg_m2)
 
     def with_rotor(self, axis: FloatArray, rotor_kg_m2: float) -> "Inertial":
-        """This body with a geared rotor's inertia about the joint axis (3,) added.
+        """The body with a geared rotor's inertia about the joint axis (3,) added.
 
         The rotor is a thin disc fixed to the link, which MuJoCo and Bullet can both
         simulate: Bullet has no joint armature, and a torque from outside in its place

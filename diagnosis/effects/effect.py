@@ -191,7 +191,7 @@ class Effect(ABC):
         return tuple(one.neutral for one in self.parameters(plant, placed.place))
 
     def grown_from(self, other: PlacedEffect) -> tuple[PlacedEffect, ...]:
-        """This effect, started from a simpler one that it contains; () from others."""
+        """The effect, started from a simpler one that it contains; () from others."""
         return ()
 
     def simpler(self, placed: PlacedEffect) -> PlacedEffect:

@@ -233,8 +233,8 @@ def hermite(
 ) -> tuple[FloatArray, FloatArray]:
     """Positions by cubic Hermite interpolation, velocities by linear interpolation.
 
-    `before` and `after` are positions and velocities at two steps `step_s` apart, arrays
-    of one shape; `share` is what has passed of the step, 0 to 1. SciPy's
+    `before` and `after` are positions and velocities at two steps `step_s` apart, of
+    one shape; `share` is what has passed of the step, 0 to 1. SciPy's
     `CubicHermiteSpline` is not used, since it needs the same times in all rows.
     """
     h, t = step_s, share
