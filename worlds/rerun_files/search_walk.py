@@ -55,7 +55,7 @@ def write_walks(
 
 
 def stills(ticks: int) -> IntArray:
-    """At most `POSES` row indices (k,), evenly spaced over the `ticks` of a recording."""
+    """At most `POSES` row indices (k,), evenly spaced over a recording of `ticks`."""
     return np.unique(np.rint(np.linspace(0, ticks - 1, POSES)).astype(np.intp))
 
 
