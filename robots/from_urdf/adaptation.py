@@ -101,7 +101,7 @@ def read_adaptation(path: Path) -> Adaptation:
 
 
 def urdf_path(name: str, folder: Path) -> Path:
-    """Find the URDF with a name: a path in `folder`, or an example of that name."""
+    """Find a URDF: a path in `folder`, or the name of one in example-robot-data."""
     path = folder / name
     if path.is_file():
         return path
