@@ -46,7 +46,7 @@ def serve(connection: Connection) -> None:
 
 
 def _answer(connection: Connection) -> None:
-    """Make the robots, and answer messages until "stop"; see `serve`."""
+    """Make robots in a worker process, and answer messages until "stop"."""
     description, grounds, options = connection.recv()
     kind = HiddenRobot if options.hidden else BulletRobot
     robots = [kind(description, ground, options) for ground in grounds]

@@ -112,7 +112,7 @@ COLOURS = {
     SGAT_FULL: "#0072b2",
     ANE: "#e69f00",
 }
-"""Colours that colour-blind people can distinguish (Okabe and Ito)."""
+"""Colours of the methods, which colour-blind people can distinguish (Okabe and Ito)."""
 OTHER_COLOUR = "#009e73"
 LINE_COLOUR = "#b2182b"
 GROUP_WIDTH = 0.8
