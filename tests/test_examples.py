@@ -12,6 +12,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
+from experiments.walking.trials import TrialRules, course
 from groundwalk.errors import UnknownNameError
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -64,8 +65,12 @@ def test_the_command_that_an_example_states_has_all_options():
         assert needed <= given <= {one.name for one in parameters}, path.name
 
 
-def test_tune_a_gait(tmp_path):
-    gait = example("tune_a_gait").main(tmp_path / "run", 6, 1, 1)
+def test_tune_a_gait(tmp_path, monkeypatch):
+    for name in ("SEARCH_TRIAL", "RATED"):
+        short = TrialRules(limit_s=2.0)
+        monkeypatch.setattr(f"experiments.walking.gait_search.{name}", short)
+    monkeypatch.setattr("experiments.optimize_gait.course", lambda _: course(0.2))
+    gait = example("tune_a_gait").main(tmp_path / "run", 4, 1, 1)
     assert len(gait) == 16
     assert "walks" in (tmp_path / "run" / "report.html").read_text()
 

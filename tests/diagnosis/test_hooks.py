@@ -83,7 +83,7 @@ def test_a_diagnosis_goes_on_after_a_round_to_the_same_verdict():
 @pytest.mark.slow
 def test_what_was_learned_from_a_reference_is_not_learned_again():
     before = [moved(seed, duration_s=1.5) for seed in range(2)]
-    now = [moved(seed, gain=(1.0, 0.8), duration_s=1.5) for seed in range(10, 13)]
+    now = [moved(seed, gain=(1.0, 0.8), duration_s=1.5) for seed in range(10, 12)]
     store = Store()
     reports, whole = told(swinger(), now, store, before)
     learned = {key: one for key, one in store.kept.items() if "reference" in key}

@@ -1,6 +1,7 @@
 """What makes tests of whole studies short."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -8,10 +9,13 @@ from short_walks import shorten_searches
 
 from experiments.runs import processes
 from experiments.walking.trials import TrialRules
+from sgat.models.training import train
 
-SHORT = TrialRules(limit_s=2.0, start_spread_rad=0.01)
-TO_THE_LUMPS = TrialRules(limit_s=4.5, start_spread_rad=0.01)
-"""What is learned of real begins after 3 s: see `grounded_walks.walks.FLAT_TICKS`."""
+EPOCHS = 3
+SHORT = TrialRules(limit_s=1.0, start_spread_rad=0.01)
+FLAT_TICKS = 40
+TO_THE_LUMPS = TrialRules(limit_s=1.4, start_spread_rad=0.01)
+"""What is learned of real begins after `FLAT_TICKS`, as if the lumps began there."""
 
 
 @pytest.fixture
@@ -37,6 +41,7 @@ def short_walks(monkeypatch):
         return walk(place, robot, vectors, seed, exploration_rad, rules)
 
     short = {
+        "grounded_walks.walks.FLAT_TICKS": FLAT_TICKS,
         "grounded_walks.walks.ON_COURSE": TO_THE_LUMPS,
         "grounded_walks.walks.walk": short_walk,
         "grounded_walks.models.ON_COURSE": SHORT,
@@ -46,3 +51,10 @@ def short_walks(monkeypatch):
     }
     for name, value in short.items():
         monkeypatch.setattr(f"experiments.{name}", value)
+    monkeypatch.setattr("sgat.models.scaled_network.train", train_little)
+
+
+def train_little(outputs, stages, examples, weights, held_out, config, generator):
+    """As `train` does, in a few epochs: what is learned does not matter either."""
+    little = replace(config, epochs=EPOCHS)
+    return train(outputs, stages, examples, weights, held_out, little, generator)

@@ -35,7 +35,7 @@ from walk_engine import gaits
 from worlds.sim.world import SimWorld
 
 SMOKE = {
-    "methods": (SGAT,), "trials": 2, "course_m": 0.3, "population": 4,
+    "methods": (SGAT,), "trials": 2, "course_m": 0.1, "population": 4,
     "generations": 1, "ratings": 1, "repeats": 1, "real_walks": 2,
     "more_real_walks": 2, "sim_walks": 2,
 }  # fmt: skip
@@ -189,7 +189,7 @@ def test_a_diagnosed_sim_is_tried_beside_the_one_as_it_is(tmp_path):
     methods = [cell["method"] for cell in cells]
     assert methods == [START, DIAGNOSED_SIM, NONE]
     page = (config.out / "result.md").read_text()
-    assert "courses of 0.3 m on flat ground" in page
+    assert "courses of 0.1 m on flat ground" in page
     assert "speed_limit@LKneePitch:speed=2" in page
 
 
