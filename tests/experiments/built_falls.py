@@ -48,6 +48,8 @@ def walk(
         observation = world.reset(engine.start_pose() + np.array(spread))
         for _ in range(round(limit_s / TICK_S)):
             active = world.active
+            if not active.any():
+                break
             command = engine.step(
                 Velocity.forward(),
                 observation.gyroscope_rad_s,
