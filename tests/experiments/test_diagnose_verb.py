@@ -1,11 +1,15 @@
+import contextlib
+import io
 import json
+import shutil
 import sys
 from dataclasses import replace
 
 import pytest
+from made_once import made_once
 
 from diagnosis.verdict import Verdict
-from experiments.diagnose import Diagnose, main
+from experiments.diagnose import STAGES, Diagnose, main
 from experiments.record import Record
 from experiments.record import main as record
 from experiments.runs.checkpoint_files import CheckpointFiles
@@ -15,21 +19,39 @@ from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
     """A recording of a pendulum whose servo has 0.9 of its nominal stiffness."""
-    path = tmp_path_factory.mktemp("recorded") / "swing.parquet"
-    hidden = ("servo_gain@swing:factor=0.9",)
-    record(
-        Record(
-            robot="pendulum", motion="multisine", hidden=hidden, duration=4.0, out=path
-        )
-    )
-    return path
+    hidden, name = ("servo_gain@swing:factor=0.9",), "swing.parquet"
+
+    def recorded(folder):
+        options = {"robot": "pendulum", "motion": "multisine", "duration": 4.0}
+        record(Record(**options, hidden=hidden, out=folder / name))
+
+    return made_once(tmp_path_factory, "recorded", recorded) / name
+
+
+@pytest.fixture(scope="module")
+def diagnosed(recording, tmp_path_factory):
+    """The folder of its diagnosis, its intermediate results, and what was printed."""
+    model, said = recording.with_name("swing.nominal.xml"), io.StringIO()
+
+    def run(folder):
+        out = folder / "run"
+
+        def kept(files):
+            (out / STAGES).rename(folder / STAGES)
+
+        with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(said):
+            patch.setattr(CheckpointFiles, "delete", kept)
+            main(Diagnose((recording,), str(model), out=out))
+        (folder / "said.txt").write_text(said.getvalue())
+
+    folder = made_once(tmp_path_factory, "diagnosed", run)
+    return folder / "run", folder / STAGES, (folder / "said.txt").read_text()
 
 
 @pytest.mark.slow
-def test_a_diagnosis_writes_all_that_it_promises(recording, tmp_path, capsys):
+def test_a_diagnosis_writes_all_that_it_promises(recording, diagnosed):
     model = recording.with_name("swing.nominal.xml")
-    out = tmp_path / "run"
-    main(Diagnose((recording,), str(model), out=out))
+    out, _, said = diagnosed
     verdict = Verdict.from_json((out / "diagnosis.json").read_text())
     assert verdict.kind == "effects"
     (found,) = verdict.effects
@@ -42,7 +64,7 @@ def test_a_diagnosis_writes_all_that_it_promises(recording, tmp_path, capsys):
     }  # fmt: skip
     config = json.loads((out / "config.json").read_text())
     assert config["recordings"] == [str(recording)]
-    assert "servo" in capsys.readouterr().out
+    assert "servo" in said
     with pytest.raises(RunFolderError, match="exists already"):
         main(Diagnose((recording,), str(model), out=out))
 
@@ -59,7 +81,9 @@ def test_an_audit_takes_no_search(recording, tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-def test_an_interrupted_diagnosis_is_resumed(recording, tmp_path, capsys, monkeypatch):
+def test_an_interrupted_diagnosis_is_resumed(
+    recording, diagnosed, tmp_path, capsys, monkeypatch
+):
     model = recording.with_name("swing.nominal.xml")
     out, saved = tmp_path / "run", CheckpointFiles.save
 
@@ -77,8 +101,7 @@ def test_an_interrupted_diagnosis_is_resumed(recording, tmp_path, capsys, monkey
     said = capsys.readouterr().err
     assert "search round 1" in said
     assert "report 3/3" in said
-    whole = tmp_path / "whole"
-    main(Diagnose((recording,), str(model), out=whole))
+    whole, *_ = diagnosed
     resumed, verdict = (
         Verdict.from_json((path / "diagnosis.json").read_text())
         for path in (out, whole)
@@ -120,15 +143,21 @@ def test_an_arm_from_a_urdf_is_diagnosed_to_the_end(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_a_verdict_outlives_an_overlay_that_fails(
-    recording, tmp_path, capsys, monkeypatch
+    diagnosed, tmp_path, capsys, monkeypatch
 ):
+    """In a run that goes on after its search, when its folder has no verdict yet."""
+    whole, stages, _ = diagnosed
+    out = tmp_path / "run"
+    shutil.copytree(stages, out / STAGES)
+    for name in ("config.json", "provenance.json"):
+        shutil.copy(whole / name, out)
+
     def fail(*arguments):
         raise RuntimeError("no colours\nleft")
 
     monkeypatch.setattr("experiments.diagnose.write_overlay", fail)
-    model = recording.with_name("swing.nominal.xml")
-    main(Diagnose((recording,), str(model), out=tmp_path / "run"))
-    written = {path.name for path in (tmp_path / "run").iterdir()}
+    main(Diagnose(resume=out))
+    written = {path.name for path in out.iterdir()}
     assert written >= {"diagnosis.json", "report.html", "corrected.json"}
     assert "overlay.rrd" not in written
     said = capsys.readouterr()

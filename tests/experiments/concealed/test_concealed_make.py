@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_once import made_once
 
 from experiments.concealed import draw as concealed_draw
 from experiments.concealed import make as concealed_make
@@ -25,7 +26,12 @@ def pendulums(monkeypatch):
     monkeypatch.setattr(concealed_draw, "PLANTS", {"pendulum": 1.0})
 
 
-def make(folder, cases=2, seed=4):
+SEED = 44
+"""Of two pendulums the first has one hidden effect, the second none: both are made
+fast."""
+
+
+def make(folder, cases=2, seed=SEED):
     """Make a set in this process, where the changes of a test apply."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
@@ -42,23 +48,21 @@ def contents(folder):
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Folders of sets of pendulums, by number of cases; tests leave them unchanged."""
-    folder = tmp_path_factory.mktemp("concealed")
+    """A folder with a set of two pendulums; tests leave it unchanged."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(concealed_draw, "PLANTS", {"pendulum": 1.0})
-        for cases in (1, 2):
-            make(folder / str(cases), cases)
-    return {cases: folder / str(cases) for cases in (1, 2)}
+        return made_once(tmp_path_factory, "concealed", make)
 
 
 def test_a_set_has_its_layout_and_a_sealed_truth(made, capsys):
-    folder = made[2]
+    folder = made
     digest = make(folder)  # that it is made tells the hash
     sealed = (folder / "sealed" / "truth.json").read_bytes()
     assert hashlib.sha256(sealed).hexdigest() == digest
     assert digest in capsys.readouterr().out
     truth = json.loads(sealed)
     assert sorted(truth["cases"]) == ["case_000", "case_001"]
+    assert [len(case["effects"]) for case in truth["cases"].values()] == [1, 0]
     for name, case in truth["cases"].items():
         assert case["kind"] in CASE_KINDS
         assert all(effect["name"] in KINDS for effect in case["effects"])
@@ -82,12 +86,16 @@ def test_a_set_has_its_layout_and_a_sealed_truth(made, capsys):
 @pytest.mark.slow
 @pytest.mark.usefixtures("pendulums")
 def test_a_killed_run_goes_on_to_the_same_bits(made, tmp_path, monkeypatch):
-    real = concealed_make.make_case
+    real, truth = concealed_make.make_case, made / "sealed" / "truth.json"
 
     def killed(cases, parts, seed, number):
+        """The first is made as it was: `test_a_case_does_not_depend...` makes it."""
         if number == 1:
             raise KeyboardInterrupt
-        real(cases, parts, seed, number)
+        shutil.copytree(made / "cases" / "case_000", cases / "case_000")
+        parts.mkdir()
+        known = json.loads(truth.read_text())["cases"]["case_000"]
+        (parts / "case_000.json").write_text(json.dumps(known))
 
     monkeypatch.setattr(concealed_make, "make_case", killed)
     with pytest.raises(KeyboardInterrupt):
@@ -95,23 +103,30 @@ def test_a_killed_run_goes_on_to_the_same_bits(made, tmp_path, monkeypatch):
     assert not (tmp_path / "broken" / "sealed.sha256").exists()
     monkeypatch.setattr(concealed_make, "make_case", real)
     make(tmp_path / "broken")
-    assert contents(tmp_path / "broken") == contents(made[2])
+    assert contents(tmp_path / "broken") == contents(made)
 
 
-def test_a_case_does_not_depend_on_how_many_there_are(made):
+@pytest.mark.usefixtures("pendulums")
+def test_a_case_does_not_depend_on_how_many_there_are(made, tmp_path):
+    make(tmp_path / "set", cases=1)
     alone, first, second = (
-        contents(made[cases] / "cases" / name)
-        for cases, name in ((1, "case_000"), (2, "case_000"), (2, "case_001"))
+        contents(folder / "cases" / name)
+        for folder, name in (
+            (tmp_path / "set", "case_000"),
+            (made, "case_000"),
+            (made, "case_001"),
+        )
     )
     assert alone == first != second
 
 
 def test_another_set_is_not_touched(made, tmp_path):
-    shutil.copytree(made[1], tmp_path / "set")
+    shutil.copytree(made, tmp_path / "set")
     before = contents(tmp_path / "set")
-    with pytest.raises(RunFolderError, match="another set"):
-        make(tmp_path / "set", cases=1, seed=5)
-    make(tmp_path / "set", cases=1)
+    for other in ({"cases": 2, "seed": 5}, {"cases": 1}):
+        with pytest.raises(RunFolderError, match="another set"):
+            make(tmp_path / "set", **other)
+    make(tmp_path / "set")
     assert contents(tmp_path / "set") == before
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "letter.txt").write_text("dear")

@@ -1,9 +1,13 @@
 import json
+import shutil
+from functools import partial
 
 import numpy as np
 import pytest
+from made_once import made_once
 from made_up_runs import history
 from rerun.chunk import RrdReader
+from short_walks import SEARCHED, shorten_searches
 
 from experiments.optimize_gait import OptimizeGait
 from experiments.runs.folder import RunFolder
@@ -13,7 +17,7 @@ from experiments.seeing.visualize_search import (
     visualize_search,
     walk_again,
 )
-from experiments.walking.gait_search import SearchPlan, search_gait
+from experiments.walking.gait_search import SearchPlan, rate, search_gait
 from groundwalk.errors import BadModelError, RunFolderError, UnknownNameError
 from terrain import TerrainSpec
 from walk_engine import Gait, gaits
@@ -133,9 +137,22 @@ def run_search(path, **settings):
     return folder
 
 
+@pytest.fixture(scope="module", autouse=True)
+def short_walks():
+    """Of searches and of their gaits again."""
+    with pytest.MonkeyPatch.context() as patch:
+        shorten_searches(patch)
+        again = partial(rate, rules=SEARCHED)
+        patch.setattr("experiments.seeing.visualize_search.rate", again)
+        yield
+
+
 @pytest.fixture(scope="module")
-def real_search(tmp_path_factory):
-    return run_search(tmp_path_factory.mktemp("search") / "run")
+def real_search(short_walks, tmp_path_factory):
+    def run(folder):
+        run_search(folder / "run")
+
+    return RunFolder(made_once(tmp_path_factory, "search", run) / "run")
 
 
 def walked(folder, **changes):
@@ -175,8 +192,9 @@ def test_they_walk_in_the_sim_of_the_search_and_in_no_other(tmp_path):
         assert ([walk.reward for walk in walks] == best) == is_same
 
 
-def test_a_search_shows_its_best_gaits_walk(real_search):
-    path = visualize_search(real_search)
+def test_a_search_shows_its_best_gaits_walk(real_search, tmp_path):
+    run = shutil.copytree(real_search.path, tmp_path / "run")
+    path = visualize_search(RunFolder(run))
     assert has_robot(path)
     assert path.stat().st_size < 1_500_000
     for page in pages(path):

@@ -1,8 +1,10 @@
 import copy
 import dataclasses
 import json
+import shutil
 
 import pytest
+from made_once import made_once
 from matplotlib.image import imread
 
 from experiments.transfer import gym_domains
@@ -19,10 +21,11 @@ from groundwalk.errors import BadValueError, UnknownNameError
 @pytest.fixture(scope="module")
 def pendulum(tmp_path_factory):
     """A smoke run with every method: its folder."""
-    folder = tmp_path_factory.mktemp("pendulum") / "run"
-    options = TransferInvertedPendulum(size="smoke", out=folder)
-    gym_domains.main(options)
-    return folder
+
+    def run(folder):
+        gym_domains.main(TransferInvertedPendulum(size="smoke", out=folder / "run"))
+
+    return made_once(tmp_path_factory, "pendulum", run) / "run"
 
 
 def result_of(folder):
@@ -59,7 +62,8 @@ def test_a_smoke_run_tries_every_method(pendulum):
 
 
 @pytest.mark.slow
-def test_resuming_computes_only_what_is_missing(pendulum, in_this_process):
+def test_resuming_computes_only_what_is_missing(pendulum, tmp_path, in_this_process):
+    pendulum = shutil.copytree(pendulum, tmp_path / "run")
     before = result_of(pendulum)
     lost, kept = (
         pendulum / f"cells/noisy-real_{m}_0.5_s1.json" for m in ("sgat", "gat")
