@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from experiments.reports.figure_file import write_figure
 from experiments.reports.origin import Origin
-from experiments.reports.report import Report, markdown_table
+from experiments.reports.report import Report, markdown_table, write_figure
 from experiments.reports.statistics import wilson
 from experiments.runs.folder import RunFolder
 from experiments.runs.gait_files import short_name

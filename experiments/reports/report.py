@@ -1,10 +1,11 @@
 """The page of a run in two forms: Markdown for a repository, and one HTML file.
 
-No script, style or picture of the HTML is loaded from outside.
+No script, style or picture of the HTML is loaded from outside. Figures are PNG files.
 """
 
 import base64
 import html
+import io
 import mimetypes
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,12 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from experiments.reports.origin import Origin
-from groundwalk.files import write_text
+from groundwalk.files import write_bytes, write_text
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
     from markdown_it.rules_core import StateCore
     from markdown_it.token import Token
+    from matplotlib.figure import Figure
 
 
 FOLDER = "folder"
@@ -164,3 +166,13 @@ def _are_numbers(texts: Sequence[str]) -> bool:
     """Whether every text is "", "-" or begins with a digit, with or without a sign."""
     found = [text for text in texts if text not in ("", "-")]
     return bool(found) and all(text.lstrip("+-")[:1].isdigit() for text in found)
+
+
+def write_figure(figure: "Figure", path: Path) -> None:
+    """Write a figure as a PNG file; after an error no partial file remains.
+
+    The figure must be made without pyplot, so that it need not be closed.
+    """
+    png = io.BytesIO()
+    figure.savefig(png, format="png")
+    write_bytes(path, png.getvalue())

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.reports.figure_file import write_figure
+from experiments.reports.report import write_figure
 from experiments.runs.folder import HISTORY, RECORDINGS, RunFolder
 from experiments.seeing.scenes import make_scenes, read_recordings
 from experiments.seeing.walk_figure import draw_walk

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.reports.figure_file import write_figure
+from experiments.reports.report import write_figure
 from experiments.seeing.scenes import make_scenes
 from experiments.seeing.walk_strip import STILL_S, WIDTH_M, WalkStrip, walk_strip
 from groundwalk.errors import BadValueError

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from experiments.reports.figure_file import write_figure
-from experiments.stress.curves import Curve
+from experiments.reports.report import write_figure
+from experiments.stress.curves import Curve, family_text, severity_text
 from experiments.stress.families import FLAT
-from experiments.stress.severity_text import family_text, severity_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

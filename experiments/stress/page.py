@@ -7,11 +7,10 @@ from experiments.reports.origin import Origin
 from experiments.reports.report import Report, markdown_table
 from experiments.runs.folder import RunFolder
 from experiments.runs.gait_files import short_name
-from experiments.stress.curves import Curve
+from experiments.stress.curves import Curve, family_text, half_text, severity_text
 from experiments.stress.fall_cause import Cause
 from experiments.stress.families import FLAT
 from experiments.stress.figure import COMPARISON, heat_map_name
-from experiments.stress.severity_text import family_text, half_text, severity_text
 
 QUESTION = "How rough may the ground be before these gaits fall?"
 SETTING = ("robot", "world", "gait", "family")

@@ -4,9 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from experiments.reports.figure_file import write_figure
 from experiments.reports.origin import Origin
-from experiments.reports.report import Report
+from experiments.reports.report import Report, write_figure
 from experiments.reports.tables import print_folder, print_json, print_table
 from experiments.runs.extras import extra
 from experiments.runs.folder import RunFolder

@@ -9,8 +9,7 @@ from experiments import real_robots
 from experiments.diagnosis_report.console import console_lines
 from experiments.diagnosis_report.text import answer
 from experiments.real_robot_study.cases import ROBOTS, Published, RealRobot, Sane
-from experiments.real_robot_study.claims import claims_of
-from experiments.real_robot_study.page import write_real_page
+from experiments.real_robot_study.page import claims_of, write_real_page
 from experiments.real_robots import RealRobots, main
 from experiments.runs.folder import RunFolder
 from groundwalk.errors import BadValueError

@@ -6,7 +6,7 @@ from walk_drill import LEFT, RIGHT, forces
 
 from walk_engine import Velocity, WalkEngine, gaits
 from walk_engine.engine_config import EngineConfig
-from walk_engine.support import nothing_sensed, sense, sensor_lateral_m
+from walk_engine.stepper import nothing_sensed, sense, sensor_lateral_m
 
 WALK2014 = gaits.get("walk2014")
 CONFIG = EngineConfig()

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from experiments.concealed.size_by_information import LEVELS
-from experiments.reports.figure_file import write_figure
 from experiments.reports.origin import Origin
-from experiments.reports.report import Report, markdown_table
+from experiments.reports.report import Report, markdown_table, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

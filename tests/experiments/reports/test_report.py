@@ -12,9 +12,14 @@ from made_up_runs import history
 from experiments.diagnose import Diagnose
 from experiments.evaluate import Evaluate
 from experiments.optimize_gait import OptimizeGait
-from experiments.reports.figure_file import write_figure
 from experiments.reports.origin import Origin
-from experiments.reports.report import Report, body_html, markdown_table, sentence_html
+from experiments.reports.report import (
+    Report,
+    body_html,
+    markdown_table,
+    sentence_html,
+    write_figure,
+)
 from experiments.runs.folder import RunFolder
 from experiments.runs.options import repeat_command
 from experiments.seeing.run_pictures import search_figure

@@ -3,7 +3,7 @@ import pytest
 from made_up_runs import history
 from matplotlib.image import imread
 
-from experiments.reports.figure_file import write_figure
+from experiments.reports.report import write_figure
 from experiments.seeing.run_pictures import search_figure
 from groundwalk.errors import BadValueError
 

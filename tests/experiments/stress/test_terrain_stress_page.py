@@ -1,6 +1,6 @@
 import pytest
 
-from experiments.stress.curves import curves_of
+from experiments.stress.curves import curves_of, half_text, severity_text
 from experiments.stress.figure import comparison_figure, heat_map_figure
 from experiments.stress.page import (
     cause_rows,
@@ -8,7 +8,6 @@ from experiments.stress.page import (
     half_rows,
     stress_answer,
 )
-from experiments.stress.severity_text import half_text, severity_text
 from experiments.stress.worst_rollouts import worst_falls
 
 

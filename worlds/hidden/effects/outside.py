@@ -5,10 +5,9 @@ import math
 import numpy as np
 
 from robots.description import Description
-from worlds.hidden.effects.kind import HiddenKind, Quantity, Values
+from worlds.hidden.effects.kind import HiddenKind, Quantity, Surroundings, Values
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.setting import Setting
-from worlds.hidden.surroundings import Surroundings
 from worlds.soft_ground import DAMPING_RATIO, FootSpring
 
 

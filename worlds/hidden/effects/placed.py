@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from groundwalk.errors import BadValueError, UnknownNameError
-from worlds.hidden.effects.kind import HiddenKind, Quantity
+from worlds.hidden.effects.kind import HiddenKind, Quantity, Surroundings
 from worlds.hidden.setting import Setting
-from worlds.hidden.surroundings import Surroundings
 
 
 def _found() -> Iterator[HiddenKind]:
