@@ -20,8 +20,7 @@ from experiments.grounded_walks.courses import SimPlace
 from experiments.grounded_walks.walks import walk
 from experiments.walking import TrialRules, walk_trials
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 from sgat.noise import BlockNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.walks.gait_cloud import GaitCloud

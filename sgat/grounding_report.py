@@ -14,7 +14,7 @@ from sgat.measures import (
     r_squared,
     root_mean_square,
 )
-from sgat.models.forward_model import ForwardModel
+from sgat.models.transition_models import ForwardModel
 from sgat.transitions import Transitions
 
 LEVELS = (0.5, 0.8, 0.9, 0.95, 0.99)

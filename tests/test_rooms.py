@@ -35,7 +35,7 @@ def small_house(tmp_path):
         "worlds/rerun_files/log.py": "import rerun, terrain",
         "worlds/real/world.py": "def real():\n    import pybullet, robots",
         "walk_engine/engine.py": "from robots import model",
-        "sgat/models/forward_model.py": "import torch, worlds",
+        "sgat/models/transition_models.py": "import torch, worlds",
         "experiments/walking/search.py": "import cma, sgat, walk_engine, worlds",
     }
     (tmp_path / "pyproject.toml").write_bytes((ROOT / "pyproject.toml").read_bytes())

@@ -13,9 +13,8 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
-from diagnosis.replay.friction import BatchFriction
 from diagnosis.replay.replay import STEP_S
-from diagnosis.replay.servos import BatchServos
+from diagnosis.replay.servos import BatchFriction, BatchServos
 from diagnosis.residuals.predictor import Model, variants_of
 
 CORRECTED_XML = "corrected.xml"

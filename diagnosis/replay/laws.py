@@ -11,8 +11,13 @@ from mujoco.batch import Batch
 
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.servo import Servo
-from diagnosis.replay.friction import BatchFriction
-from diagnosis.replay.servos import BatchServos, Ends, columns, first_share
+from diagnosis.replay.servos import (
+    BatchFriction,
+    BatchServos,
+    Ends,
+    columns,
+    first_share,
+)
 from diagnosis.replay.transmission import BatchGaps, ElasticJoints
 from groundwalk.arrays import FloatArray
 

@@ -1,4 +1,4 @@
-"""Joint servos in a batch of simulations, as affine actuators of MuJoCo."""
+"""Servos of joints, as affine actuators of MuJoCo, and dry friction in a batch."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -185,3 +185,68 @@ def _laws(
         "limit": np.minimum(limit, joints["max_torque_nm"]),
         "emf": emf * joints["damping_factor"],
     }
+
+
+SOLIMP_FRICTION = (0.999, 0.9999, 0.001, 0.5, 2.0)
+"""MuJoCo's `solimp` (impedance) of dry friction, close to 1 so that joints at rest stay
+there; by MuJoCo's default a tenth of dry friction behaves as viscous friction."""
+
+
+class BatchFriction:
+    """Sets MuJoCo's dry friction (`frictionloss`) of all joints in all simulations.
+
+    Attributes:
+      varies: whether some friction depends on speed or load; if so, call `follow` at
+        every step.
+    """
+
+    def __init__(
+        self,
+        batch: Any,
+        plant: Plant,
+        joints: Mapping[str, FloatArray],
+        damping_nm_s_rad: FloatArray,
+        step_s: float,
+    ) -> None:
+        """Set the friction torques that do not change.
+
+        `joints` are arrays of `Joints` by name with a row for each simulation in the
+        batch, `damping_nm_s_rad` (rows, j) all damping that is integrated implicitly.
+        """
+        self._joints, self._dofs = joints, columns(plant.dofs)
+        self.varies = bool(joints["stribeck_nm"].any() or joints["load_share"].any())
+        self._torque_nm = np.asarray(batch.expand("dof_frictionloss"))
+        self._torque_nm[:, self._dofs] += joints["coulomb_nm"]
+        self._least_nm = self._torque_nm[:, self._dofs].copy()
+        np.asarray(batch.expand("dof_solimp"))[:] = SOLIMP_FRICTION
+        inertia_kg_m2 = np.asarray(batch.expand("dof_M0"))
+        damping = np.zeros_like(inertia_kg_m2)
+        damping[:, self._dofs] = damping_nm_s_rad
+        solref = stops_in_a_step(damping, inertia_kg_m2, step_s)
+        np.asarray(batch.expand("dof_solref"))[:] = solref
+
+    def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
+        """Set friction by (rows, j) speeds [rad/s] and by torques in gears [N m]."""
+        joints = self._joints
+        speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
+        more = joints["stribeck_nm"] * np.exp(-(speed**2))
+        more = more + joints["load_share"] * np.abs(driven_nm)
+        self._torque_nm[:, self._dofs] = self._least_nm + more
+
+
+def stops_in_a_step(
+    damping_nm_s_rad: FloatArray, inertia_kg_m2: FloatArray, step_s: float
+) -> FloatArray:
+    """(..., 2) MuJoCo's `solref` for friction that can stop a joint within one step.
+
+    MuJoCo's friction asks for the acceleration -rate * velocity as if there were no
+    damping. Its integrator, where damping is implicit, gives only the share I / (I +
+    step * damping) of that, with I the inertia at the joint with the links beyond it.
+    With the usual rate, 1 / step, a light joint with a strong servo creeps on for
+    seconds. (MuJoCo documentation, "Computation": implicit integrators, and "Modeling",
+    solref: two negative numbers mean stiffness, which friction does not have, and
+    damping.)
+    """
+    rate_1_s = 1 / step_s + damping_nm_s_rad / inertia_kg_m2
+    damping = -SOLIMP_FRICTION[1] * rate_1_s
+    return np.stack([np.full_like(damping, -1.0), damping], axis=-1)

@@ -8,7 +8,7 @@ import numpy as np
 
 import terrain
 import worlds
-from experiments.walking.sims import make_sim
+from experiments.walking.evaluation import make_sim
 from groundwalk.errors import BadValueError
 from robots import Description
 from terrain import Heightfield

@@ -22,8 +22,7 @@ from experiments.grounded_walks.walks import (
 from experiments.walking.search import Rater
 from groundwalk.arrays import FloatArray
 from sgat.models.config import ForwardConfig
-from sgat.noise import child_of
-from sgat.transformers.action_noise import ActionNoise
+from sgat.noise import ActionNoise, child_of
 from sgat.transformers.catalogue import grounding
 from sgat.transformers.grounding_base import GroundingData
 from sgat.walks.gait_cloud import GaitCloud

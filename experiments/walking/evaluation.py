@@ -1,4 +1,7 @@
-"""Evaluates how well gaits walk a course in a world: mean speed, spread, falls."""
+"""Evaluates how well gaits walk a course in a world: mean speed, spread, falls.
+
+A sim may be plain, or have the effects that a diagnosis has found.
+"""
 
 import contextlib
 import dataclasses
@@ -10,11 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import worlds
+from diagnosis.corrected.effects_json import load_correction
+from diagnosis.corrected.sim import CorrectedSim, sim_plant, sim_variants
+from diagnosis.residuals.predictor import Model
 from experiments.runs.folder import RECORDINGS, RunFolder
 from experiments.runs.options import check_at_least
 from experiments.runs.progress import progress
 from experiments.walking.recorder import Recorder, servo_gains
-from experiments.walking.sims import make_sim
 from experiments.walking.trials import COURSE_TRIAL, TrialRules, Trials, walk_trials
 from groundwalk.errors import BadValueError
 from robots import Description
@@ -22,6 +27,43 @@ from terrain import Heightfield, TerrainSpec, configuration, parse
 from walk_engine import Gait
 from worlds import Recording, RecordingMetadata, World, WorldOptions, write_recording
 from worlds.hidden.effects import Hidden
+
+
+def make_sim(
+    description: Description,
+    grounds: Sequence[Heightfield],
+    seeds: Sequence[np.random.SeedSequence],
+    options: WorldOptions,
+    correction: Path | None = None,
+) -> World:
+    """Make a sim with one robot on each ground, and a seed of sensor noise for each.
+
+    The effects of the correction, run folder or `corrected.json` of a diagnosis, are
+    added to it.
+
+    Raises:
+      BadModelError: the correction is no diagnosis of this robot, or the sim cannot
+        simulate one of its effects.
+      UnknownNameError: the correction names an unknown effect or joint.
+    """
+    if correction is None:
+        return worlds.make("sim", description, grounds, seeds, options)
+    model = check_correction(description, options, correction)
+    return CorrectedSim(description, grounds, seeds, options, model)
+
+
+def check_correction(
+    description: Description, options: WorldOptions, correction: Path
+) -> Model:
+    """Check that the sim can simulate the effects of a diagnosis, and return them.
+
+    Raises the errors of `make_sim`.
+    """
+    plant = sim_plant(description, options)
+    model = load_correction(correction, plant)
+    sim_variants(plant, model, 1)
+    return model
+
 
 MOST_AT_ONCE = 60
 """Largest number of robots that walk at the same time, because each needs 70 MB of

@@ -14,6 +14,7 @@ import worlds
 from experiments.runs.folder import CHECKPOINT, HISTORY, RunFolder
 from experiments.runs.gait_files import load_gait
 from experiments.runs.options import check_at_least
+from experiments.walking.evaluation import check_correction, make_sim
 from experiments.walking.recorder import Recorder
 from experiments.walking.search import (
     RATINGS,
@@ -22,7 +23,6 @@ from experiments.walking.search import (
     check_search,
     run_search,
 )
-from experiments.walking.sims import check_correction, make_sim
 from experiments.walking.trials import (
     FALL_PENALTY_CM_S,
     SEARCH_TRIAL,

@@ -8,8 +8,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 from sgat.noise import NoiseLaw, NoiseStream, WhiteNoise
 from sgat.transformers.catalogue import file_kind
 

@@ -12,10 +12,10 @@ from torch import Tensor
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
 from sgat.models.network import Scaling
 from sgat.models.scaled_network import ScaledNetwork, read_model, write_model
 from sgat.models.training import Examples, Loss, Stage, train
+from sgat.models.transition_models import ForwardModel
 from sgat.noise import child_of
 from sgat.transformers.catalogue import add_grounding, file_kind
 from sgat.transformers.grounding_base import (

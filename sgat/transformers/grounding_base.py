@@ -9,8 +9,7 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from sgat.models.config import ForwardConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 from sgat.noise import child_of
 from sgat.transformers.catalogue import KeptTransformer
 from sgat.transitions import Transitions

@@ -9,9 +9,8 @@ from pathlib import Path
 import pytest
 
 from experiments import doctor
-from experiments.doctor import DoctorConfig, main, print_findings
-from experiments.runs import doctor_checks
-from experiments.runs.doctor_checks import (
+from experiments.doctor import (
+    DoctorConfig,
     Finding,
     State,
     check_folder,
@@ -21,6 +20,8 @@ from experiments.runs.doctor_checks import (
     check_robot_files,
     check_viewer,
     import_problem,
+    main,
+    print_findings,
 )
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
@@ -126,10 +127,10 @@ def test_pins_are_read_where_there_are_any(tmp_path, monkeypatch, text, pins):
     if text is not None:
         path.write_text(text)
     tested = {}
-    monkeypatch.setattr(doctor_checks, "PINS", path)
+    monkeypatch.setattr(doctor, "PINS", path)
     monkeypatch.setattr("importlib.metadata.requires", lambda _: ["numpy>=2.4"])
     monkeypatch.setattr(
-        doctor_checks, "check_package", lambda line, pin: tested.update({line: pin})
+        doctor, "check_package", lambda line, pin: tested.update({line: pin})
     )
     check_packages()
     assert tested == {"numpy>=2.4": pins.get("numpy")}
@@ -214,7 +215,7 @@ def test_this_very_machine_works(monkeypatch, capsys):
     required = project["dependencies"]
     monkeypatch.setattr("importlib.metadata.requires", lambda _: required)
     in_place = partial(check_package, find_problem=imported_here)
-    monkeypatch.setattr(doctor_checks, "check_package", in_place)
+    monkeypatch.setattr(doctor, "check_package", in_place)
     status = main(DoctorConfig())
     out = capsys.readouterr().out
     assert status == 0, out

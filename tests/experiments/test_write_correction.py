@@ -13,7 +13,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
 from experiments.diagnose import write_correction
 from experiments.runs.folder import RunFolder
-from experiments.walking.sims import make_sim
+from experiments.walking.evaluation import make_sim
 from worlds import WorldOptions
 from worlds.sim.world import SimWorld
 

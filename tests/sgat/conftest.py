@@ -5,8 +5,7 @@ import pytest
 from known_dynamics import LIGHT, bent, linear, noisy_actions, roll
 
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 
 NOISE = 0.3
 

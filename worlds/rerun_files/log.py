@@ -40,9 +40,8 @@ def write_rrd(
     # Here, because Rerun takes a second to load.
     import rerun as rr
 
-    from worlds.rerun_files.columns import ColumnLog, tick_times
     from worlds.rerun_files.layout import blueprint
-    from worlds.rerun_files.scene_log import write_scene
+    from worlds.rerun_files.scene_log import ColumnLog, tick_times, write_scene
 
     pages = pages or {}
     if scenes or not pages:

@@ -15,7 +15,7 @@ import rerun.blueprint as rrb
 
 from groundwalk.arrays import FloatArray
 from groundwalk.files import write_bytes
-from worlds.rerun_files.columns import ColumnLog
+from worlds.rerun_files.scene_log import ColumnLog
 from worlds.rerun_files.search_history import SearchHistory, search_page
 from worlds.rerun_files.search_walk import walk_view, write_walks
 from worlds.scenes import colours

@@ -19,8 +19,8 @@ import rerun.blueprint as rrb
 from groundwalk.arrays import FloatArray, IntArray
 from robots.description import Link
 from terrain import Heightfield
-from worlds.rerun_files.columns import ColumnLog
 from worlds.rerun_files.meshes import capsule_mesh, link_mesh
+from worlds.rerun_files.scene_log import ColumnLog
 from worlds.rerun_files.search_history import SearchWalk
 from worlds.scenes import colours
 from worlds.scenes.balance import balance

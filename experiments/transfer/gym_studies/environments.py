@@ -9,7 +9,7 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from robots.engine_models.mjcf import quiet_mujoco, scale_mass
 from sgat.gym import GroundedEnv
-from sgat.transformers.action_noise import ActionNoise
+from sgat.noise import ActionNoise
 from sgat.transformers.catalogue import Transformer
 
 Environment: TypeAlias = gym.Env[FloatArray, FloatArray]

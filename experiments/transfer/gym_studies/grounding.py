@@ -10,7 +10,7 @@ import numpy as np
 from experiments.transfer.gym_studies.environments import Domain, Environment
 from groundwalk.arrays import FloatArray
 from sgat.gym import collect
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import InverseModel
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import KeptTransformer, Transformer, grounding
 from sgat.transformers.grounding_base import GroundingData

@@ -39,9 +39,8 @@ from experiments.transfer.nao_studies.page import (
     DIAGNOSED_SIM,
     worth_cm_s,
 )
-from experiments.walking.evaluation import Study, evaluate
+from experiments.walking.evaluation import Study, check_correction, evaluate
 from experiments.walking.search import RATINGS, Budget, Rater, check_search, tune
-from experiments.walking.sims import check_correction
 from experiments.walking.trials import course
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.transformers.catalogue import grounding

@@ -8,7 +8,7 @@ from experiments.stress.page import (
     half_rows,
     stress_answer,
 )
-from experiments.stress.worst_rollouts import worst_falls
+from experiments.terrain_stress import worst_falls
 
 
 def trial(gait, number, distance_m, cause=""):

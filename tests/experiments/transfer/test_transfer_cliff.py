@@ -6,9 +6,8 @@ import pytest
 from matplotlib.image import imread
 
 from experiments.transfer import cliff as transfer_cliff
-from experiments.transfer.cliff import main
-from experiments.transfer.cliff_study.page import check_claims, cliff_figure
-from experiments.transfer.cliff_study.study import (
+from experiments.transfer.cliff import check_claims, cliff_figure, main
+from experiments.transfer.cliff_study import (
     MOVES,
     TransferCliff,
     cliff_walking,

@@ -7,8 +7,7 @@ from experiments.transfer.gym_studies.grounding import (
     noise_ratio,
 )
 from sgat.models.config import ForwardConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 from sgat.noise import WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transitions import Transitions

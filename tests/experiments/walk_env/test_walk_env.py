@@ -22,8 +22,7 @@ from experiments.walk_env.ids import IDS, register_envs
 from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 from sgat.noise import WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import write_transformer

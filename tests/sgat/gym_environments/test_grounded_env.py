@@ -8,7 +8,7 @@ from gymnasium.utils.env_checker import check_env
 
 from groundwalk.errors import BadValueError
 from sgat.gym import GroundedEnv
-from sgat.transformers.action_noise import ActionNoise
+from sgat.noise import ActionNoise
 
 
 class Halving:

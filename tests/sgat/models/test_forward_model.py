@@ -7,7 +7,7 @@ from scipy import stats
 
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.models.config import ForwardConfig
-from sgat.models.forward_model import ForwardModel
+from sgat.models.transition_models import ForwardModel
 from sgat.noise import NoiseStream, WhiteNoise
 from sgat.transitions import Transitions
 

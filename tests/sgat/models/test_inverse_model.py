@@ -6,7 +6,7 @@ from known_dynamics import HIGH, LOW, bent, linear, noisy_actions, roll
 
 from groundwalk.errors import BadValueError
 from sgat.models.config import NetworkConfig
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import InverseModel
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,7 @@ from known_dynamics import linear, noisy_actions, roll
 
 from groundwalk.errors import BadModelError
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 
 WORLD = roll(noisy_actions(linear, 0.2), 8, 20, seed=71)
 SEED = np.random.SeedSequence(72)

@@ -14,10 +14,8 @@ from known_dynamics import (
 
 from groundwalk.errors import BadValueError
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
-from sgat.noise import BlockNoise, WhiteNoise
-from sgat.transformers.action_noise import ActionNoise
+from sgat.models.transition_models import ForwardModel, InverseModel
+from sgat.noise import ActionNoise, BlockNoise, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transitions import Transitions
 

@@ -6,7 +6,7 @@ from known_dynamics import HIGH, LIGHT, LOW, linear
 
 from groundwalk.errors import BadModelError, BadValueError
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
+from sgat.models.transition_models import ForwardModel
 from sgat.transformers.direct_transformer import DIRECT, DirectTransformer
 from sgat.transitions import Transitions
 

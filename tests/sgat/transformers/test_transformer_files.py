@@ -7,8 +7,7 @@ import pytest
 
 from groundwalk.errors import BadModelError, BadValueError
 from sgat.models.config import ForwardConfig, NetworkConfig
-from sgat.models.forward_model import ForwardModel
-from sgat.models.inverse_model import InverseModel
+from sgat.models.transition_models import ForwardModel, InverseModel
 from sgat.noise import BlockNoise, WhiteNoise
 from sgat.transformers.action_transformer import ActionTransformer
 from sgat.transformers.catalogue import read_transformer, write_transformer

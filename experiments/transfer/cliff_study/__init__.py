@@ -1,1 +1,0 @@
-"""Cliff walking: the SGAT paper's study in a finite world."""
