@@ -14,8 +14,13 @@ from experiments.transfer.gym_studies.environments import (
     INVERTED_PENDULUM,
     Domain,
 )
-from experiments.transfer.gym_studies.page import returns_figure, write_gym_page
-from experiments.transfer.gym_studies.rows import check_claims, returns_table, rows_of
+from experiments.transfer.gym_studies.page import (
+    check_claims,
+    returns_figure,
+    returns_table,
+    rows_of,
+    write_gym_page,
+)
 from experiments.transfer.gym_studies.study import METHODS, Cell, GymStudy, do_job
 
 SizeName = Literal["full", "reduced", "smoke"]

@@ -144,7 +144,7 @@ class WalkEnv(Environment):
     ## Arguments
 
     See `__init__`. The ids `Groundwalk/Nao-Sim-v0`, `-Real-v0` and `-Grounded-v0` of
-    `experiments.walk_env.ids` differ in `world`.
+    `experiments.walk_env` differ in `world`.
 
     ## Version history
 

@@ -12,8 +12,7 @@ from experiments.transfer.gym_domains import (
     TransferHalfCheetah,
     TransferInvertedPendulum,
 )
-from experiments.transfer.gym_studies.page import returns_figure
-from experiments.transfer.gym_studies.rows import check_claims, rows_of
+from experiments.transfer.gym_studies.page import check_claims, returns_figure, rows_of
 from experiments.transfer.gym_studies.study import METHODS
 from groundwalk.errors import BadValueError, UnknownNameError
 

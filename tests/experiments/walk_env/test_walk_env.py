@@ -17,8 +17,8 @@ import robots
 import terrain
 import worlds
 from experiments.grounded_walks.models import action_envelope
+from experiments.walk_env import IDS, register_envs
 from experiments.walk_env.env import WalkEnv, episode_seeds
-from experiments.walk_env.ids import IDS, register_envs
 from experiments.walking.trials import TrialRules, reward_cm_s, walk_trials
 from groundwalk.errors import BadValueError, UnknownNameError
 from sgat.models.config import ForwardConfig, NetworkConfig
@@ -190,7 +190,7 @@ def test_a_step_needs_a_reset():
 def test_the_sim_needs_no_torch_and_names_need_no_environment():
     code = """
 import sys
-from experiments.walk_env.ids import register_envs
+from experiments.walk_env import register_envs
 register_envs()
 assert "experiments.walk_env.env" not in sys.modules
 import gymnasium
