@@ -153,7 +153,7 @@ def test_ctrl_c_in_the_real_world_says_one_thing(tmp_path):
     )
     while not (tmp_path / "run" / "config.json").exists():
         time.sleep(0.1)
-    time.sleep(5)  # until it walks; a trial takes some 10 s
+    time.sleep(2)  # its processes are starting, or they walk
     os.killpg(run.pid, signal.SIGINT)
     _, said = run.communicate(timeout=60)
     assert (run.returncode, said.count("\n")) == (130, 1), said

@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Iterator
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 
 import numpy as np
@@ -73,6 +74,21 @@ def _answer(connection: Connection) -> None:
         robot.close()
 
 
+@contextlib.contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Let processes that start within the block ignore Ctrl-C from their first moment.
+
+    Otherwise one that is still importing would print where it was interrupted. A Ctrl-C
+    in the meantime takes effect after the block.
+    """
+    resource_tracker.ensure_running()  # as it starts it would end the blocking
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 _PATIENCE_S = 5.0
 """Time [s] for a worker process to end before it is killed; it needs milliseconds."""
 
@@ -100,7 +116,8 @@ class RealWorld(RolloutWorld):
         for _ in self._shares:
             here, there = context.Pipe()
             process = context.Process(target=serve, args=(there,), daemon=True)
-            process.start()
+            with _interrupts_blocked():
+                process.start()
             there.close()
             self._connections.append(here)
             self.processes.append(process)
