@@ -2,7 +2,7 @@
 
 Legs, feet, arms and the direction in which the robot faces follow from the kinematics
 (`limbs`), soles from collision shapes (`link_shapes`), motors from effort and speed
-limits (`servo_size`), and the scaling of gaits from the leg length (`scale`). Joints of
+limits (`servo`), and the scaling of gaits from the leg length (`scale`). Joints of
 legs and shoulders have motors; waist, neck, elbows, wrists and fingers are held still,
 and their links are merged into the links above them.
 """
@@ -16,6 +16,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from groundwalk.errors import BadModelError, BadValueError
+from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description, Foot, Imu, Joint, Link, Motor, VisualMesh
 from robots.from_urdf.adaptation import Adaptation, urdf_path
 from robots.from_urdf.limbs import (
@@ -30,7 +31,6 @@ from robots.from_urdf.limbs import (
 from robots.from_urdf.link_shapes import foot, round_shapes
 from robots.from_urdf.mesh_files import mesh_path
 from robots.from_urdf.posed_tree import PosedTree
-from robots.from_urdf.servo_size import servo
 from robots.from_urdf.urdf_tree import UrdfTree, read_urdf
 from robots.leg_geometry import ANKLE, KNEE, ROLES, roles
 from robots.scale import Scale
@@ -224,3 +224,53 @@ class _Adapter:
             scale = along[0], along[1], along[2]
             meshes.append(VisualMesh(path, (x, y, z), (w, i, j, k), scale))
         return tuple(meshes)
+
+
+IN_STANCE, FREE = (2.0, 0.19), (9.0, 0.5)
+"""Natural frequency of a servo as a multiple of sqrt(g / h), and damping ratio, for
+joints of legs and others. They come from the NAO in nao.toml: its legs' pitch joints
+have kp = 59.9 N m/rad and kd = 1.216 N m s/rad, its shoulders 25.9 and 0.41 for an arm
+of 0.008 kg m^2."""
+
+
+def servo(
+    effort_nm: float,
+    speed_rad_s: float,
+    mass_kg: float,
+    height_m: float,
+    hanging_kg_m2: float | None,
+) -> Motor:
+    """Choose a servo for a robot of whose motors only effort and speed are known.
+
+    A joint of a leg has to hold the whole robot as an inverted pendulum on one ankle:
+    with mass m and the centre of mass at h above the sole, the inertia is I = m h^2 and
+    gravity topples it with m g h per radian. For a natural frequency w and a damping
+    ratio z the gains are kp = I (w^2 + g / h) and kd = 2 z I w. Any other joint holds
+    the links below it, with their inertia I, and the term g / h is left out. The
+    frequency w is a multiple of sqrt(g / h), so that a robot of any size stands as
+    firmly as the NAO.
+
+    Stall torque and no-load speed are a URDF's joint limits. The back-EMF of such a
+    motor is a damping of effort / speed; the servo's damping is never less. The rotor
+    inertia is unknown and left out. Mass and height of the centre of mass above the
+    soles are the robot's; `hanging_kg_m2` is the inertia of the links below the joint
+    about its axis, None for a joint of a leg.
+    """
+    if not (effort_nm > 0 and speed_rad_s > 0):
+        raise BadValueError(
+            f"effort {effort_nm} N m and speed {speed_rad_s} rad/s must be positive"
+        )
+    own = math.sqrt(GRAVITY_M_S2 / height_m)
+    if hanging_kg_m2 is None:
+        (frequency, damping), inertia = IN_STANCE, mass_kg * height_m**2
+        topple = own**2
+    else:
+        (frequency, damping), inertia, topple = FREE, hanging_kg_m2, 0.0
+    w = frequency * own
+    return Motor(
+        stall_torque_nm=effort_nm,
+        no_load_speed_rad_s=speed_rad_s,
+        kp_nm_rad=inertia * (w**2 + topple),
+        kd_nm_s_rad=max(2 * damping * inertia * w, effort_nm / speed_rad_s),
+        rotor_kg_m2=0.0,
+    )

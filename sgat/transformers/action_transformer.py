@@ -70,13 +70,8 @@ class ActionTransformer:
         self.noise = noise
         self.smoothing = smoothing
         self.inverse_columns = inverse_columns
-        self._low, self._high = np.asarray(low, float), np.asarray(high, float)
+        self.bounds = np.asarray(low, float), np.asarray(high, float)
         self._stream: NoiseStream | None = None
-
-    @property
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(a,) least and (a,) largest action, in the action's units."""
-        return self._low, self._high
 
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode of n robots, each with its own seed."""
@@ -97,7 +92,7 @@ class ActionTransformer:
             wanted = self.forward.sample(state, action, self._stream)
         found = self.inverse.predict(state[:, : self.inverse_columns], wanted)
         found = action + self.smoothing * (found - action)
-        return np.clip(found, self._low, self._high)
+        return np.clip(found, *self.bounds)
 
     def save(self, folder: Path) -> dict[str, Any]:
         """Write both models into a folder, and return what `load` needs besides."""

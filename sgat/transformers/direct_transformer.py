@@ -58,7 +58,7 @@ class DirectTransformer:
     ) -> None:
         """Choose the action's bounds (a,), and the network's shape and training."""
         self.config = NetworkConfig() if config is None else config
-        self._low, self._high = np.asarray(low, float), np.asarray(high, float)
+        self.bounds = np.asarray(low, float), np.asarray(high, float)
         self._fitted: ScaledNetwork | None = None
 
     def fit(
@@ -96,11 +96,6 @@ class DirectTransformer:
         self._fitted = ScaledNetwork(inputs, outputs, network)
         return self
 
-    @property
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(a,) least and (a,) largest action, in the action's units."""
-        return self._low, self._high
-
     def reset(self, seeds: Sequence[np.random.SeedSequence]) -> None:
         """Start an episode; seeds are not used, since this transformer has no noise."""
 
@@ -109,7 +104,7 @@ class DirectTransformer:
         network = self._network
         member = np.zeros(len(state), np.intp)
         raw = network.raw(np.hstack([state, action]), member)
-        return np.clip(network.targets.from_scaled(raw), self._low, self._high)
+        return np.clip(network.targets.from_scaled(raw), *self.bounds)
 
     def save(self, folder: Path) -> dict[str, Any]:
         """Write the network into a folder; `load` needs nothing besides it."""

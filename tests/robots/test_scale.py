@@ -6,7 +6,7 @@ import pytest
 
 from groundwalk.errors import BadValueError
 from robots.engine_models.mjcf import mujoco_spec
-from robots.from_urdf.servo_size import FREE, IN_STANCE, servo
+from robots.from_urdf.adapter import FREE, IN_STANCE, servo
 from robots.scale import NAO_CENTRE_M, NAO_HIP_M, NAO_KG, NAO_SIZE, Scale
 
 

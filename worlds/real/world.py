@@ -78,8 +78,8 @@ def _answer(connection: Connection) -> None:
 def _interrupts_blocked() -> Iterator[None]:
     """Let processes that start within the block ignore Ctrl-C from their first moment.
 
-    Otherwise one that is still importing would print where it was interrupted. A Ctrl-C
-    in the meantime takes effect after the block.
+    One that is importing would print where it was interrupted. The own process gets a
+    Ctrl-C after the block.
     """
     resource_tracker.ensure_running()  # as it starts it would end the blocking
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
