@@ -17,6 +17,9 @@ def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
 
     A delay between commands and positions is no finding: it is physics that a diagnosis
     looks for.
+
+    Example:
+      >>> audit(traces, plant).limits
     """
     audits, findings = [], []
     for trace in traces:

@@ -6,7 +6,13 @@ import pytest
 import robots
 import terrain
 import worlds
-from experiments.walking.trials import TrialRules, Trials, reward_cm_s, walk_trials
+from experiments.walking.trials import (
+    TrialRules,
+    Trials,
+    course,
+    reward_cm_s,
+    walk_trials,
+)
 from groundwalk.errors import BadValueError
 from walk_engine import gaits
 from worlds import End
@@ -46,6 +52,18 @@ def test_a_course_ends_the_trial_where_it_ends():
     assert 0.5 <= trials.distance_m[0] < 0.51
     assert trials.time_s[0] < 5
     assert not trials.fell[0]
+
+
+def test_a_course_of_any_length_leaves_time_to_walk_it():
+    """At 7.5 cm/s; starts differ a little."""
+    rules = course(0.4)
+    assert (rules.course_m, rules.start_spread_rad) == (0.4, 0.01)
+    assert rules.limit_s == pytest.approx(0.4 / 0.075)
+    trials = walk_trials(sim(), [gaits.get("start")], rules)
+    assert 0.4 <= trials.distance_m[0] < 0.41
+    for length_m in (0.0, -1.0, np.nan):
+        with pytest.raises(BadValueError, match="must be positive"):
+            course(length_m)
 
 
 def test_each_robot_walks_as_it_would_alone():
