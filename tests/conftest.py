@@ -1,5 +1,7 @@
 """What all tests share: patience, the NAO, and kinematics from another library."""
 
+import gc
+
 import numpy as np
 import pytest
 from copied_processes import copy_instead
@@ -16,6 +18,12 @@ settings.load_profile("no_deadline")
 def pytest_collection_modifyitems(items):
     """The longest begin first, so that no worker is left alone with one at the end."""
     items.sort(key=lambda item: ("journeys" not in item.path.parts, not slow(item)))
+
+
+def pytest_collection_finish():
+    """Thousands of tests are searched for garbage no more, which would take a while."""
+    gc.collect()
+    gc.freeze()
 
 
 def slow(item):
