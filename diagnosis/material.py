@@ -1,7 +1,9 @@
-"""Prepares recordings for a diagnosis: audits them, removes stalls and finds pulses.
+"""Prepares recordings for a diagnosis: audits them, and takes out what is no physics.
 
-A stall is a moment after which all joints follow their commands later. A pulse is a
-constant torque, for a while, that a joint's servo did not ask for.
+Wrong samples are marked as missing, ranges of the robot model that the recordings
+contradict are lifted, and stalls are cut away. A stall is a moment after which all
+joints follow their commands later. A pulse is a constant torque, for a while, that a
+joint's servo did not ask for.
 """
 
 from collections.abc import Sequence
@@ -9,11 +11,13 @@ from dataclasses import dataclass
 
 from diagnosis.audit.audit import audit
 from diagnosis.audit.result import Audit
+from diagnosis.audit.suspicions import contradicted_ranges
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, shared_channels
+from diagnosis.traces.outliers import without_outliers
 from diagnosis.traces.pulses import pulses_of, without_pulses
 from diagnosis.traces.stalls import said_of_stalls, steady
-from diagnosis.traces.trace import DriveBy, Trace, driven_by_torques
+from diagnosis.traces.trace import DriveBy, Trace, driven_by_torques, with_motor_torques
 from diagnosis.verdict import Pulse
 from groundwalk.errors import BadRecordingError
 
@@ -28,7 +32,8 @@ class Material:
       reference: recordings of the healthy robot, prepared in the same way.
       channels: the channels that all recordings measured.
       pulses: torques found in `traces` that no servo asked for.
-      limits: sentences about the stalls of `traces`, for the report.
+      plant: the nominal robot model, without ranges that the recordings contradict.
+      limits: sentences about wrong samples and stalls of `traces`, for the report.
     """
 
     plant: Plant
@@ -53,9 +58,12 @@ class Material:
           BadRecordingError: the audit refuses a recording in `traces`, or a recording
             lacks the torques that are to drive the joints.
         """
+        traces, said = _without_outliers(traces)
+        reference, _ = _without_outliers(reference)
         audited = audit(traces, plant)
         if audited.refused:
             raise BadRecordingError(audited.refused[0])
+        plant = plant.without_ranges(contradicted_ranges([*traces, *reference], plant))
         ready, pulses = _prepared(plant, traces, drive)
         before, _ = _prepared(plant, reference, drive)
         return cls(
@@ -65,8 +73,16 @@ class Material:
             reference=before,
             channels=shared_channels(plant, [*ready, *before]),
             pulses=pulses,
-            limits=tuple(text for trace in traces for text in said_of_stalls(trace)),
+            limits=(*said, *(text for one in traces for text in said_of_stalls(one))),
         )
+
+
+def _without_outliers(
+    traces: Sequence[Trace],
+) -> tuple[tuple[Trace, ...], tuple[str, ...]]:
+    """Traces with wrong samples marked as missing, and sentences about them."""
+    every = [without_outliers(trace) for trace in traces]
+    return tuple(one for one, _ in every), tuple(t for _, said in every for t in said)
 
 
 def _prepared(
@@ -77,6 +93,7 @@ def _prepared(
     for trace in map(steady, traces):
         own = pulses_of(plant, trace)
         clean = without_pulses(plant, trace, own)
-        ready.append(driven_by_torques(clean) if drive == "torques" else clean)
+        drive_torques = driven_by_torques if drive == "torques" else with_motor_torques
+        ready.append(drive_torques(clean))
         pulses += own
     return tuple(ready), tuple(pulses)

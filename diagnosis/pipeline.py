@@ -124,7 +124,9 @@ def diagnose(
     hooks.advance(1)
     if hooks.progress is not None:
         recordings = material.traces, material.reference
-        seconds = expected_seconds(plant, *recordings, material.channels, threads)
+        seconds = expected_seconds(
+            material.plant, *recordings, material.channels, threads
+        )
         hooks.progress.cost(seconds)
     data, noise, search = _learned(material, rules, threads, hooks)
     result, kind = _searched(search, material.audited)
@@ -140,7 +142,9 @@ def diagnose(
         given = noise.model
         verdict = replace(verdict, limits=(*verdict.limits, *reference_limit(noise)))
     sims = tested.test, data.test
-    return Diagnosis(verdict, tested.model, plant, *sims, material.audited, given)
+    return Diagnosis(
+        verdict, tested.model, material.plant, *sims, material.audited, given
+    )
 
 
 def _learned(

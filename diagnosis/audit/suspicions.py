@@ -58,8 +58,7 @@ def drive_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
     for column, joint in enumerate(plant.joints):
         name = f"command.{joint}"
         if not _has_any(column, trace.command_rad, *torques):
-            text = f"{trace.name}: nothing says what drove {joint}"
-            yield Finding("refuse", text, trace.name, name)
+            yield _undriven(trace, plant, column)
         elif trace.servo.kp_nm_rad[column] == 0 and not _has_any(column, *torques):
             text = (
                 f"{name} of {trace.name}: no servo gains are known; give them as "
@@ -98,8 +97,25 @@ def range_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
                 text = f"{said}; are angles in degrees instead of radians?"
                 yield Finding("refuse", text, trace.name, name)
             elif excess > _BEYOND * (high - low):
-                text = f"{said}; the model's end stop would act there"
-                yield Finding("limit", text, trace.name, name)
+                end = "the joint is simulated without that range"
+                if quantity == "command":
+                    end = "the model's end stop would act there"
+                yield Finding("limit", f"{said}; {end}", trace.name, name)
+
+
+def contradicted_ranges(traces: Sequence[Trace], plant: Plant) -> tuple[str, ...]:
+    """Names of the joints that went where the model has an end stop.
+
+    What they show there can only be seen in simulations without the model's range. A
+    command beyond it says nothing about the stop.
+    """
+    far = {
+        finding.channel.removeprefix("position.")
+        for trace in traces
+        for finding in range_findings(trace, plant)
+        if finding.severity == "limit" and finding.channel.startswith("position.")
+    }
+    return tuple(joint for joint in plant.joints if joint in far)
 
 
 def following_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
@@ -147,9 +163,10 @@ def velocity_findings(
             name = f"velocity.{joint}"
             text = (
                 f"{name} of {trace.name} is {factor:.3g} times the rate of its "
-                "positions; are their units, signs and the time's the same?"
+                "positions, as on the motor's side of a gear or in another unit; it is "
+                "not used"
             )
-            yield Finding("refuse", text, trace.name, name)
+            yield Finding("limit", text, trace.name, name)
 
 
 def torque_findings(trace: Trace, plant: Plant) -> Iterator[Finding]:
@@ -229,6 +246,22 @@ def _unit(slope: float) -> str:
             if 1 / _UNIT_SLACK < abs(slope) / size < _UNIT_SLACK:
                 return unit
     return ""
+
+
+def _undriven(trace: Trace, plant: Plant, column: int) -> Finding:
+    """The finding on a joint of which no command and no torque was recorded.
+
+    It is passive, as a flexible link is, if other joints have a drive, and neither the
+    model nor the recording knows of a motor at this one.
+    """
+    joint = plant.joints[column]
+    name, text = f"command.{joint}", f"{trace.name}: nothing says what drove {joint}"
+    every = range(len(plant.joints))
+    drives = trace.command_rad, trace.command_torque_nm, trace.torque_nm
+    if trace.servo.kp_nm_rad[column] == 0 and any(_has_any(i, *drives) for i in every):
+        said = f"{text}; it is taken as passive, as without a motor"
+        return Finding("limit", said, trace.name, name)
+    return Finding("refuse", text, trace.name, name)
 
 
 def _outermost(values: FloatArray, low: float, high: float) -> tuple[float, float]:

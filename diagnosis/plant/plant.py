@@ -2,7 +2,7 @@
 
 import copy
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
@@ -57,6 +57,15 @@ class Plant:
     base: Base = "fixed"
     feet: tuple[str, ...] = ()
     options: ModelOptions | None = None
+
+    def without_ranges(self, joints: Collection[str]) -> "Plant":
+        """The same robot model, in which these joints have no end stops."""
+        if not joints:
+            return self
+        spec = self.spec.copy()
+        for name in joints:
+            spec.joint(name).limited = mujoco.mjtLimited.mjLIMITED_FALSE.value
+        return replace(self, spec=spec)
 
     @cached_property
     def model(self) -> mujoco.MjModel:

@@ -99,6 +99,11 @@ class Trace:
         """Whether no joint has a servo and a position command: torques drive them."""
         return self.command_rad is None or not self.servo.kp_nm_rad.any()
 
+    @property
+    def loose(self) -> bool:
+        """Whether some joint has no servo that holds it, so that errors may grow."""
+        return self.unheld or not self.servo.kp_nm_rad.all()
+
     def of(self, columns: Sequence[int]) -> "Trace":
         """The trace with only the joints of these indices; other channels all stay."""
         chosen = list(columns)
@@ -139,6 +144,24 @@ def driven_by_torques(trace: Trace) -> Trace:
         torque = torque + trace.added_nm
     servo = Servo.ideal(torque.shape[1])
     return replace(trace, servo=servo, torque_nm=torque, added_nm=None)
+
+
+def with_motor_torques(trace: Trace) -> Trace:
+    """The same trace, whose torques also drive the joints beside those with servos.
+
+    A joint without a servo gets its torque target, or without any its measured torque;
+    without both it is passive.
+    """
+    torques = trace.command_torque_nm, trace.torque_nm
+    known = [values for values in torques if values is not None]
+    alone = trace.servo.kp_nm_rad == 0
+    if trace.unheld or not alone.any() or not known:
+        return trace
+    torque = np.where(np.isfinite(known[0]).any(axis=0), known[0], known[-1])
+    more = np.where(alone, filled(torque), 0.0)
+    return replace(
+        trace, added_nm=more + (0 if trace.added_nm is None else trace.added_nm)
+    )
 
 
 def filled(values: FloatArray) -> FloatArray:

@@ -61,7 +61,7 @@ def window_s(plant: Plant, trace: Trace) -> float | None:
     """Length [s] of the windows in which a trace is replayed; None for all at once."""
     if plant.base == "floating":
         return FLOATING_WINDOW_S
-    return UNHELD_WINDOW_S if trace.unheld else None
+    return UNHELD_WINDOW_S if trace.loose else None
 
 
 def is_left_over(plant: Plant, trace: Trace) -> bool:

@@ -12,11 +12,12 @@ from diagnosis.plant.servo import Servo
 
 def test_velocity_in_another_unit(trace, plant):
     rpm = replace(trace, velocity_rad_s=trace.velocity_rad_s * 60 / (2 * np.pi))
-    found = texts([rpm], plant, "refuse")
+    assert texts([rpm], plant, "refuse") == []
+    found = texts([rpm], plant, "limit")
     assert len(found) == 3
-    one(found, "velocity.a", "9.5")
+    one(found, "velocity.a", "9.5", "not used")
     weak = replace(trace, velocity_rad_s=1.3 * trace.velocity_rad_s)
-    assert texts([weak], plant, "refuse") == []
+    assert texts([weak], plant, "limit") == []
 
 
 def test_swapped_joints(trace, plant):
@@ -118,6 +119,19 @@ def test_unknown_servo(trace, plant):
 def test_joint_without_any_drive(trace, plant):
     half = replace(trace, command_rad=changed(trace.command_rad, 1, np.nan))
     one(texts([half], plant, "refuse"), "nothing says what drove b")
+    none = replace(trace, command_rad=None)
+    assert len(texts([none], plant, "refuse")) == 3
+
+
+def test_a_joint_without_motor_is_passive_beside_others(trace, plant):
+    kp = np.array([20.0, 0.0, 20.0])
+    half = replace(
+        trace,
+        command_rad=changed(trace.command_rad, 1, np.nan),
+        servo=replace(trace.servo, kp_nm_rad=kp),
+    )
+    assert texts([half], plant, "refuse") == []
+    one(texts([half], plant, "limit"), "drove b", "passive")
 
 
 def test_torques_in_another_unit(trace, plant):
