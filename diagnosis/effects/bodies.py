@@ -40,9 +40,9 @@ class PayloadMass(NumberEffect, BodyEffect):
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
-        """The mass [kg], at most three times that of all that the robot moves."""
+        """The mass [kg], at most that of the whole robot."""
         own = float(plant.model.body(place).mass[0])
-        high = 3 * mass_kg(plant)
+        high = mass_kg(plant)
         return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
 
 

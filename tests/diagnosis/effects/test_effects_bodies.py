@@ -236,3 +236,11 @@ def test_viscous_friction_is_measured_by_how_joints_are_used():
     )
     # slides are ten times as slow: metres, not radians
     assert slide.high == pytest.approx(10 * hinge.high)
+
+
+def test_a_payload_may_be_heavier_than_the_link_it_hangs_on():
+    plant = plant_of(LINKS)
+    own = [float(plant.model.body(name).mass[0]) for name in ("upper", "lower")]
+    (mass,) = effect("payload_mass").parameters(plant, "lower")
+    assert mass.high == pytest.approx(sum(own))
+    assert mass.high > 2 * own[1]
