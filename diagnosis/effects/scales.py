@@ -46,7 +46,7 @@ def inertia_kg_m2(plant: Plant, joint: str) -> float:
 
 
 def speed_rad_s(plant: Plant, joint: str) -> float:
-    """No-load speed of a joint's motor; `brisk_rad_s` if it is not known."""
+    """No-load speed of a joint's motor [rad/s]; without it a speed in brisk use."""
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
     back_emf = float(plant.servo.back_emf_nm_s_rad[column])

@@ -1,4 +1,4 @@
-"""A walk as a strip of stick figures: its limbs, and the part and moments to show."""
+"""Data of a walk drawn as stick figures: limbs, and the moments that are shown."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -60,7 +60,7 @@ class ForwardModel(NetworkModel[ForwardConfig]):
 
     @property
     def scalings(self) -> tuple[Scaling, Scaling]:
-        """Scalings of the s + a input columns, and of the p changes of the state."""
+        """Scalings of the inputs, states beside actions, and of changes of states."""
         return self._network.inputs, self._network.targets
 
     def predict(self, state: FloatArray, action: FloatArray) -> FloatArray:

@@ -154,7 +154,7 @@ class Setting:
 
     @property
     def at_end(self) -> bool:
-        """Whether the spot's body is its joint's link and the last one of a chain."""
+        """Whether the body is moved by the joint of this place and carries no other."""
         carried = self.scales.carried_by[:, self.joint]
         own = self.spot.body == self.plant.links[self.joint]
         return own and int(carried.sum()) == 1
