@@ -147,7 +147,7 @@ def driven_by_torques(trace: Trace) -> Trace:
 
 
 def with_motor_torques(trace: Trace) -> Trace:
-    """The same trace, whose torques also drive the joints beside those with servos.
+    """Let a trace's torques drive its joints without servos beside those with servos.
 
     A joint without a servo gets its torque target, or without any its measured torque;
     without both it is passive.

@@ -11,6 +11,7 @@ from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.traces.windows import runs_of
 
 
 def with_range(low, high):
@@ -50,7 +51,7 @@ def test_wrong_samples_are_left_out_and_said():
 
 @pytest.fixture(scope="module")
 def half_driven():
-    """The arm with a servo at the shoulder only, and how its torque moved the elbow."""
+    """The arm with a servo at the shoulder only."""
     full = arm()
     kp, kd = np.array([GAINS["kp"], 0.0]), np.array([GAINS["kd"], 0.02])
     servo = Servo(kp, kd, *(np.array(a) for a in ([np.inf] * 2, [0.0] * 2)))
@@ -64,6 +65,8 @@ def test_a_joint_without_motor_is_replayed_in_windows(half_driven):
         half_driven, [replace(trace, command_rad=command)], (), "servos"
     )
     assert error(material) < 8
+    assert len(runs_of(material.plant, material.traces[0])) > 4
+    assert len(runs_of(arm(), recorded(arm()))) == 1
     assert any("taken as passive" in text for text in material.audited.limits)
 
 

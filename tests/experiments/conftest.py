@@ -55,6 +55,6 @@ def short_walks(monkeypatch):
 
 
 def train_little(outputs, stages, examples, weights, held_out, config, generator):
-    """As `train` does, in a few epochs: what is learned does not matter either."""
+    """Train networks for a few epochs: what is learned does not matter."""
     little = replace(config, epochs=EPOCHS)
     return train(outputs, stages, examples, weights, held_out, little, generator)

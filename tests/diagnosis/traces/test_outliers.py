@@ -7,7 +7,7 @@ import pytest
 from joint_rigs import ticks, trace_of
 from made_up_traces import arm, arm_command
 
-from diagnosis.traces.outliers import outliers, without_outliers
+from diagnosis.traces.outliers import FAR, outliers, without_outliers
 
 TIME_S = ticks(8.0, 0.01)
 
@@ -76,3 +76,13 @@ def test_a_trace_says_how_many():
     assert np.argwhere(np.isnan(clean.position_rad)).tolist() == [[120, 1], [300, 1]]
     assert "2 values jump away" in said
     assert clean.command_rad is good.command_rad
+
+
+@pytest.mark.parametrize("far", [FAR / 2, 2 * FAR])
+def test_a_factor_of_two_in_what_is_far_does_not_matter(monkeypatch, far):
+    monkeypatch.setattr("diagnosis.traces.outliers.FAR", far)
+    values = motion(quantum=1.5e-3)
+    assert not outliers(values).any()
+    assert not outliers(steps()).any()
+    values[300:302] = 0.0
+    assert np.flatnonzero(outliers(values)).tolist() == [300, 301]

@@ -27,8 +27,8 @@ def pendulums(monkeypatch):
 
 
 SEED = 44
-"""Of two pendulums the first has one hidden effect, the second none: both are made
-fast."""
+"""Makes a set of two pendulums, the first with a hidden effect, the second without:
+both are made fast."""
 
 
 def make(folder, cases=2, seed=SEED):

@@ -139,7 +139,7 @@ def run_search(path, **settings):
 
 @pytest.fixture(scope="module", autouse=True)
 def short_walks():
-    """Of searches and of their gaits again."""
+    """Let searches, and walks of their gaits afterwards, be short."""
     with pytest.MonkeyPatch.context() as patch:
         shorten_searches(patch)
         again = partial(rate, rules=SEARCHED)
