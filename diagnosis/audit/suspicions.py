@@ -161,10 +161,14 @@ def velocity_findings(
         right = 1 / _RATE_SLACK < factor < _RATE_SLACK
         if abs(alike) > _ALIKE and not right:
             name = f"velocity.{joint}"
+            said = f"{name} of {trace.name} is {factor:.3g} times the rate of its"
+            if _unit(factor) == _UNITS[1e3]:
+                text = f"{said} positions; is the time in milliseconds?"
+                yield Finding("refuse", text, trace.name, name)
+                continue
             text = (
-                f"{name} of {trace.name} is {factor:.3g} times the rate of its "
-                "positions, as on the motor's side of a gear or in another unit; it is "
-                "not used"
+                f"{said} positions, as on the motor's side of a gear or in another "
+                "unit; it is not used"
             )
             yield Finding("limit", text, trace.name, name)
 

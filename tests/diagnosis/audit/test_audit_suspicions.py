@@ -20,6 +20,13 @@ def test_velocity_in_another_unit(trace, plant):
     assert texts([weak], plant, "limit") == []
 
 
+def test_times_in_milliseconds_are_refused(trace, plant):
+    late = replace(trace, velocity_rad_s=1e3 * trace.velocity_rad_s)
+    one(texts([late], plant, "refuse"), "velocity.a", "milliseconds")
+    geared = replace(trace, velocity_rad_s=100 * trace.velocity_rad_s)
+    assert texts([geared], plant, "refuse") == []
+
+
 def test_swapped_joints(trace, plant):
     swapped = replace(
         trace, position_rad=trace.position_rad[:, [1, 0, 2]], velocity_rad_s=None
