@@ -1,27 +1,23 @@
-"""Makes a test case with concealed physics: draws, simulates and writes it."""
+"""Makes a test case of set 1: draws and simulates it."""
 
-import json
-import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from experiments.concealed.draw import CaseSort, Concealed, drawn_effects, drawn_sensors
 from experiments.concealed.motion import CaseMotion
-from experiments.concealed.reading import PLANT_FILE, RECORDINGS, REFERENCE
 from experiments.concealed.size_by_information import drawn_nats, ease_that_tells, nats
+from experiments.concealed.written import SOURCE, MadeCase
 from groundwalk.errors import GroundwalkError
-from groundwalk.files import write_text
 from worlds.hidden.effects import Hidden
 from worlds.hidden.recorded import hidden_recording
 from worlds.hidden.run import Run, run_hidden
 from worlds.hidden.scales import scales
 from worlds.hidden.setting import Scales
-from worlds.recordings.files import write_recording
 from worlds.recordings.metadata import RecordingMetadata
+from worlds.recordings.recording import Recording
 
 REFERENCES = (0, 2)
 """Indices of the motions that are also recorded without hidden effects (reference)."""
@@ -29,36 +25,23 @@ _SCALE_STEP_S = 0.0005
 """Physics step [s] in the search for an effect's size: coarse, and therefore fast."""
 _ATTEMPTS = 30
 """Largest number of times that a test case is drawn before it is given up."""
-_SOURCE = "groundwalk concealed"
 
 
-def case_name(number: int) -> str:
-    """The name of a test case by its number, such as "case_007"."""
-    return f"case_{number:03d}"
+def first_case(seed: int, number: int, count: int) -> MadeCase:
+    """Make a test case of set 1; it depends on the set's seed and its own number only.
 
-
-def make_case(cases: Path, truths: Path, seed: int, number: int) -> None:
-    """Make a test case: write its truth (the hidden effects), then its whole folder.
-
-    `cases` and `truths` are the folders of all cases and truths, `seed` is that of the
-    set. GroundwalkError if in every attempt the robot fell, or no size of the effect
-    was as visible in the recordings as the level that was drawn demands.
+    `count`, the number of cases, is not used. GroundwalkError if in every attempt the
+    robot fell, or no size of the effect was as visible in the recordings as the level
+    that was drawn demands.
     """
     for attempt in range(_ATTEMPTS):
         maker = _Maker(seed, number, attempt)
         if maker.run():
-            break
-    else:
-        raise GroundwalkError(
-            f"case {number} of seed {seed}: in every attempt the robot fell, or the "
-            "effect hardly showed"
-        )
-    name = case_name(number)
-    unfinished = cases / f".{name}.partial"
-    shutil.rmtree(unfinished, ignore_errors=True)
-    maker.write(unfinished)
-    write_text(truths / f"{name}.json", json.dumps(maker.truth(), indent=1) + "\n")
-    unfinished.rename(cases / name)
+            return maker.made()
+    raise GroundwalkError(
+        f"case {number} of seed {seed}: in every attempt the robot fell, or the "
+        "effect hardly showed"
+    )
 
 
 class _Maker:
@@ -146,29 +129,33 @@ class _Maker:
         start_rad, feed = self._motion.feed(number)
         return run_hidden(plant, effects, engine, clock, feed, start_rad, self._ground)
 
-    def write(self, folder: Path) -> None:
-        """Write the model without hidden effects, and the recordings, into a folder."""
+    def made(self) -> MadeCase:
+        """The case with its recordings, as noisy sensors make them, and its truth."""
         plant = self._motion.plant
-        robot = plant.name
-        if plant.file is not None:
-            robot, text = plant.file
-            write_text(folder / robot, text)
-        base = "floating" if plant.floating else "fixed"
-        content = json.dumps({"robot": robot, "base": base}, indent=1)
-        write_text(folder / PLANT_FILE, content + "\n")
         hidden = self._hidden.effects if self._hidden else ()
-        for part, runs, effects in (
-            (RECORDINGS, self._runs, hidden),
-            (REFERENCE, self._reference, ()),
-        ):
-            for number, run in runs.items():
-                plant = self._motion.plants[number]
-                metadata = RecordingMetadata(robot, base, _SOURCE, servo=plant.servo)
-                recording = hidden_recording(
-                    plant, run, effects, self._sensors, self._noise, metadata
-                )
-                name = f"{number}_{self._motion.names[number]}.parquet"
-                write_recording(recording, folder / part / name)
+        return MadeCase(
+            plant.name,
+            plant.file,
+            "floating" if plant.floating else "fixed",
+            self._recorded(self._runs, hidden),
+            self._recorded(self._reference, ()),
+            self.truth(),
+        )
+
+    def _recorded(
+        self, runs: Mapping[int, Run], effects: Sequence[Hidden]
+    ) -> dict[str, Recording]:
+        """The recordings of some runs by name, such as "0_multisine"."""
+        made = {}
+        for number, run in runs.items():
+            plant = self._motion.plants[number]
+            base = "floating" if plant.floating else "fixed"
+            robot = plant.file[0] if plant.file else plant.name
+            metadata = RecordingMetadata(robot, base, SOURCE, servo=plant.servo)
+            made[f"{number}_{self._motion.names[number]}"] = hidden_recording(
+                plant, run, effects, self._sensors, self._noise, metadata
+            )
+        return made
 
     def truth(self) -> dict[str, Any]:
         """The test case's entry in the sealed file: its kind, hidden effects ..."""

@@ -116,8 +116,9 @@ def drawn_effects(
     if sort.kind != "unexcited":
         joints = [j for j in joints if scales.moving[j]]
     there = {n: kind.spots(plant, scales, joints) for n, kind in KINDS.items()}
-    known = [n for n in there if there[n] and sort.engine in KINDS[n].engines]
-    names = _names(sort.kind, plant, known, rng)
+    old = [n for n, kind in KINDS.items() if kind.since == 1]  # same draws for ever
+    known = [n for n in old if there[n] and sort.engine in KINDS[n].engines]
+    names = drawn_names(sort.kind, plant, known, rng)
     effects: list[Hidden] = []
     used: set[int] = set()
     for name in names:
@@ -132,9 +133,10 @@ def drawn_effects(
     return Concealed(tuple(effects), ease)
 
 
-def _names(
+def drawn_names(
     kind: str, plant: HiddenPlant, known: Sequence[str], rng: np.random.Generator
 ) -> list[str]:
+    """Draw the names of the effects of a kind of case, from those that are possible."""
     if kind == "outside":
         return [str(rng.choice([name for name in known if KINDS[name].outside]))]
     if kind == "unexcited":

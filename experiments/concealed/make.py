@@ -13,8 +13,9 @@ from typing import Annotated, ClassVar
 import tyro
 
 from experiments.command_line import run_verb
-from experiments.concealed.case import case_name, make_case
 from experiments.concealed.reading import CASES, FORMAT, HASH, SEALED, TRUTH
+from experiments.concealed.sets import SETS, make_case
+from experiments.concealed.written import case_name
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
@@ -35,7 +36,10 @@ class ConcealedMake:
     Attributes:
       folder: folder of the set of cases; an unfinished set there is continued.
       cases: number of cases.
-      seed: a case depends on this seed and its own number only.
+      seed: a case depends on this seed and its own number, in set 2 also on the number
+        of cases.
+      set: which kind of cases: 1, exact models with one thing wrong; 2, models with
+        many small errors, too, on more robots (docs/concealed.md).
       threads: number of processes; 0 for one per core.
     """
 
@@ -44,10 +48,13 @@ class ConcealedMake:
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
     cases: int = 200
     seed: int = 1
+    set: int = 1
     threads: int = 0
 
     def __post_init__(self) -> None:
         """Refuse options out of range."""
+        if self.set not in SETS:
+            raise BadValueError(f"set is {self.set}; {' or '.join(map(str, SETS))}")
         if not 1 <= self.cases <= _MOST_CASES:
             raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
         check_at_least(self, seed=0, threads=0)
@@ -65,7 +72,7 @@ def main(config: ConcealedMake) -> None:
 
 def _open(config: ConcealedMake) -> None:
     """Begin a set, or check that the folder holds a set with this seed and size."""
-    asked = {"format": FORMAT, "seed": config.seed, "cases": config.cases}
+    asked = _stamp(config) | {"cases": config.cases}
     path = config.folder / SEALED / _SET
     if path.exists():
         there = json.loads(path.read_text())
@@ -79,18 +86,24 @@ def _open(config: ConcealedMake) -> None:
         write_text(path, json.dumps(asked) + "\n")
 
 
+def _stamp(config: ConcealedMake) -> dict[str, object]:
+    """Format, seed and number of a set; the first set's files have no number."""
+    which = {} if config.set == 1 else {"set": config.set}
+    return {"format": FORMAT, "seed": config.seed, **which}
+
+
 def _make_all(config: ConcealedMake, parts: Path) -> None:
     """Make the missing test cases of a set, several at a time."""
     cases = config.folder / CASES
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
-    done = config.cases - len(missing)
+    done, where = config.cases - len(missing), (cases, parts, config.seed)
     with (
         progress("cases", config.cases, done) as task,
         process_pool(config.threads, len(missing)) as pool,
     ):
         calls = {
-            number: pool.submit(make_case, cases, parts, config.seed, number)
+            number: pool.submit(make_case, config.set, *where, number, config.cases)
             for number in missing
         }
         for _, call in as_done(calls):
@@ -103,7 +116,7 @@ def _seal(config: ConcealedMake) -> None:
     sealed, cases = config.folder / SEALED, {}
     for name in map(case_name, range(config.cases)):
         cases[name] = json.loads((sealed / _PARTS / f"{name}.json").read_text())
-    truth = {"format": FORMAT, "seed": config.seed, "cases": cases}
+    truth = _stamp(config) | {"cases": cases}
     content = json.dumps(truth, indent=1) + "\n"
     write_text(sealed / TRUTH, content)
     digest = hashlib.sha256(content.encode()).hexdigest()

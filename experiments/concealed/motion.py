@@ -30,7 +30,7 @@ _FLOATING_HZ = 100.0
 _DURATION_S, _FLOATING_DURATION_S = (8.0, 10.0), (5.0, 6.0)
 """Range of a recording's duration [s], with a fixed base and for a robot that stands or
 walks, whose contacts take longer to simulate."""
-_SOFT_MOTIONS, _SOFT = ("chirp", "ramps"), 0.5
+SOFT_MOTIONS, SOFT = ("chirp", "ramps"), 0.5
 """Motions that are recorded with lower servo gains, and the factor of the gains."""
 _MIDDLE = 0.4
 """Width of the interval in which a motion's centre is drawn, around the middle of the
@@ -169,5 +169,5 @@ def _gains(
         return (plant,) * len(names)
     # The servo gains of a robot with a description are known; others' are free.
     own = 1.0 if plant.description is not None else float(rng.uniform(0.8, 1.25))
-    given, softer = plant.with_gains(own), plant.with_gains(own * _SOFT, _SOFT)
-    return tuple(softer if name in _SOFT_MOTIONS else given for name in names)
+    given, softer = plant.with_gains(own), plant.with_gains(own * SOFT, SOFT)
+    return tuple(softer if name in SOFT_MOTIONS else given for name in names)

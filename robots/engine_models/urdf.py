@@ -148,16 +148,19 @@ _LIMIT_RAD_S = "100"
 def model_urdf(
     model: "mujoco.MjModel",
     name: str,
-    rotor_kg_m2: float = 0.0,
-    effort_nm: float = 1000.0,
+    rotor_kg_m2: float | FloatArray = 0.0,
+    effort_nm: float | FloatArray = 1000.0,
 ) -> str:
     """Make URDF text of a model's moving bodies, hinges and collision spheres.
 
     The model is a tree of hinges, on a fixed base or with a free joint as its first.
     The rotor inertia is lumped into each link; `effort_nm` is the limit stated for each
-    joint.
+    joint. Both are one number for all joints, or (njnt,), in the model's order.
     """
     import mujoco
+
+    rotors = np.broadcast_to(rotor_kg_m2, model.njnt).tolist()
+    efforts = np.broadcast_to(effort_nm, model.njnt).tolist()
 
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -170,10 +173,12 @@ def model_urdf(
         SubElement(robot, "link", name=BASE)
     for joint in hinges:
         body = int(model.jnt_bodyid[joint])
-        inertial = _inertial(model, body).with_rotor(model.jnt_axis[joint], rotor_kg_m2)
+        inertial = _inertial(model, body).with_rotor(
+            model.jnt_axis[joint], rotors[joint]
+        )
         _add_body(robot, model, body, inertial)
     for joint in hinges:
-        _add_joint(robot, model, data, joint, effort_nm)
+        _add_joint(robot, model, data, joint, efforts[joint])
     return text_of(robot, declared=False)
 
 

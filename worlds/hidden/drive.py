@@ -21,6 +21,9 @@ class HiddenJoints:
 
     The engine's leapfrog integration gives the speeds of half a step ago. They are
     extrapolated to the present, so that explicit damping is second-order accurate.
+
+    Attributes:
+      servo_nm: (j,) torques of the motors in the last step, without those of effects.
     """
 
     def __init__(
@@ -43,6 +46,7 @@ class HiddenJoints:
                 contact = StiffContact(float(inertia_kg_m2[joint]), step_s)
                 self._add(joint, effect, contact)
         self._before: FloatArray | None = None
+        self.servo_nm = np.zeros(len(plant.joints))
 
     def _add(self, joint: int, effect: Hidden, contact: StiffContact) -> None:
         kind, values = effect.kind, effect.values
@@ -64,14 +68,22 @@ class HiddenJoints:
         """(j,) constant error [rad] of the encoders: angle read minus true angle."""
         return self._servos.offset_rad
 
+    @property
+    def late_s(self) -> FloatArray:
+        """(j,) time [s] by which each joint's reading is older than the others'."""
+        return self._servos.late_s
+
     def encoders(self, position_rad: FloatArray) -> FloatArray:
-        """(j,) true angles [rad] of the joints, or of motors that have the encoder."""
+        """(j,) angles [rad] of the joints, or of motors that have the encoder.
+
+        They are true but for periodic errors of the encoders.
+        """
         angles = position_rad
         for joint, transmission in self._loose.items():
             if transmission.encoder_at_motor and transmission.motor_rad is not None:
                 angles = angles.copy()
                 angles[joint] = transmission.motor_rad
-        return angles
+        return self._servos.rippled(angles)
 
     def torque(
         self,
@@ -90,6 +102,7 @@ class HiddenJoints:
         speed = 1.5 * velocity_rad_s - 0.5 * before
         self._before = velocity_rad_s.copy()
         target = self._servos.set_point(command_rad)
+        target = self._servos.controlled(target, position_rad)
         gains = kp, kd, back_emf, most = self._servos.gains(time_s)
         torque = servo_torque_nm(gains, target - position_rad, speed)
         for i, transmission in self._loose.items():
@@ -99,8 +112,9 @@ class HiddenJoints:
                 float(target[i]),
                 (float(kp[i]), kd[i], most[i], back_emf[i]),
             )
+        self.servo_nm = servo_nm = torque
         if self._parts:
-            servo_nm = torque.copy()
+            torque = torque.copy()
             for i, part in self._parts:
                 torque[i] += part(
                     time_s, float(position_rad[i]), float(speed[i]), float(servo_nm[i])
@@ -160,10 +174,10 @@ class HiddenDrive:
         self._line = CommandLine(start_rad, around.command_delay_s / step_s)
         pushes = [(effect.place, effect.kind.push(effect.values)) for effect in effects]
         self._pushes = [(body, push) for body, push in pushes if push is not None]
-        self._late_steps = around.encoder_delay_s / step_s
+        self._late_steps = (around.encoder_delay_s + self._joints.late_s) / step_s
         self._step = 0
         # Past angles at the encoders, as many as their delay needs.
-        self._seen = deque([start_rad], maxlen=ceil(self._late_steps) + 2)
+        self._seen = deque([start_rad], maxlen=ceil(self._late_steps.max()) + 2)
 
     def send(self, command_rad: FloatArray) -> None:
         """Send (j,) position targets to the servos, which get them after the delay."""
@@ -196,6 +210,10 @@ class HiddenDrive:
     def encoders(self) -> FloatArray:
         """(j,) readings [rad] of noiseless encoders now, with offsets and delays."""
         steps = np.arange(self._step + 1 - len(self._seen), self._step + 1)
-        late = self._step - self._late_steps
-        angles = [np.interp(late, steps, column) for column in np.transpose(self._seen)]
+        columns = zip(self._late_steps, np.transpose(self._seen), strict=True)
+        angles = [np.interp(self._step - late, steps, one) for late, one in columns]
         return np.array(angles) + self._joints.offset_rad
+
+    def motor_torques(self) -> FloatArray:
+        """(j,) torques [N m] of the motors in the last physics step."""
+        return self._joints.servo_nm.copy()

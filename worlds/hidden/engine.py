@@ -51,14 +51,15 @@ class BodySense(NamedTuple):
 
 
 class HiddenEngine(Protocol):
-    """A physics engine with one robot, stepped under joint torques.
+    """A physics engine with one robot, stepped under joint torques."""
 
-    Attributes:
-      position_rad, velocity_rad_s: (j,) of the joints, after the last step.
-    """
+    @property
+    def position_rad(self) -> FloatArray:
+        """(j,) angles of the joints after the last step."""
 
-    position_rad: FloatArray
-    velocity_rad_s: FloatArray
+    @property
+    def velocity_rad_s(self) -> FloatArray:
+        """(j,) speeds of the joints after the last step."""
 
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
         """Put the robot at rest in a (j,) pose, a floating base upright at a height."""

@@ -12,7 +12,7 @@ from terrain import Heightfield
 from worlds.hidden.effects.placed import Hidden, surroundings
 from worlds.hidden.engine import ORIGIN_POSE, BodySense
 from worlds.hidden.plant import HiddenPlant
-from worlds.sim.world import ROOT_QPOS, ROOT_QVEL, add_ground, touch_shares
+from worlds.sim.world import add_ground, touch_shares
 
 if TYPE_CHECKING:
     import mujoco
@@ -67,6 +67,13 @@ def _part(spec: Any, plant: HiddenPlant, effect: Hidden) -> Any:
     return body
 
 
+def _slice(addresses: Sequence[int]) -> Any:
+    """Index of the addresses: a slice, which copies nothing, or else a list of them."""
+    first, count = addresses[0], len(addresses)
+    whole = list(addresses) == list(range(first, first + count))
+    return slice(first, first + count) if whole else list(addresses)
+
+
 class HiddenMujoco:
     """One robot driven by joint torques in MuJoCo; implements `HiddenEngine`."""
 
@@ -75,13 +82,23 @@ class HiddenMujoco:
         import mujoco
 
         self._mujoco, self._model = mujoco, model
-        self._data = data = mujoco.MjData(model)
+        self._data = mujoco.MjData(model)
         self._floating, robot = plant.floating, plant.description
         self._shares = None if robot is None else touch_shares(robot)
-        self.position_rad = data.qpos[ROOT_QPOS if plant.floating else 0 :]
-        self.velocity_rad_s = data.qvel[ROOT_QVEL if plant.floating else 0 :]
-        self._applied = data.qfrc_applied[ROOT_QVEL if plant.floating else 0 :]
+        hinges = [model.joint(name) for name in plant.joints]
+        self._qpos = _slice([int(hinge.qposadr[0]) for hinge in hinges])
+        self._dofs = _slice([int(hinge.dofadr[0]) for hinge in hinges])
         self._forget()
+
+    @property
+    def position_rad(self) -> FloatArray:
+        """(j,) angles of the joints after the last step."""
+        return np.asarray(self._data.qpos[self._qpos])
+
+    @property
+    def velocity_rad_s(self) -> FloatArray:
+        """(j,) speeds of the joints after the last step."""
+        return np.asarray(self._data.qvel[self._dofs])
 
     def _forget(self) -> None:
         self._watched, self._sensors = 0, np.zeros(self._model.nsensordata)
@@ -89,7 +106,7 @@ class HiddenMujoco:
     def reset(self, pose_rad: FloatArray, height_m: float) -> None:
         """Put the robot at rest in a (j,) pose, a floating base at this height."""
         self._mujoco.mj_resetData(self._model, self._data)
-        self.position_rad[:] = pose_rad
+        self._data.qpos[self._qpos] = pose_rad
         if self._floating:
             self._data.qpos[2] = height_m
         self._mujoco.mj_forward(self._model, self._data)
@@ -97,7 +114,7 @@ class HiddenMujoco:
 
     def step(self, torque_nm: FloatArray) -> None:
         """Take one physics step under (j,) joint torques and the pushes set before."""
-        self._applied[:] = torque_nm
+        self._data.qfrc_applied[self._dofs] = torque_nm
         self._mujoco.mj_step(self._model, self._data)
         self._data.xfrc_applied[:] = 0.0
 

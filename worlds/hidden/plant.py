@@ -1,7 +1,7 @@
 """Nominal robots to which hidden physics is added: models, servos and joint ranges."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -92,6 +92,20 @@ class HiddenPlant:
             raise UnknownNameError(f"joint of {self.name}", name, self.joints)
         return self.joints.index(name)
 
+    def with_masses(self, extra_kg: Mapping[str, float]) -> "HiddenPlant":
+        """A copy whose bodies, by name, are heavier by so many kg, or lighter if < 0.
+
+        Centres of mass, and inertias about them, stay as they are: point masses.
+        """
+
+        def make() -> "mujoco.MjSpec":
+            spec = self.make_spec()
+            for name, more in extra_kg.items():
+                spec.body(name).mass += more
+            return spec
+
+        return replace(self, make_spec=make)
+
     def with_gains(self, stiffness: float, damping: float = 1.0) -> "HiddenPlant":
         """A copy of this robot with all kp and kd multiplied, the back-EMF kept."""
         return replace(
@@ -114,23 +128,29 @@ def hidden_plant(name: str, floating: bool = False) -> HiddenPlant:
         if floating:
             raise BadValueError(f"{name} stands on a fixed base")
         if name == "pendulum":
-            return _arm("pendulum", "nominal.xml", PENDULUM, (8.0, 0.2, 4.0, 6.0))
+            servo = np.array([8.0, 0.2, 4.0, 6.0])
+            return hinged_plant("pendulum", "nominal.xml", PENDULUM, servo)
         # Gains and highest speed are chosen: the package has none.
-        return _arm(
-            "so101", "nominal.urdf", so101_urdf(), (17.0, 0.6, SO101_TORQUE_NM, 4.0)
-        )
+        servo = np.array([17.0, 0.6, SO101_TORQUE_NM, 4.0])
+        return hinged_plant("so101", "nominal.urdf", so101_urdf(), servo)
     return described_hidden_plant(robots.get(name), floating)
 
 
-def _arm(
-    name: str, file: str, text: str, servo: tuple[float, float, float, float]
-) -> HiddenPlant:
-    """A robot of hinges, all with servos of this kp, kd, largest torque and speed."""
+def hinged_plant(name: str, file: str, text: str, servo: FloatArray) -> HiddenPlant:
+    """A robot of j hinges on a fixed base, from the text of its model file.
+
+    Args:
+      name: the robot's name.
+      file: file name for the text, which ends in .xml (MJCF) or .urdf.
+      text: the model.
+      servo: kp [N m/rad], kd [N m s/rad], largest torque [N m] and highest speed of
+        commands [rad/s]: (4,) for all joints, or (j, 4).
+    """
     import mujoco
 
     model = mujoco.MjModel.from_xml_string(text)
     joints = tuple(model.joint(i).name for i in range(model.njnt))
-    kp, kd, most, speed = np.tile(servo, (len(joints), 1)).T.copy()
+    kp, kd, most, speed = np.broadcast_to(servo, (len(joints), 4)).T.copy()
     return HiddenPlant(
         name=name,
         file=(file, text),
@@ -146,6 +166,23 @@ def _arm(
     )
 
 
+def example_urdf(tail: str) -> str:
+    """Text, without meshes, of the URDF in example-robot-data whose path ends so.
+
+    BadValueError if the files of example-robot-data are not installed.
+    """
+    try:
+        files = distribution("example-robot-data").files or []
+        path = next(Path(str(f.locate())) for f in files if str(f).endswith(tail))
+        text = path.read_text()
+    except (PackageNotFoundError, StopIteration, OSError):
+        raise BadValueError(
+            "the files of example-robot-data are missing; groundwalk doctor tells more"
+        ) from None
+    shapes = r"<(visual|collision)\b(?:[^<>]*/>|.*?</\1>)"
+    return re.sub(shapes, "", text, flags=re.DOTALL)
+
+
 def so101_urdf() -> str:
     """URDF of example-robot-data's SO-101, with rotors, without meshes, gripper fixed.
 
@@ -153,16 +190,7 @@ def so101_urdf() -> str:
     """
     import mujoco
 
-    try:
-        files = distribution("example-robot-data").files or []
-        path = next(Path(str(f.locate())) for f in files if str(f).endswith(_SO101))
-        text = path.read_text()
-    except (PackageNotFoundError, StopIteration, OSError):
-        raise BadValueError(
-            "the files of example-robot-data are missing; groundwalk doctor tells more"
-        ) from None
-    text = re.sub(r"<(visual|collision)\b.*?</\1>", "", text, flags=re.DOTALL)
-    spec = mujoco.MjSpec.from_string(text)
+    spec = mujoco.MjSpec.from_string(example_urdf(_SO101))
     spec.delete(spec.joint(_SO101_HELD))
     return model_urdf(spec.compile(), "so101", SO101_ROTOR_KG_M2, SO101_TORQUE_NM)
 

@@ -22,7 +22,8 @@ class HiddenSensors:
     The encoders have noise before they round to a multiple of `quantum_rad`, which is
     12 bits per turn by default; 0 for no rounding. `foot_force_n` is the noise of each
     foot's total force, `place_m`, `turn_rad`, `linear_m_s` and `angular_rad_s` that of
-    the base, as from motion capture; all others are those of each component or axis.
+    the base, as from motion capture; `torque_share` is that of measured torques as a
+    share of each joint's largest. All others are those of each component or axis.
     """
 
     quantum_rad: float = 2 * math.pi / 4096
@@ -34,12 +35,30 @@ class HiddenSensors:
     turn_rad: float = 0.0005
     linear_m_s: float = 0.005
     angular_rad_s: float = 0.005
+    torque_share: float = 0.005
 
     def __post_init__(self) -> None:
         """Refuse standard deviations and resolutions that are negative."""
         for name, value in vars(self).items():
             if not (math.isfinite(value) and value >= 0):
                 raise BadValueError(f"{name} is {value}; it must not be negative")
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """What is written down of a run, beside positions.
+
+    Attributes:
+      rate_hz: ticks per second, if time stamps are even, whatever the true times were;
+        None for the true times.
+      torques: whether the motors' torques are measured, and neither commands nor
+        velocities are known, as of a controller that tells nothing about itself.
+      torque_gain: (j,) measured torques as multiples of the true ones; None for 1.
+    """
+
+    rate_hz: float | None = None
+    torques: bool = False
+    torque_gain: FloatArray | None = None
 
 
 def hidden_recording(
@@ -49,26 +68,39 @@ def hidden_recording(
     sensors: HiddenSensors,
     rng: np.random.Generator,
     metadata: RecordingMetadata,
+    log: Log | None = None,
 ) -> Recording:
     """The recording that noisy sensors make of a run; rows before its start are cut.
 
     Velocities are differences of the encoders' readings, as cheap servos give them. Of
-    the effects only a gyroscope bias is used. `metadata` are stated in the recording.
+    the effects only a gyroscope bias and faults of single readings are used. `metadata`
+    are stated in the recording. Without a `log` commands and true times are written.
     """
-    first = run.clock.first
+    first, log = run.clock.first, log or Log()
     measured = run.encoder_rad + sensors.encoder_rad * rng.standard_normal(
         run.encoder_rad.shape
     )
     if sensors.quantum_rad > 0:
         measured = np.round(measured / sensors.quantum_rad) * sensors.quantum_rad
-    speeds = np.zeros_like(measured)
-    speeds[1:] = np.diff(measured, axis=0) / np.diff(run.clock.time_s)[:, None]
-    columns = {"time": run.clock.time_s}
-    for quantity, table in (
-        ("position", measured),
-        ("velocity", speeds),
-        ("command", run.command_rad),
-    ):
+    time_s = run.clock.time_s
+    if log.rate_hz is not None:
+        time_s = (np.arange(len(time_s)) - first) / log.rate_hz
+    for effect in effects:
+        if effect.kind.place == "joint":
+            joint = plant.joint(effect.place)
+            read = effect.kind.misread(effect.values, time_s, measured[:, joint], rng)
+            measured[:, joint] = read
+    columns = {"time": time_s}
+    if log.torques:
+        tables = {
+            "position": measured,
+            "torque": _torques(plant, run, sensors, log, rng),
+        }
+    else:
+        speeds = np.zeros_like(measured)
+        speeds[1:] = np.diff(measured, axis=0) / np.diff(time_s)[:, None]
+        tables = {"position": measured, "velocity": speeds, "command": run.command_rad}
+    for quantity, table in tables.items():
         for name, values in zip(plant.joints, table.T, strict=True):
             columns[f"{quantity}.{name}"] = values
     if plant.description is not None:
@@ -77,6 +109,20 @@ def hidden_recording(
     if plant.floating:
         columns |= _base(run, sensors, rng)
     return Recording({name: v[first:] for name, v in columns.items()}, metadata)
+
+
+def _torques(
+    plant: HiddenPlant,
+    run: Run,
+    sensors: HiddenSensors,
+    log: Log,
+    rng: np.random.Generator,
+) -> FloatArray:
+    """(rows, j) measured torques [N m] of the motors."""
+    noise = rng.standard_normal(run.torque_nm.shape)
+    gain = 1.0 if log.torque_gain is None else log.torque_gain
+    spread_nm = sensors.torque_share * plant.max_torque_nm
+    return np.asarray(gain * run.torque_nm + spread_nm * noise)
 
 
 def _vector(name: str, table: FloatArray) -> dict[str, FloatArray]:

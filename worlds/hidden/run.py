@@ -70,19 +70,36 @@ returns the position targets (j,) [rad] to send."""
 class Run:
     """True motion of a simulated robot, without noise; one row per control tick.
 
-    Commands sent, joint angles and readings of noiseless encoders with offsets and
-    delays are (rows, j). `sense` holds arrays (rows, ...) by attribute name of
-    `BodySense`, but the motion of the base is in a frame whose z axis is the true
-    vertical. `ok` says whether all numbers are finite and a floating base has not
-    fallen.
+    Commands sent, joint angles, readings of noiseless encoders with offsets and delays,
+    and the motors' torques in the step before a tick are (rows, j). `sense` holds
+    arrays (rows, ...) by attribute name of `BodySense`, but the motion of the base is
+    in a frame whose z axis is the true vertical. `ok` says whether all numbers are
+    finite and a floating base has not fallen.
     """
 
     clock: Clock
     command_rad: FloatArray
     encoder_rad: FloatArray
     position_rad: FloatArray
+    torque_nm: FloatArray
     sense: dict[str, FloatArray]
     ok: bool
+
+    def every(self, ticks: int) -> "Run":
+        """The run with each n-th of its ticks only, the recording's first among them.
+
+        Commands then hold for shorter than from row to row.
+        """
+        clock, rows = self.clock, slice(self.clock.first % ticks, None, ticks)
+        return Run(
+            Clock(clock.step_s, clock.ticks[rows], clock.first // ticks),
+            self.command_rad[rows],
+            self.encoder_rad[rows],
+            self.position_rad[rows],
+            self.torque_nm[rows],
+            {name: table[rows] for name, table in self.sense.items()},
+            self.ok,
+        )
 
 
 def run_hidden(
@@ -131,13 +148,14 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
     Once the simulation diverges, nothing more is sent and the state stays.
     """
     ticks, zero = clock.ticks, int(clock.ticks[clock.first])
-    commands, encoders, positions, senses = [], [], [], []
+    commands, encoders, positions, torques, senses = [], [], [], [], []
     ok = True
     for row, steps in enumerate(np.diff(ticks, append=ticks[-1])):
         sense = world.sense()
         senses.append(sense)
         positions.append(world.position_rad.copy())
         encoders.append(drive.encoders())
+        torques.append(drive.motor_torques())
         ok = ok and bool(np.isfinite(positions[-1]).all())
         commands.append(feed(row, sense) if ok else positions[0])
         if ok and steps:
@@ -145,9 +163,8 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
             drive.advance(int(steps), zero)
     columns = zip(BodySense._fields, zip(*senses, strict=True), strict=True)
     felt = {name: np.stack(column) for name, column in columns}
-    return Run(
-        clock, np.stack(commands), np.stack(encoders), np.stack(positions), felt, ok
-    )
+    sent, read, true = map(np.stack, (commands, encoders, positions))
+    return Run(clock, sent, read, true, np.stack(torques), felt, ok)
 
 
 def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:

@@ -1,5 +1,6 @@
 """Servos of robots with hidden physics, and gears with play or elasticity."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -36,6 +37,12 @@ class Servos:
       max_speed_rad_s: highest speed of a set-point that follows its command.
       fade_1_s: share of kp that is lost in each second of the recording.
       offset_rad: constant encoder error, measured minus true angle.
+      late_s: time by which a joint's reading is older than the others'; the servo's own
+        reading is not.
+      integral_1_s: integral gain as a multiple of kp, see `controlled`.
+      dead_band_rad: error below which the servo gives no torque, see `controlled`.
+      ripples: (joint, amplitude, per turn, phase) of periodic encoder errors, amplitude
+        sin(per turn q + phase) [rad] at joint angle q, which the servo acts on.
       leaks: (to, from, share) for crosstalk between the commands of two joints.
     """
 
@@ -49,13 +56,22 @@ class Servos:
         self.max_speed_rad_s = np.full(j, np.inf)
         self.fade_1_s = np.zeros(j)
         self.offset_rad = np.zeros(j)
+        self.late_s = np.zeros(j)
+        self.integral_1_s = np.zeros(j)
+        self.dead_band_rad = np.zeros(j)
+        self.ripples: list[tuple[int, float, float, float]] = []
         self.leaks: list[tuple[int, int, float]] = []
         self._step_s = step_s
         self._target: FloatArray | None = None
+        self._summed_rad = np.zeros(j)
 
     @cached_property
     def _fades(self) -> bool:
         return bool(self.fade_1_s.any())
+
+    @cached_property
+    def _controls(self) -> bool:
+        return bool(self.integral_1_s.any() or self.dead_band_rad.any())
 
     @cached_property
     def _slews(self) -> bool:
@@ -83,6 +99,35 @@ class Servos:
         if self._slews:
             target = self._slewed(target)
         return target - self.offset_rad
+
+    def controlled(self, target: FloatArray, position_rad: FloatArray) -> FloatArray:
+        """(j,) set-points at which a stiffness alone acts as the whole controller does.
+
+        With error e = target - position, both (j,) [rad], the controller's torque is
+        kp (e + integral_1_s int e dt), the integral's part at most the servo's largest
+        torque; it is 0 where the sum in brackets is below the dead band. The position
+        is the true one, from which that with an encoder's ripple follows.
+        """
+        if self.ripples:  # reading too much acts as a target that is too low
+            target = target + (position_rad - self.rippled(position_rad))
+        if not self._controls:
+            return target
+        error = target - position_rad
+        most = self.max_torque_nm / np.maximum(self.kp_nm_rad, 1e-9)
+        more = self._summed_rad + self.integral_1_s * error * self._step_s
+        self._summed_rad = np.clip(more, -most, most)
+        error = error + self._summed_rad
+        inside = np.abs(error) < self.dead_band_rad
+        return np.asarray(position_rad + np.where(inside, 0.0, error))
+
+    def rippled(self, angle_rad: FloatArray) -> FloatArray:
+        """(j,) angles [rad] with the encoders' periodic errors added."""
+        if not self.ripples:
+            return angle_rad
+        read = angle_rad.copy()
+        for joint, amplitude, per_turn, phase in self.ripples:
+            read[joint] += amplitude * math.sin(per_turn * angle_rad[joint] + phase)
+        return read
 
     def _slewed(self, target: FloatArray) -> FloatArray:
         """(j,) set-points that follow (j,) targets at limited speed, from the first."""

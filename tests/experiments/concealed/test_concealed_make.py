@@ -31,13 +31,14 @@ SEED = 44
 both are made fast."""
 
 
-def make(folder, cases=2, seed=SEED):
+def make(folder, cases=2, seed=SEED, which=1):
     """Make a set in this process, where the changes of a test apply."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             processes, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
         )
-        main(ConcealedMake(folder=folder, cases=cases, seed=seed, threads=1))
+        config = {"cases": cases, "seed": seed, "set": which, "threads": 1}
+        main(ConcealedMake(folder=folder, **config))
     return (folder / "sealed.sha256").read_text().split()[0]
 
 
@@ -88,7 +89,7 @@ def test_a_set_has_its_layout_and_a_sealed_truth(made, capsys):
 def test_a_killed_run_goes_on_to_the_same_bits(made, tmp_path, monkeypatch):
     real, truth = concealed_make.make_case, made / "sealed" / "truth.json"
 
-    def killed(cases, parts, seed, number):
+    def killed(which, cases, parts, seed, number, count):
         """The first is made as it was: `test_a_case_does_not_depend...` makes it."""
         if number == 1:
             raise KeyboardInterrupt
@@ -123,7 +124,7 @@ def test_a_case_does_not_depend_on_how_many_there_are(made, tmp_path):
 def test_another_set_is_not_touched(made, tmp_path):
     shutil.copytree(made, tmp_path / "set")
     before = contents(tmp_path / "set")
-    for other in ({"cases": 2, "seed": 5}, {"cases": 1}):
+    for other in ({"cases": 2, "seed": 5}, {"cases": 1}, {"which": 2}):
         with pytest.raises(RunFolderError, match="another set"):
             make(tmp_path / "set", **other)
     make(tmp_path / "set")
@@ -184,15 +185,17 @@ def test_a_joint_that_is_not_to_be_excited_rests_when_the_recording_begins(held)
     assert (reach_rad < 2e-4) == held
 
 
-@pytest.mark.parametrize("options", [{"cases": 0}, {"seed": -1}, {"threads": -1}])
+@pytest.mark.parametrize(
+    "options", [{"cases": 0}, {"seed": -1}, {"threads": -1}, {"set": 3}]
+)
 def test_sets_that_cannot_be_are_refused(tmp_path, options):
     with pytest.raises(BadValueError):
         ConcealedMake(folder=tmp_path / "set", **options)
 
 
-def test_a_robot_that_always_falls_is_told(tmp_path, monkeypatch):
+def test_a_robot_that_always_falls_is_told(monkeypatch):
     from experiments.concealed import case as concealed_case
 
     monkeypatch.setattr(concealed_case._Maker, "run", lambda self: False)
     with pytest.raises(GroundwalkError, match="fell"):
-        concealed_case.make_case(tmp_path, tmp_path, 1, 0)
+        concealed_case.first_case(1, 0, 1)

@@ -59,6 +59,8 @@ def test_the_order_from_which_cases_are_drawn_is_fixed():
         "stribeck_friction",
     ]
     assert list(KINDS)[29] == "periodic_torque"
+    assert [kind.since for kind in KINDS.values()][:30] == [1] * 30
+    assert [kind.since for kind in KINDS.values()][30:37] == [2] * 7
 
 
 def test_every_effect_of_the_library_is_there_and_some_that_are_not():

@@ -40,6 +40,7 @@ class Armature(_OneJointOneWeight):
 
     name = "armature"
     rank = 15
+    in_torques = True
     quantities = (Quantity("inertia", "kg m^2", 0.0),)
     engines = ("mujoco",)
     needs_motion = True
@@ -59,6 +60,7 @@ class PayloadMass(_Weight):
 
     name = "payload_mass"
     rank = 16
+    in_torques = True
     quantities = (Quantity("mass", "kg", 0.0, 1000.0),)
     apart = ("com_offset", "armature")
 
@@ -76,6 +78,7 @@ class ComOffset(_Weight):
 
     name = "com_offset"
     rank = 17
+    in_torques = True
     quantities = tuple(Quantity(axis, "m", -1.0, 1.0) for axis in "xyz")
     apart = ("payload_mass", "armature")
 
@@ -109,6 +112,7 @@ class ExternalForce(HiddenKind):
 
     name = "external_force"
     rank = 25
+    in_torques = True
     place = "body"
     quantities = (
         *(Quantity(axis, "N") for axis in "xyz"),
@@ -150,6 +154,7 @@ class Drag(HiddenKind):
 
     name = "drag"
     rank = 26
+    in_torques = True
     place = "body"
     quantities = (Quantity("coefficient", "N s/m", 0.0),)
 

@@ -66,6 +66,7 @@ class CoulombFriction(HiddenKind):
 
     name = "coulomb_friction"
     rank = 2
+    in_torques = True
     quantities = (Quantity("torque", "N m", 0.0),)
     needs_motion = True
     apart = ("stribeck_friction",)  # which has a Coulomb part of its own
@@ -84,6 +85,7 @@ class StribeckFriction(HiddenKind):
 
     name = "stribeck_friction"
     rank = 3
+    in_torques = True
     quantities = (
         Quantity("coulomb_torque", "N m", 0.0),
         Quantity("extra_torque", "N m", 0.0),
@@ -121,6 +123,7 @@ class LoadFriction(HiddenKind):
 
     name = "load_friction"
     rank = 4
+    in_torques = True
     quantities = (Quantity("share", "1", 0.0, 1.0),)
     sizes = (0.3, 0.03)
 
@@ -158,6 +161,7 @@ class LugreHysteresis(HiddenKind):
 
     name = "lugre_hysteresis"
     rank = 27
+    in_torques = True
     quantities = (
         Quantity("torque", "N m", 1e-6),
         Quantity("stiffness", "N m/rad", 1e-6),

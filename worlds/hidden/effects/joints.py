@@ -24,6 +24,7 @@ class ViscousFriction(HiddenKind):
 
     name = "viscous_friction"
     rank = 1
+    in_torques = True
     quantities = (Quantity("coefficient", "N m s/rad", 0.0),)
     needs_motion = True
     apart = ("servo_damping",)
@@ -47,6 +48,7 @@ class JointSpring(HiddenKind):
 
     name = "joint_spring"
     rank = 18
+    in_torques = True
     quantities = (
         Quantity("stiffness", "N m/rad", 0.0),
         Quantity("rest", "rad", -6.3, 6.3),
@@ -78,6 +80,7 @@ class EndStop(HiddenKind):
 
     name = "end_stop"
     rank = 19
+    in_torques = True
     quantities = (
         Quantity("angle", "rad"),
         Quantity("side", "1", -1.0, 1.0),
@@ -118,6 +121,7 @@ class Cogging(HiddenKind):
 
     name = "cogging"
     rank = 28
+    in_torques = True
     quantities = (
         Quantity("torque", "N m", 0.0),
         Quantity("per_turn", "1", 0.0),
@@ -143,6 +147,7 @@ class PeriodicTorque(HiddenKind):
 
     name = "periodic_torque"
     rank = 30
+    in_torques = True
     quantities = (
         Quantity("torque", "N m", 0.0),
         Quantity("frequency", "Hz", 0.0),
@@ -183,6 +188,7 @@ class JointElasticity(HiddenKind):
 
     name = "joint_elasticity"
     rank = 6
+    stiff = True
     quantities = (
         Quantity("stiffness", "N m/rad", 0.0),
         Quantity("damping", "N m s/rad", 0.0),

@@ -144,6 +144,10 @@ class HiddenKind:
       outside: whether the diagnosis has no effect of this name.
       engines: names of the physics engines that can simulate it.
       needs_motion: whether it shows only at joints that move.
+      since: the first set of concealed cases that may have it.
+      in_torques: whether positions and measured torques show it, so that the commands
+        need not be known.
+      stiff: whether it adds a spring that long physics steps could make unstable.
       apart: kinds that are never drawn into the same case, if `cancels` says so.
       sizes: value of the only parameter for an effect that is easy to detect, and for
         one that is hard; kinds with more parameters override `size`.
@@ -156,6 +160,9 @@ class HiddenKind:
     outside: ClassVar[bool] = False
     engines: ClassVar[tuple[str, ...]] = ("bullet", "mujoco")
     needs_motion: ClassVar[bool] = False
+    since: ClassVar[int] = 1
+    in_torques: ClassVar[bool] = False
+    stiff: ClassVar[bool] = False
     apart: ClassVar[tuple[str, ...]] = ()
     sizes: ClassVar[tuple[float, float]]
 
@@ -192,6 +199,19 @@ class HiddenKind:
     def push(self, values: Values) -> Push | None:
         """Law of a force at a body's centre of mass; None if this kind adds none."""
         return None
+
+    def misread(
+        self,
+        values: Values,
+        time_s: FloatArray,
+        angle_rad: FloatArray,
+        rng: np.random.Generator,
+    ) -> FloatArray:
+        """(rows,) angles as they are written down, unchanged by default.
+
+        They follow from those that a joint's encoder read at times (rows,).
+        """
+        return angle_rad
 
     # Size and place in concealed cases
 

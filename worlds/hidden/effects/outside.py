@@ -110,6 +110,7 @@ class GroundSlope(HiddenKind):
 
     name = "ground_slope"
     rank = 23
+    in_torques = True
     place = "world"
     quantities = (
         Quantity("pitch", "rad", -1.5, 1.5),

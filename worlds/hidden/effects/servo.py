@@ -16,6 +16,7 @@ class EncoderOffset(HiddenKind):
 
     name = "encoder_offset"
     rank = 9
+    in_torques = True
     quantities = (Quantity("offset", "rad", -1.0, 1.0),)
 
     def change_servos(self, servos: Servos, joint: int, values: Values) -> None:
