@@ -14,6 +14,7 @@ from diagnosis.baselines import BASELINES
 from diagnosis.traces.split import split
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, CASES, read_case
+from experiments.concealed.scoring.answers import Answer
 from experiments.runs.folder import PROVENANCE, RunFolder, provenance
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
@@ -53,7 +54,7 @@ class ConcealedRun:
 def main(config: ConcealedRun) -> None:
     """Answer all test cases without an answer, and store the version of the code."""
     kind: str = ANSWERS
-    answer: Answer = diagnosed
+    answer: Answerer = diagnosed
     if config.by != "diagnosis":
         kind = f"{BASELINE_ANSWERS}/{config.by}"
         answer = partial(by_baseline, config.by)
@@ -85,12 +86,12 @@ def cases_of(folder: Path) -> list[Path]:
     return sorted(path for path in (folder / CASES).iterdir() if path.is_dir())
 
 
-Answer = Callable[[Path, int], Verdict]
-"""A function that returns a verdict for the folder of a test case and a seed."""
+Answerer = Callable[[Path, int], Verdict | Answer]
+"""A function that returns an answer for the folder of a test case and a seed."""
 
 
 def answer_all(
-    folder: Path, kind: str, answer: Answer, seed: int, threads: int
+    folder: Path, kind: str, answer: Answerer, seed: int, threads: int
 ) -> None:
     """Write the missing answers; a test case that fails does not stop the others.
 
@@ -117,8 +118,8 @@ def answer_all(
         raise failure
 
 
-def diagnosed(case: Path, seed: int) -> Verdict:
-    """The verdict on a test case; "not_identifiable" if it refuses a recording.
+def diagnosed(case: Path, seed: int) -> Verdict | Answer:
+    """The verdict on a test case, or that it refuses a recording.
 
     The seed and the case's number together are the seed of the random numbers.
     """
@@ -127,11 +128,11 @@ def diagnosed(case: Path, seed: int) -> Verdict:
         plant, traces, reference = read_case(case)
         return diagnose(plant, traces, own, reference=reference).verdict
     except BadRecordingError as error:
-        return Verdict(kind="not_identifiable", limits=(str(error),))
+        return Answer("refused", limits=(str(error),))
 
 
 @one_blas_thread
-def by_baseline(name: str, case: Path, seed: int) -> Verdict:
+def by_baseline(name: str, case: Path, seed: int) -> Verdict | Answer:
     """A baseline's verdict, from all recordings of a test case but the held-out ones.
 
     `seed` is not used: baselines draw no random numbers.
@@ -141,7 +142,7 @@ def by_baseline(name: str, case: Path, seed: int) -> Verdict:
         parts = split(traces)
         return BASELINES[name](plant, [*parts.fit, *parts.select])
     except BadRecordingError as error:
-        return Verdict(kind="not_identifiable", limits=(str(error),))
+        return Answer("refused", limits=(str(error),))
 
 
 def _path(folder: Path, kind: str, case: Path) -> Path:

@@ -8,14 +8,14 @@ from typing import Annotated, Any, ClassVar
 
 import tyro
 
-from diagnosis import Verdict
-from diagnosis.verdict import Found
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, CASES
-from experiments.concealed.scoring.marks import NAMED_KINDS, mark
+from experiments.concealed.scoring.answers import Answer, Named
+from experiments.concealed.scoring.marks import NAMED_KINDS, case_level, mark
 from experiments.concealed.scoring.measures import measures
 from experiments.concealed.scoring.oracle import Oracle, answer_key, consult
 from experiments.concealed.scoring.page import draw_score, score_report, score_rows
+from experiments.concealed.scoring.paired import compared
 from experiments.concealed.scoring.truth import (
     TrueCase,
     Truth,
@@ -30,14 +30,16 @@ from experiments.runs.folder import PROVENANCE, RunFolder, provenance
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
 from experiments.runs.progress import progress
+from groundwalk.errors import BadValueError
 from groundwalk.files import write_text
 
 VERB = "concealed-score"
 FORMAT = 1
 DIAGNOSIS = "diagnosis"
 ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
-Answers = Mapping[str, Mapping[str, Verdict]]
-"""Verdicts by method ("diagnosis" or name of a baseline) and name of the test case."""
+Answers = Mapping[str, Mapping[str, Answer]]
+"""Answers by method and name of the test case; methods are "diagnosis", the names of
+baselines, and those of folders of other tools' answers."""
 
 
 @dataclass(frozen=True)
@@ -47,17 +49,26 @@ class ConcealedScore:
     Attributes:
       folder: folder of the set of cases, with answers. The results are written there:
         score.json, score.md, score.png and report.html.
+      answers: folders of answers by other tools (docs/concealed_answers.md), which are
+        scored beside the diagnosis, under the names of the folders.
       threads: number of processes that fit the true effects; 0 for one per core.
     """
 
     if_interrupted: ClassVar[str] = REPEATABLE
 
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
+    answers: tuple[Path, ...] = ()
     threads: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse a negative number of threads."""
+        """Refuse a negative number of threads, and two folders of one name."""
         check_at_least(self, threads=0)
+        names = [folder.resolve().name for folder in self.answers]
+        if len({DIAGNOSIS, *names}) <= len(names):
+            raise BadValueError(
+                f"answers are named by their folders: {', '.join(names)} and "
+                f"{DIAGNOSIS} must differ"
+            )
 
 
 def main(config: ConcealedScore) -> None:
@@ -67,6 +78,10 @@ def main(config: ConcealedScore) -> None:
     answers = {
         DIAGNOSIS: read_answers(folder / ANSWERS, list(truth.cases)),
         **read_baselines(folder, list(truth.cases)),
+        **{
+            others.resolve().name: read_answers(others, list(truth.cases))
+            for others in config.answers
+        },
     }
     oracles = consult_all(folder, truth.cases, answers, config.threads)
     score = score_of(truth, answers, oracles)
@@ -89,26 +104,34 @@ def score_of(
 ) -> dict[str, Any]:
     """The scores of all methods, in the form of score.json.
 
-    `answers` are verdicts by method and test case, "diagnosis" is one of the methods;
+    `answers` are by method and test case, "diagnosis" is one of the methods;
     `oracles` are fits of the true effects, by the names of the cases in which an effect
     that the diagnosis knows is hidden.
     """
-    figures = {}
-    for method, verdicts in answers.items():
-        marks = [
-            mark(case, verdicts.get(name), oracles.get(name), method)
+    marks = {
+        method: [
+            mark(case, own.get(name), oracles.get(name), method)
             for name, case in truth.cases.items()
         ]
-        missing = [name for name in truth.cases if name not in verdicts]
-        figures[method] = {"missing": missing, **measures(marks, truth.seed)}
+        for method, own in answers.items()
+    }
+    figures = {}
+    for method, own in answers.items():
+        missing = [name for name in truth.cases if name not in own]
+        figures[method] = {"missing": missing, **measures(marks[method], truth.seed)}
+    levels = {
+        name: case_level(case, oracles.get(name)) for name, case in truth.cases.items()
+    }
     return {
         "format": FORMAT,
+        "set": truth.set,
         "seed": truth.seed,
         "truth_sha256": truth.sha256,
         "cases": len(truth.cases),
-        "levels": {name: oracle.level for name, oracle in oracles.items()},
+        "levels": {name: level for name, level in levels.items() if level},
         **figures.pop(DIAGNOSIS),
         "baselines": figures,
+        "paired": {name: compared(marks[DIAGNOSIS], marks[name]) for name in figures},
     }
 
 
@@ -145,7 +168,7 @@ def consult_all(
 
 
 def _consult(
-    folder: Path, case: TrueCase, found: Mapping[str, Sequence[Found]]
+    folder: Path, case: TrueCase, found: Mapping[str, Sequence[Named]]
 ) -> Oracle:
     """Fit the true effects of a test case, and store the result at once."""
     oracle = consult(folder / CASES / case.name, case, found)
@@ -158,7 +181,7 @@ def _path(folder: Path, name: str) -> Path:
 
 
 def _kept(
-    folder: Path, name: str, asked: Mapping[str, Sequence[Found]]
+    folder: Path, name: str, asked: Mapping[str, Sequence[Named]]
 ) -> Oracle | None:
     """The stored oracle of a test case; None if there is none for the same answers."""
     path = _path(folder, name)

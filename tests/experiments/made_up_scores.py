@@ -8,6 +8,7 @@ from diagnosis.verdict import (
     Verdict,
 )
 from experiments.concealed.score import DIAGNOSIS, score_of
+from experiments.concealed.scoring.answers import read_answer
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.concealed.scoring.truth import TrueCase, Truth
 from worlds.hidden.effects import Hidden
@@ -62,7 +63,9 @@ def scored(*rows, method=DIAGNOSIS):
     """Score of a set from rows (kind, effects, verdict or None, oracle or None)."""
     cases = tuple(case(i, kind, *hidden) for i, (kind, hidden, _, _) in enumerate(rows))
     verdicts = {
-        one.name: row[2] for one, row in zip(cases, rows, strict=True) if row[2]
+        one.name: read_answer(row[2].to_json())
+        for one, row in zip(cases, rows, strict=True)
+        if row[2]
     }
     oracles = {one.name: row[3] for one, row in zip(cases, rows, strict=True) if row[3]}
     truth = Truth(7, {one.name: one for one in cases}, "ab12")

@@ -160,6 +160,14 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
         "make results-concealed": make("results-concealed", "two hours"),
     },
+    "concealed_answers.md": {
+        "groundwalk concealed score set --answers data": NotRun(
+            "another tool's answers are needed",
+            "groundwalk concealed score --help",
+            says="--answers",
+        ),
+        "groundwalk list effects": Run(says="backlash"),
+    },
     "diagnosis.md": {
         "groundwalk record --robot so101 --motion multisine --hidden "
         "coulomb_friction@elbow_flex:torque=0.1 --out a.parquet": Run(

@@ -43,7 +43,9 @@ class HiddenJoints:
         for effect in effects:
             if effect.kind.place == "joint":
                 joint = plant.joint(effect.place)
-                contact = StiffContact(float(inertia_kg_m2[joint]), step_s)
+                rigid_nm_rad = plant.rigid_nm_rad(joint)
+                inertia = float(inertia_kg_m2[joint])
+                contact = StiffContact(inertia, step_s, rigid_nm_rad)
                 self._add(joint, effect, contact)
         self._before: FloatArray | None = None
         self.servo_nm = np.zeros(len(plant.joints))

@@ -5,7 +5,7 @@ and no servos. They are chosen by one rule for all limbs, see `limb_plant`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -28,6 +28,9 @@ _SERVO_RAD_S, _SERVO_DAMPING = 40.0, 0.7
 other joints locked: about those of the SO-101's servos."""
 _MOST_SAG_RAD = 0.08
 """A servo is stiffer where it would otherwise sag more than this under gravity."""
+_RIGID = 200.0
+"""Stiffness of gear teeth that touch, as a multiple of a servo's: they take no share of
+the error of a strong servo."""
 _FASTEST_RAD_S = 4.0
 """Highest speed of commands where the model file allows more, as of the SO-101."""
 _ENDLESS_RAD = (-2.5, 2.5)
@@ -118,7 +121,8 @@ def limb_plant(name: str) -> HiddenPlant:
     urdf = model_urdf(model, name, most / _ROTOR_RAD_S2, most)
     fastest = [min(speed_rad_s[joint], _FASTEST_RAD_S) for joint in joints]
     servo = _servos(urdf, most, np.array(fastest))
-    return hinged_plant(name, "nominal.urdf", urdf, servo)
+    plant = hinged_plant(name, "nominal.urdf", urdf, servo)
+    return replace(plant, rigid=_RIGID)
 
 
 def _limits(limb: Limb, text: str) -> tuple[dict[str, float], dict[str, float]]:

@@ -28,6 +28,10 @@ SO101_ROTOR_KG_M2 = 0.003
 """Rotor inertia of each SO-101 servo seen through its gear [kg m^2], assumed. The wrist
 alone has 4e-5 kg m^2, which would not show beside a servo of 17 N m/rad."""
 
+RIGID_NM_RAD = 3000.0
+"""Stiffness [N m/rad] of surfaces that stick and of gear teeth that touch: under a
+torque of 3 N m they yield by 0.001 rad, less than an encoder's resolution."""
+
 PENDULUM = """<mujoco model="pendulum">
   <compiler angle="radian"/>
   <worldbody>
@@ -57,6 +61,8 @@ class HiddenPlant:
         torque = clip(kp (command - position) - kd v, +-max) - back_emf v.
       range_rad: (j, 2) lowest and highest angle.
       speed_rad_s: highest speed of commands.
+      rigid: stiffness of gear teeth as a multiple of the servo's, where that is more
+        than `RIGID_NM_RAD`.
       description: of a robot of `groundwalk list robots`; else None.
 
     Example:
@@ -77,6 +83,7 @@ class HiddenPlant:
     speed_rad_s: FloatArray
     floating: bool = False
     description: Description | None = None
+    rigid: float = 0.0
 
     @property
     def servo(self) -> dict[str, ServoGains]:
@@ -91,6 +98,10 @@ class HiddenPlant:
         if name not in self.joints:
             raise UnknownNameError(f"joint of {self.name}", name, self.joints)
         return self.joints.index(name)
+
+    def rigid_nm_rad(self, joint: int) -> float:
+        """Stiffness [N m/rad] of surfaces that stick, and of gear teeth, at a joint."""
+        return max(RIGID_NM_RAD, self.rigid * float(self.kp_nm_rad[joint]))
 
     def with_masses(self, extra_kg: Mapping[str, float]) -> "HiddenPlant":
         """A copy whose bodies, by name, are heavier by so many kg, or lighter if < 0.

@@ -23,6 +23,8 @@ NOTHING: Figure = {"value": None, "n": 0, "low": None, "high": None}
 
 RESAMPLES = 1000
 """Number of bootstrap samples, as usual for 95 % intervals."""
+FAINT = ("L3", "L4")
+"""Levels of difficulty whose effects count as small."""
 BINS = 10
 """Number of equal bins of the stated probability, from 0 to 1."""
 
@@ -31,26 +33,38 @@ def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
     """Compute all figures of one method's score; the bootstrap uses the seed."""
     rng = np.random.default_rng(seed)
     hidden, single = by_kind(marks, *NAMED_KINDS), by_kind(marks, "single")
+    several = by_kind(marks, "pair", "triple")
     certain = [each for each in marks if each.probability is not None]
     closed = ("closed", "wrong_place", "wrong_effect")
     return {
         "right": share(each.right for each in marks),
+        "right_by_kind": {
+            kind: share(each.right for each in by_kind(marks, kind))
+            for kind in dict.fromkeys(each.case.kind for each in marks)
+        },
         "top1": _by_level(single, lambda each: each.top1),
         "in_set": _by_level(single, lambda each: each.in_set),
         "set_size": _mean([each for each in single if each.set_size], "set_size", rng),
         "place": share(right for each in hidden for right in each.places),
-        "pairs_f1": _bootstrap(by_kind(marks, "pair", "triple"), f1, rng),
+        "pairs_f1": _bootstrap(several, f1, rng),
+        "compounds": _by_level(several, lambda each: each.right),
         "parameter_error_median": _bootstrap(
             [each for each in hidden if each.errors], median_error, rng
         ),
-        "coverage80": share(inside for each in hidden for inside in each.covered),
+        "coverage80": _coverage(hidden),
+        "coverage80_of": {
+            "small": _coverage([each for each in single if each.level in FAINT]),
+            "large": _coverage([each for each in single if each.level not in FAINT]),
+            "several": _coverage(several),
+        },
         "closed": {name: _mean(hidden, name, rng) for name in closed},
         "null_false_alarms": share(
             each.names_something or each.kind == "missing"
             for each in by_kind(marks, "none")
         ),
         "outside_named": share(
-            each.kind in ("effects", "missing") for each in by_kind(marks, "outside")
+            each.names_something or each.kind == "missing"
+            for each in by_kind(marks, "outside")
         ),
         "unexcited_right": share(
             each.kind in ("none", "not_identifiable")
@@ -58,6 +72,9 @@ def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
         ),
         "ece": _bootstrap(certain, calibration_error, rng),
         "reliability": reliability(certain),
+        "brier": _bootstrap(certain, brier, rng),
+        "brier_constant": _bootstrap(certain, brier_constant, rng),
+        "brier_skill": _bootstrap(certain, brier_skill, rng),
         "verdicts": verdicts(marks),
     }
 
@@ -95,6 +112,31 @@ def calibration_error(marks: Sequence[Mark]) -> float:
     return float(sum(gaps) / max(sum(row["n"] for row in rows), 1))
 
 
+def brier(marks: Sequence[Mark]) -> float:
+    """Mean squared difference of the stated probability and what is true, 1 or 0.
+
+    Source: Brier 1950, "Verification of forecasts expressed in terms of probability".
+    """
+    pairs = [(each.probability or 0.0, float(each.top1)) for each in marks]
+    return float(np.mean([(stated - right) ** 2 for stated, right in pairs]))
+
+
+def brier_constant(marks: Sequence[Mark]) -> float:
+    """Brier score of the best constant probability, the share of right names."""
+    right = float(np.mean([each.top1 for each in marks]))
+    return right * (1 - right)
+
+
+def brier_skill(marks: Sequence[Mark]) -> float:
+    """Brier score's improvement on the best constant, as a share of the constant's.
+
+    It is 1 for certain and right statements and 0 for the constant; 0 also where all
+    names, or none, are right, since there the constant is perfect.
+    """
+    constant = brier_constant(marks)
+    return 1 - brier(marks) / constant if constant > 0 else 0.0
+
+
 def reliability(marks: Sequence[Mark]) -> list[dict[str, Any]]:
     """Calibration by bins of stated probability; bins without test cases are left out.
 
@@ -123,6 +165,10 @@ def verdicts(marks: Sequence[Mark]) -> dict[str, dict[str, int]]:
         row = table.setdefault(each.case.kind, {})
         row[each.kind] = row.get(each.kind, 0) + 1
     return table
+
+
+def _coverage(marks: Sequence[Mark]) -> Figure:
+    return share(inside for each in marks for inside in each.covered)
 
 
 def _by_level(

@@ -95,6 +95,19 @@ docs/concealed.md.
 """
 
 
+PAIRED = """
+Case by case against each other method: in how many cases only one of both answers well,
+and the p value of the exact McNemar test that both are alike.
+"""
+TITLES_OF_PAIRS = {
+    "right": "right as a whole, all cases",
+    "top1": "right effect first, singles",
+    "null": "names nothing where nothing is missing",
+    "outside": "names nothing outside the library",
+}
+"""Words for what `scoring.paired` compares."""
+
+
 @dataclass(frozen=True)
 class Goal:
     """A figure of the score, its keys in score.json, and the range that is wanted."""
@@ -151,8 +164,15 @@ GOALS = (
     Goal("effects considered, mean number", ("set_size",)),
     Goal("right place where the effect is right", ("place",), low=0.95),
     Goal("pairs and triples, F1", ("pairs_f1",), low=0.75),
+    Goal("pairs and triples right, faintest at L1", ("compounds", "L1")),
+    Goal("pairs and triples right, faintest at L2", ("compounds", "L2")),
+    Goal("pairs and triples right, faintest at L3", ("compounds", "L3")),
+    Goal("pairs and triples right, faintest at L4", ("compounds", "L4")),
     Goal("parameter error, median", ("parameter_error_median",), high=0.10),
     Goal("80 % intervals that hold the truth", ("coverage80",), low=0.7, high=0.9),
+    Goal("... of small effects (L3, L4)", ("coverage80_of", "small")),
+    Goal("... of large effects (L1, L2)", ("coverage80_of", "large")),
+    Goal("... of several effects at once", ("coverage80_of", "several")),
     Goal("held-out error closed", ("closed", "closed"), low=0.80),
     Goal("closed by the control at a wrong place", ("closed", "wrong_place")),
     Goal("closed by the control with a wrong effect", ("closed", "wrong_effect")),
@@ -160,19 +180,19 @@ GOALS = (
     Goal("outside the library, but named", ("outside_named",), high=0.15),
     Goal("not excited, and said so", ("unexcited_right",)),
     Goal("calibration error (ECE)", ("ece",), high=0.10),
+    Goal("Brier score of the probabilities", ("brier",)),
+    Goal("Brier score of the best constant", ("brier_constant",)),
 )
 """The numbers on the page, each with the goal that the diagnosis should reach. The
 control corrections, which are wrong on purpose, should remove less than half of the
 error that the diagnosis removes."""
 
 
-def text_of(figure: Mapping[str, Any], with_interval: bool = True) -> str:
+def text_of(figure: Mapping[str, Any]) -> str:
     """A figure as text, such as "0.91 [0.85, 0.95], n 120"."""
     if figure["value"] is None:
         return "-"
     value = f"{figure['value']:.2f}"
-    if not with_interval:
-        return value
     return f"{value} [{figure['low']:.2f}, {figure['high']:.2f}], n {figure['n']}"
 
 
@@ -183,7 +203,7 @@ def score_rows(score: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
     rows = []
     for goal in GOALS:
         holds = {True: "yes", False: "no", None: ""}[goal.holds(score)]
-        others = [text_of(goal.of(each), False) for each in baselines.values()]
+        others = [text_of(goal.of(each)) for each in baselines.values()]
         row = [goal.title, goal.asked(score), holds, text_of(goal.of(score))]
         rows.append([*row, *others])
     return columns, rows
@@ -194,8 +214,11 @@ def score_report(score: Mapping[str, Any], figure: str) -> Report:
     body = markdown_table(*score_rows(score))
     body += ["", f"![Accuracy by level, and calibration]({figure})", "", NOTES.strip()]
     body += ["", "Verdicts by kind of case:", "", *_verdict_table(score["verdicts"])]
+    if score["paired"]:
+        body += ["", PAIRED.strip(), "", *_paired_table(score["paired"])]
     settings = {
         "cases": score["cases"],
+        "set": score["set"],
         "drawn from seed": score["seed"],
         "sha256 of the sealed truth": score["truth_sha256"],
         "diagnosed at commit": score.get("answered_by"),
@@ -230,6 +253,23 @@ def _unanswered(score: Mapping[str, Any]) -> list[str]:
         if missing
     ]
     return [*lines, ""] if lines else []
+
+
+def _paired_table(paired: Mapping[str, Mapping[str, Any]]) -> Sequence[str]:
+    rows = [
+        [
+            name,
+            TITLES_OF_PAIRS[what],
+            str(one["n"]),
+            str(one["only_ours"]),
+            str(one["only_theirs"]),
+            f"{one['p']:.2g}",
+        ]
+        for name, every in paired.items()
+        for what, one in every.items()
+    ]
+    heads = ["against", "good answer", "n", "only diagnosis", "only the other", "p"]
+    return markdown_table(heads, rows)
 
 
 def _verdict_table(verdicts: Mapping[str, Mapping[str, int]]) -> Sequence[str]:

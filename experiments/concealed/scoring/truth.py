@@ -2,14 +2,26 @@
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from diagnosis import Verdict
 from experiments.concealed.reading import BASELINE_ANSWERS, FORMAT, HASH, SEALED, TRUTH
+from experiments.concealed.scoring.answers import Answer, read_answer
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.json_data import from_plain, parse_object
 from worlds.hidden.effects import Hidden
+
+
+@dataclass(frozen=True)
+class SmallMismatch:
+    """A small error of the nominal model that is there, but is not asked for.
+
+    Name, place and parameters are in an answer's words, such as "payload_mass".
+    """
+
+    name: str
+    place: str
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -19,11 +31,18 @@ class TrueCase:
     Attributes:
       plant: name of the robot model, such as "so101".
       engine: "mujoco" or "bullet", which made the recordings.
-      kind: a key of `draw.CASE_KINDS`, such as "single".
+      kind: a key of `draw.CASE_KINDS` or `second.plan.KINDS_2`, such as "single".
       effects: the hidden effects with their parameters.
       size: how easy the effects are to see: 1 easiest, 0 hard, below 0 even harder;
         None if nothing is hidden.
       held: names of the joints that never move.
+      nats: information [nats per recording] on each effect, the others given; () in
+        set 1, where it is measured later.
+      nuisance: small mismatch.
+      drive: "servos", or "torques" where the controller is unknown.
+      rate_hz: ticks per second; None if not told.
+      gains: number of different servo gains in the recordings; None if not told.
+      reference: whether there are recordings of the healthy robot; None if not told.
       name: name of the case, such as "case_000"; not part of the file.
     """
 
@@ -33,16 +52,26 @@ class TrueCase:
     effects: tuple[Hidden, ...]
     size: float | None = None
     held: tuple[str, ...] = ()
+    nats: tuple[float, ...] = ()
+    nuisance: tuple[SmallMismatch, ...] = ()
+    drive: str = "servos"
+    rate_hz: float | None = None
+    gains: int | None = None
+    reference: bool | None = None
     name: str = ""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """The truth of a set of test cases drawn from a seed; its sealed file's hash."""
+    """The truth of a set of test cases drawn from a seed; its sealed file's hash.
+
+    `set` is the number of the set (docs/concealed.md).
+    """
 
     seed: int
     cases: Mapping[str, TrueCase]
     sha256: str = ""
+    set: int = 1
 
 
 def read_truth(folder: Path) -> Truth:
@@ -69,8 +98,8 @@ def read_truth(folder: Path) -> Truth:
     return replace(truth, cases=cases, sha256=found)
 
 
-def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
-    """The verdicts in a folder, by the names of the test cases that have one."""
+def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Answer]:
+    """The answers in a folder, by the names of the test cases that have one."""
     if not folder.is_dir():
         raise RunFolderError(f"{folder} is missing: run groundwalk concealed run first")
     answers = {}
@@ -79,14 +108,14 @@ def read_answers(folder: Path, names: Sequence[str]) -> dict[str, Verdict]:
         if not path.is_file():
             continue
         try:
-            answers[name] = Verdict.from_json(path.read_text())
+            answers[name] = read_answer(path.read_text())
         except (BadValueError, UnicodeDecodeError) as error:
             raise RunFolderError(f"{path}: {error}") from None
     return answers
 
 
-def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Verdict]]:
-    """The verdicts of each baseline that answered, by baseline and test case."""
+def read_baselines(folder: Path, names: Sequence[str]) -> dict[str, dict[str, Answer]]:
+    """The answers of each baseline that has some, by baseline and test case."""
     parent = folder / BASELINE_ANSWERS
     found = sorted(path for path in parent.glob("*") if path.is_dir())
     return {path.name: read_answers(path, names) for path in found}

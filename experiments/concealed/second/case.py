@@ -26,9 +26,9 @@ from worlds.recordings.recording import Recording
 
 REFERENCE_MOTIONS = (0, 2)
 """Indices of the motions that are recorded of the healthy robot, too."""
-TRIAL_STEP_S, STIFF_STEP_S = 0.002, 0.001
+TRIAL_STEP_S, STIFF_STEP_S = 0.002, 0.0005
 """Physics steps [s] in the search for an effect's size: coarse, and therefore fast; the
-second one for springs."""
+second one for springs and gear teeth."""
 TRIAL_HZ = 125.0
 """Highest tick rate [Hz] in the search for an effect's size; more tells no more."""
 _ATTEMPTS = 40

@@ -25,6 +25,8 @@ STEP_S, FINE_STEP_S = 0.00025, 0.000125
 """Physics steps [s]; the finer one for high rates, whose short ticks jitter, too."""
 JITTER_S, JITTER_SHARE = (1e-4, 1e-3), 0.1
 """Range of a time stamp's largest error [s], and its limit as a share of a tick."""
+LEAST_STEPS = 0.75
+"""Least of that error in physics steps, so that ticks move by whole ones."""
 _SMOOTH = ("multisine", "chirp", "multisine", "ramps")
 """Motions of a robot with an unknown controller: arms that report torques plan smooth
 paths."""
@@ -76,7 +78,9 @@ class SecondMotion:
         lengths = SHORT_S if plan.rate_hz >= _MANY_HZ else DURATION_S
         duration_s = float(rng.uniform(*lengths))
         rate_hz = float(plan.rate_hz * every)
+        step_s = FINE_STEP_S if plan.rate_hz >= _MANY_HZ else STEP_S
         most_s = min(JITTER_S[1], JITTER_SHARE / plan.rate_hz)
+        least_s = min(max(JITTER_S[0], LEAST_STEPS * step_s), most_s)
         seeds = [int(seed) for seed in rng.integers(2**32, size=2 * len(names))]
         given = plant.with_gains(float(rng.uniform(0.8, 1.25)))
         motion = CaseMotion(
@@ -88,7 +92,7 @@ class SecondMotion:
             centre_rad=low + middle * (high - low),
             rate_hz=rate_hz,
             spans_s=tuple((float(b), duration_s) for b in rng.uniform(0.3, 1.2, 4)),
-            jitter_s=_log_uniform(min(JITTER_S[0], most_s), most_s, rng),
+            jitter_s=_log_uniform(least_s, most_s, rng),
             seeds=tuple(seeds[: len(names)]),
         )
         # the controller's own ticks may not jitter more than they are apart
@@ -100,7 +104,7 @@ class SecondMotion:
             _controller(given, rng) if torques else (),
             _sensors(rng),
             every,
-            FINE_STEP_S if plan.rate_hz >= _MANY_HZ else STEP_S,
+            step_s,
         )
 
 

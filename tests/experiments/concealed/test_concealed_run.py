@@ -10,8 +10,9 @@ from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from experiments.concealed import run as concealed_run
 from experiments.concealed.run import ConcealedRun, answer_all, main
+from experiments.concealed.scoring.answers import read_answer
 from experiments.concealed.scoring.truth import read_baselines
-from groundwalk.errors import BadValueError, RunFolderError
+from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 
 ANSWERS = "answers"
 
@@ -113,6 +114,21 @@ def test_other_code_that_goes_on_is_noted_too(folder, in_this_process, monkeypat
     told = json.loads(path.read_text())
     assert told["commit"] == "earlier"
     assert len(told["resumed"]) == 1
+
+
+@pytest.mark.parametrize("by", ["diagnosis", "bic"])
+def test_recordings_that_are_refused_are_not_an_open_answer(
+    folder, in_this_process, monkeypatch, by
+):
+    def refuse(case):
+        raise BadRecordingError("the clock runs backwards")
+
+    monkeypatch.setattr(concealed_run, "read_case", refuse)
+    main(ConcealedRun(folder, by=by, threads=1))
+    kind = "answers" if by == "diagnosis" else f"baselines/{by}"
+    answer = read_answer((folder / kind / "case_000.json").read_text())
+    assert answer.kind == "refused"
+    assert answer.limits == ("the clock runs backwards",)
 
 
 def test_a_folder_without_cases_is_refused(tmp_path):

@@ -7,6 +7,7 @@ import pytest
 from made_up_scores import DRY, KNEE, NOTHING, RIGHT, case, found, names
 
 from experiments.concealed.score import ConcealedScore, main
+from experiments.concealed.scoring.answers import Named
 from experiments.concealed.scoring.oracle import Oracle, answer_key
 from experiments.concealed.scoring.truth import read_truth
 from groundwalk.errors import BadValueError, RunFolderError
@@ -121,8 +122,50 @@ def test_folders_without_truth_hash_or_answers_are_refused(tmp_path):
 def test_an_answer_that_cannot_be_read_is_named(tmp_path):
     write_set(tmp_path, CASES, {"answers": {}})
     (tmp_path / "answers" / "case_000.json").write_text("{")
-    with pytest.raises(RunFolderError, match=r"case_000\.json: verdict is not JSON"):
+    with pytest.raises(RunFolderError, match=r"case_000\.json: answer is not JSON"):
         main(ConcealedScore(tmp_path))
+
+
+def test_other_tools_are_scored_beside_the_diagnosis(tmp_path, capsys):
+    """An answer with nothing but what is asked for (docs/concealed_answers.md)."""
+    theirs = names(found("backlash", KNEE))
+    write_set(tmp_path / "set", CASES, {"answers": {"case_000": names(RIGHT)}})
+    other = tmp_path / "their_tool"
+    other.mkdir()
+    plain = {
+        "format": 1,
+        "kind": "effects",
+        "effects": [{"name": "backlash", "place": KNEE, "note": "ours"}],
+        "version": "1.0",
+    }
+    (other / "case_000.json").write_text(json.dumps(plain))
+    (other / "case_001.json").write_text('{"format": 1, "kind": "none"}')
+    (other / "case_002.json").write_text('{"format": 1, "kind": "unknown"}')
+    sides = {"diagnosis": (names(RIGHT), 1.0), "their_tool": (theirs, 5.0)}
+    keep_oracle(tmp_path / "set", "case_000", **sides)
+    path = tmp_path / "set" / "oracle" / "case_000.json"
+    stored = json.loads(path.read_text())
+    stored["answered"]["their_tool"][0] = answer_key([Named("backlash", KNEE)])
+    path.write_text(json.dumps(stored))
+    main(ConcealedScore(tmp_path / "set", answers=(other,), threads=1))
+    score = json.loads((tmp_path / "set" / "score.json").read_text())
+    them = score["baselines"]["their_tool"]
+    assert them["missing"] == []
+    assert them["right"]["value"] == pytest.approx(2 / 3)
+    assert score["right"]["value"] == pytest.approx(1 / 3)
+    paired = score["paired"]["their_tool"]["right"]
+    assert (paired["n"], paired["only_ours"], paired["only_theirs"]) == (3, 1, 2)
+    assert paired["p"] == 1.0
+    page = (tmp_path / "set" / "score.md").read_text()
+    assert "| their_tool | right as a whole, all cases | 3 | 1 | 2 | 1 |" in page
+    with pytest.raises(RunFolderError, match="nowhere"):
+        main(ConcealedScore(tmp_path / "set", answers=(tmp_path / "nowhere",)))
+
+
+@pytest.mark.parametrize("folders", [("a/x", "b/x"), ("diagnosis",)])
+def test_answers_of_one_name_are_refused(tmp_path, folders):
+    with pytest.raises(BadValueError, match="must differ"):
+        ConcealedScore(tmp_path, answers=tuple(tmp_path / one for one in folders))
 
 
 def test_fewer_threads_than_none_are_refused(tmp_path):

@@ -18,11 +18,13 @@ from made_up_scores import (
 )
 
 from diagnosis.verdict import Estimate, Fit, Found, PlacedEffect, Verdict
+from experiments.concealed.scoring.answers import Answer
 from experiments.concealed.scoring.oracle import Oracle
 from experiments.reports.statistics import wilson
 from worlds.hidden.effects import Hidden
 
 COGGING = Hidden("cogging", KNEE, {"torque": 0.1, "per_turn": 12.0, "phase": 0.0})
+REFUSED = Answer("refused", limits=("too short",))
 DRAG = Hidden("drag", "x", {"coefficient": 1.0})
 
 # Names
@@ -118,9 +120,15 @@ def test_f1_of_pairs_wants_name_and_place():
         ("pair", names(found("viscous_friction", HIP), RIGHT), True),
         ("pair", names(RIGHT), False),  # one is missed
         ("none", NOTHING, True),
-        ("none", UNKNOWN, True),
+        ("none", UNKNOWN, False),
+        ("none", UNSURE, False),
+        ("none", REFUSED, False),
         ("none", names(RIGHT), False),
         ("outside", UNKNOWN, True),
+        ("outside", NOTHING, True),  # set 1 does not say how clearly it shows
+        ("outside", UNSURE, False),
+        ("outside", REFUSED, False),
+        ("unexcited", REFUSED, False),
         ("outside", names(found("backlash", KNEE)), False),
         ("unexcited", UNSURE, True),
         ("unexcited", NOTHING, True),
@@ -252,8 +260,9 @@ def test_false_alarms_and_names_for_what_has_none():
         ("unexcited", (DRY,), NOTHING, None),
         ("unexcited", (DRY,), names(RIGHT), None),
     )
+    # what is listed beside "unknown" is not named
     assert (score["null_false_alarms"]["value"], score["null_false_alarms"]["n"]) == (
-        0.5,
+        0.25,
         4,
     )
     assert score["outside_named"]["value"] == pytest.approx(1 / 3)

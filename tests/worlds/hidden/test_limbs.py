@@ -52,6 +52,12 @@ def test_a_servo_holds_its_joint_at_its_own_frequency_and_does_not_sag(plants):
         assert (np.abs(data.qfrc_bias) < 0.8 * plant.max_torque_nm).all(), name
 
 
+def test_gear_teeth_are_far_stiffer_than_the_servo(plants):
+    for plant in plants.values():
+        for joint, kp in enumerate(plant.kp_nm_rad):
+            assert plant.rigid_nm_rad(joint) >= max(3000.0, 150 * kp)
+
+
 def test_bodies_can_be_heavier_and_lighter(plants):
     leg = plants["a1_leg"]
     own = leg.make_spec().compile()

@@ -12,10 +12,6 @@ from worlds.hidden.effects.kind import (
 )
 from worlds.hidden.setting import Setting
 
-RIGID_NM_RAD = 3000.0
-"""Stiffness [N m/rad] of surfaces that stick and of gear teeth that touch: under a
-torque of 3 N m they yield by 0.001 rad, less than an encoder's resolution."""
-
 
 @dataclass
 class DryFriction:
@@ -40,7 +36,7 @@ class DryFriction:
     @classmethod
     def of(cls, contact: StiffContact, **torques: float) -> "DryFriction":
         """Friction of given torques [N m]; it sticks as stiffly as the step allows."""
-        stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
+        stiffness = contact.stiffness_nm_rad(contact.rigid_nm_rad)
         return cls(stiffness, contact.damping_nm_s_rad(stiffness), **torques)
 
     def torque(

@@ -2,7 +2,6 @@
 
 import math
 
-from worlds.hidden.effects.dry_friction import RIGID_NM_RAD
 from worlds.hidden.effects.kind import (
     HiddenKind,
     JointTorque,
@@ -14,9 +13,10 @@ from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Transmission
 from worlds.hidden.setting import Setting
 
-_STOP_NM_RAD = 500.0
-"""Stiffness of an end stop [N m/rad]: hard rubber at a radius of some centimetres. A
-servo's torque of a few N m compresses it by less than 0.01 rad."""
+_STOP_SHARE = 1 / 6
+"""Stiffness of an end stop as a share of that of gear teeth: 500 N m/rad with servos of
+a few N m, which compress it by less than 0.01 rad, as hard rubber at a radius of some
+centimetres."""
 
 
 class ViscousFriction(HiddenKind):
@@ -89,7 +89,7 @@ class EndStop(HiddenKind):
     def torque(self, values: Values, contact: StiffContact) -> JointTorque:
         """Law of the stop's torque: 0 before it; beyond, a spring and damper's push."""
         stop, side = values["angle"], values["side"]
-        stiffness = contact.stiffness_nm_rad(_STOP_NM_RAD)
+        stiffness = contact.stiffness_nm_rad(_STOP_SHARE * contact.rigid_nm_rad)
         damping = contact.damping_nm_s_rad(stiffness)
 
         def push(time_s: float, angle: float, speed: float, servo: float) -> float:
@@ -173,13 +173,14 @@ class Backlash(HiddenKind):
 
     name = "backlash"
     rank = 5
+    stiff = True
     quantities = (Quantity("gap", "rad", 0.0, 0.5),)
     sizes = (0.06, 0.003)
     apart = ("joint_elasticity",)  # a joint can have one of the two
 
     def transmission(self, values: Values, contact: StiffContact) -> Transmission:
         """A gear with play; its teeth are as stiff as the time step allows."""
-        stiffness = contact.stiffness_nm_rad(RIGID_NM_RAD)
+        stiffness = contact.stiffness_nm_rad(contact.rigid_nm_rad)
         return Transmission(stiffness, 0.0, values["gap"], contact.step_s)
 
 

@@ -11,7 +11,7 @@ from groundwalk.arrays import FloatArray
 from groundwalk.gravity import GRAVITY_M_S2
 from robots.description import Description
 from terrain import Heightfield, Lumps
-from worlds.hidden.plant import HiddenPlant
+from worlds.hidden.plant import RIGID_NM_RAD, HiddenPlant
 from worlds.hidden.servos import Servos, Transmission
 from worlds.hidden.setting import Scales, Setting, Spot
 from worlds.soft_ground import FootSpring
@@ -114,11 +114,13 @@ class Quantity:
 class StiffContact:
     """Limits the stiffness of a contact at a joint to what the time step can resolve.
 
-    The inertia is that seen by a torque at the joint, with all other joints free.
+    The inertia is that seen by a torque at the joint, with all other joints free;
+    surfaces that stick and gear teeth that touch have the stiffness `rigid_nm_rad`.
     """
 
     inertia_kg_m2: float
     step_s: float
+    rigid_nm_rad: float = RIGID_NM_RAD
 
     def stiffness_nm_rad(self, wanted_nm_rad: float) -> float:
         """The wanted stiffness, or the largest that the time step can resolve."""

@@ -200,7 +200,7 @@ def test_noise_and_clock_do_not_depend_on_what_is_hidden():
 @pytest.mark.parametrize("drive", ["servos", "torques"])
 def test_true_ticks_jitter_about_even_ones_at_every_rate(rate_hz, drive):
     plan = replace(PLAN, rate_hz=rate_hz, drive=drive)
-    for seed in range(3):
+    for seed in range(12):
         drawn = SecondMotion.drawn(plan, rng(seed))
         clock = drawn.motion.clock(0, drawn.step_s)
         rows = (np.arange(len(clock.ticks)) - clock.first)[clock.first :]
