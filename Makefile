@@ -155,7 +155,7 @@ results-concealed: $(READY)
 	$(if $(wildcard $(CONCEALED)/cases),,$(VENV)/bin/groundwalk concealed make $(CONCEALED) \
 		--cases 200 --seed $(SEALED))
 	$(VENV)/bin/groundwalk concealed run $(CONCEALED)
-	for baseline in sparse bic sysid; do \
+	for baseline in sparse bic ebic sysid; do \
 		$(VENV)/bin/groundwalk concealed run $(CONCEALED) --by $$baseline || exit 1; \
 	done
 	$(VENV)/bin/groundwalk concealed score $(CONCEALED)

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
+from diagnosis.baselines.replays import exact_replays
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen, signatures
 from diagnosis.traces.trace import Trace
@@ -24,24 +25,19 @@ CONFUSABLE = 10.0
 too; larger ones are "very strong" evidence (Kass and Raftery 1995)."""
 
 
-def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
+def answer(
+    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+) -> Verdict:
     """Name the effect with the least BIC = 2 energy + p ln n, or no effect.
 
     Here energy is half the sum of squared residuals in units of noise, p the number of
     parameters and n the number of samples. Source: Schwarz 1978, "Estimating the
-    dimension of a model".
+    dimension of a model". `reference` are recordings of the healthy robot: what they
+    show is taken as given.
     """
     begun_s = time.monotonic()
-    predictor = Predictor(plant, traces)
-    predictor.calibrate()
-    residual = predictor.residuals([()])[0]
-    found = signatures(predictor, (), Usage.of(plant, traces))
-    guesses = Screen(predictor, found).singles(residual)[:CANDIDATES]
-    fits = fit_all(predictor, [guess.model for guess in guesses], followed=True)
-    samples = int(predictor.scored.sum())
-    criteria = np.array(
-        [float(residual @ residual), *(criterion(fit, samples) for fit in fits)]
-    )
+    predictor = exact_replays(plant, traces, reference, explained)
+    fits, criteria = singles(predictor)
     weights = np.exp(-0.5 * (criteria - criteria.min()))
     weights /= weights.sum()
     best = int(np.argmin(criteria)) - 1
@@ -57,6 +53,24 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
     placed, spans = fit.model[0], intervals(fit)
     named = found_effect(plant, placed, spans, weights[best + 1], close)
     return verdict_of(traces, begun_s, (named,))
+
+
+def explained(predictor: Predictor) -> Model:
+    """The single effect, with values, that BIC prefers to none; () if there is none."""
+    fits, criteria = singles(predictor)
+    best = int(np.argmin(criteria)) - 1
+    return () if best < 0 else fits[best].model
+
+
+def singles(predictor: Predictor) -> tuple[list[FittedModel], FloatArray]:
+    """Fits of the most promising effects, and BIC of no effect and of each of them."""
+    residual = predictor.residuals([()])[0]
+    found = signatures(predictor, (), Usage.of(predictor.plant, predictor.traces))
+    guesses = Screen(predictor, found).singles(residual)[:CANDIDATES]
+    fits = fit_all(predictor, [guess.model for guess in guesses], followed=True)
+    samples = int(predictor.scored.sum())
+    values = [criterion(fit, samples) for fit in fits]
+    return fits, np.array([float(residual @ residual), *values])
 
 
 def criterion(fit: FittedModel, samples: int) -> float:

@@ -212,10 +212,14 @@ slightly too small; without it they diverge, since the equation of motion itself
 sum of columns."""
 
 
-def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
+def answer(
+    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+) -> Verdict:
     """Name the effects that sequential thresholding leaves in a regression, or none.
 
-    Contact forces of a floating base are not known, so there is no answer for one.
+    Contact forces of a floating base are not known, so there is no answer for one. What
+    the same regression explains of the healthy robot's recordings (`reference`) is
+    taken as given.
 
     Source: Brunton, Proctor and Kutz 2016, "Discovering governing equations from data
     by sparse identification of nonlinear dynamical systems".
@@ -226,9 +230,11 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         return verdict_of(traces, begun_s, limits=(limit,))
     torques = Torques.of(plant, traces)
     columns = torque_columns(plant, traces, torques)
-    kept, size, error = sequential_threshold(
-        np.stack([column.values for column in columns], axis=1), torques.missing
+    table = np.stack([column.values for column in columns], axis=1)
+    given = (
+        torques.missing if not reference else _changed(plant, reference, torques, table)
     )
+    kept, size, error = sequential_threshold(table, given)
     ranked = _placed(plant, columns, kept, size, error)
     total = sum(part for _, _, part in ranked)
     effects = tuple(
@@ -236,6 +242,20 @@ def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
         for placed, spans, part in ranked[:MOST_EFFECTS]
     )
     return verdict_of(traces, begun_s, effects)
+
+
+def _changed(
+    plant: Plant, reference: Sequence[Trace], torques: Torques, table: FloatArray
+) -> FloatArray:
+    """(N,) missing torque less what a regression on the healthy robot explains.
+
+    `table` (N, k) has the columns of the recordings that are to be explained.
+    """
+    before = Torques.of(plant, reference)
+    columns = torque_columns(plant, reference, before)
+    healthy = np.stack([column.values for column in columns], axis=1)
+    kept, size, _ = sequential_threshold(healthy, before.missing)
+    return np.asarray(torques.missing - table[:, kept] @ size)
 
 
 def sequential_threshold(

@@ -62,18 +62,27 @@ _WORST = 1e3
 those of simulations that diverge."""
 
 
-def answer(plant: Plant, traces: Sequence[Trace]) -> Verdict:
+def answer(
+    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+) -> Verdict:
     """Fit all parameters and name the one that changed most, or no effect.
 
     Only the first seconds of recordings are fitted. Parameters do not count if their
-    95 % interval contains the nominal value.
+    95 % interval contains the nominal value, or that which the same fit finds in
+    recordings of the healthy robot (`reference`). Without position commands there is no
+    answer.
 
     Raises:
       GroundwalkError: mujoco.sysid is not installed.
     """
     begun_s = time.monotonic()
+    if any(trace.unheld for trace in traces):
+        return verdict_of(traces, begun_s, limits=("it needs position commands",))
     free = free_parameters(plant, traces)
     change, half = fitted(plant, _beginnings(plant, traces), free)
+    if reference:
+        before, spread = fitted(plant, _beginnings(plant, reference), free)
+        change, half = change - before, np.hypot(half, spread)
     moved = (np.abs(change) >= LEAST_CHANGE) & (np.abs(change) > half)
     size = np.where(moved, np.abs(change), 0.0)
     if not moved.any():

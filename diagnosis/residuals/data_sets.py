@@ -71,7 +71,7 @@ class DataSets:
         parts = affordable(plant, split(traces))
         every = [*parts.fit, *parts.select, *parts.test]
         options = None, threads, noise, on_replay
-        whole = _exact(Predictor(plant, every, channels, *options))
+        whole = exact_steps(Predictor(plant, every, channels, *options))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         fit, select = whole.part(0, first), whole.part(first, last)
         learned, test = whole.part(0, last), whole.part(last, len(every))
@@ -81,7 +81,7 @@ class DataSets:
 
     def calibrated(self, model: Model) -> tuple[Predictor, Predictor]:
         """Predictors of `learned` and of `test` data, calibrated at another model."""
-        whole = _exact(self._whole, model) if model else self._whole
+        whole = exact_steps(self._whole, model) if model else self._whole
         last = len(self.learned.traces)
         return whole.part(0, last), whole.part(last, len(whole.traces))
 
@@ -91,7 +91,7 @@ class DataSets:
         return Recordings(*(tuple(trace.name for trace in use) for use in uses))
 
 
-def _exact(whole: Predictor, model: Model = ()) -> Predictor:
+def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
     """The predictor, calibrated at a model, with the longest accurate time step."""
     for step_s in STEPS_S[whole.plant.base]:
         if step_s < whole.step_s:

@@ -59,6 +59,7 @@ def learn_reference(
     rules: Rules | None = None,
     threads: int = 1,
     hooks: Hooks | None = None,
+    known: Model | None = None,
 ) -> ReferenceNoise:
     """Learn the difference between a robot model and the healthy robot.
 
@@ -67,7 +68,8 @@ def learn_reference(
     contact, which no effect describes; there all of the difference counts as noise.
 
     `traces` are recordings of the healthy robot, `channels` are those of the recordings
-    to be diagnosed, with their noise.
+    to be diagnosed, with their noise. `known` effects, with values, explain the
+    difference without a search; None to search.
 
     Raises:
       BadRecordingError: the recordings are unusable or too short to learn from.
@@ -78,7 +80,9 @@ def learn_reference(
     hooks = (hooks or Hooks()).within("reference")
     traces = shortened(traces, MOST_S)
     sims = _Simulations(plant, channels, threads, hooks)
-    model = _explained(sims, traces, rules) if plant.base == "fixed" else ()
+    model = known or ()
+    if known is None and plant.base == "fixed":
+        model = _explained(sims, traces, rules)
     hooks.stage("noise", REPLAYS)
     return _learned(sims, traces, model)
 

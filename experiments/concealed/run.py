@@ -11,6 +11,7 @@ import tyro
 
 from diagnosis import Verdict, diagnose
 from diagnosis.baselines import BASELINES
+from diagnosis.residuals.data_sets import affordable
 from diagnosis.traces.split import split
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, BASELINE_ANSWERS, CASES, read_case
@@ -40,7 +41,7 @@ class ConcealedRun:
     if_interrupted: ClassVar[str] = REPEATABLE
 
     folder: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="DIR")]
-    by: Literal["diagnosis", "sysid", "bic", "sparse"] = "diagnosis"
+    by: Literal["diagnosis", "sysid", "bic", "ebic", "sparse"] = "diagnosis"
     seed: int = 1
     threads: int = 0
 
@@ -133,14 +134,15 @@ def diagnosed(case: Path, seed: int) -> Verdict | Answer:
 
 @one_blas_thread
 def by_baseline(name: str, case: Path, seed: int) -> Verdict | Answer:
-    """A baseline's verdict, from all recordings of a test case but the held-out ones.
+    """A baseline's verdict, from what a diagnosis learns from, and the reference.
 
+    That is all of a test case's recordings but the held-out ones, if they are not long.
     `seed` is not used: baselines draw no random numbers.
     """
     try:
-        plant, traces, _ = read_case(case)
-        parts = split(traces)
-        return BASELINES[name](plant, [*parts.fit, *parts.select])
+        plant, traces, reference = read_case(case)
+        parts = affordable(plant, split(traces))
+        return BASELINES[name](plant, [*parts.fit, *parts.select], reference)
     except BadRecordingError as error:
         return Answer("refused", limits=(str(error),))
 

@@ -1,14 +1,11 @@
-"""Each baseline names what is plain to see, and nothing where nothing is missing.
-
-The truth is MuJoCo at a quarter of a millisecond, driven by a servo written here.
-"""
+"""Each baseline names what is plain to see, and nothing where nothing is missing."""
 
 from dataclasses import replace
 from types import SimpleNamespace
 
-import mujoco
 import numpy as np
 import pytest
+from three_sines import KD, KP, LIMIT, XML, swing
 
 from diagnosis.baselines import BASELINES, bic, sparse, sysid
 from diagnosis.baselines.found import found_effect
@@ -17,66 +14,14 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
-from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Estimate, Verdict
 from groundwalk.errors import GroundwalkError
 from worlds.recordings.metadata import ServoGains
 
-XML = """<mujoco model="pendulum"><compiler angle="radian"/><worldbody>
-<body name="link"><joint name="swing" axis="0 1 0" range="-3 3"/>
-<inertial pos="0 0 -0.3" mass="0.5" diaginertia="0.002 0.002 0.001"/></body>
-</worldbody></mujoco>"""
-KP, KD, LIMIT = 8.0, 0.2, 4.0
-STEP_S, TICK_S, QUANTUM_RAD = 0.00025, 0.01, 0.0005
 NEEDS_SYSID = pytest.mark.skipif(
     not hasattr(__import__("mujoco.sysid").sysid, "optimize"),
     reason="mujoco[sysid] is not installed",
 )
-
-
-@pytest.fixture(scope="module")
-def plant(tmp_path_factory):
-    path = tmp_path_factory.mktemp("pendulum") / "pendulum.xml"
-    path.write_text(XML)
-    return load_plant(path, "fixed", servo=ServoGains(KP, KD, LIMIT))
-
-
-def swing(plant, seed, damping=0.0, dry=0.0, gain=1.0, seconds=4.0):
-    """A recording of the pendulum following three sines, with physics added."""
-    spec = mujoco.MjSpec.from_string(XML)
-    spec.option.timestep = STEP_S
-    spec.joint("swing").damping[0] = damping
-    spec.joint("swing").frictionloss = dry
-    model = spec.compile()
-    model.dof_solimp[:] = (0.999, 0.9999, 0.001, 0.5, 2.0)
-    model.dof_solref[:] = (2 * STEP_S, 1.0)
-    data, rng = mujoco.MjData(model), np.random.default_rng(seed)
-    phase, ticks = rng.uniform(0, 2 * np.pi, 3), round(seconds / TICK_S) + 1
-    time_s = TICK_S * np.arange(ticks)
-    waves = np.sin(2 * np.pi * np.outer(time_s, (0.3, 0.8, 1.7)) + phase)
-    command = waves @ np.array([0.5, 0.3, 0.15])
-    data.qpos[0] = command[0]
-    position = np.zeros(ticks)
-    for row in range(ticks):
-        position[row] = data.qpos[0]
-        for _ in range(round(TICK_S / STEP_S)):
-            torque = gain * KP * (command[row] - data.qpos[0]) - KD * data.qvel[0]
-            data.qfrc_applied[0] = np.clip(torque, -LIMIT, LIMIT)
-            mujoco.mj_step(model, data)
-    position += rng.normal(0, 0.0003, ticks)
-    measured = np.round(position / QUANTUM_RAD) * QUANTUM_RAD
-    name = f"swing_{seed}"
-    return Trace(name, time_s, measured[:, None], plant.servo, None, command[:, None])
-
-
-@pytest.fixture(scope="module")
-def clean(plant):
-    return [swing(plant, 0), swing(plant, 1)]
-
-
-@pytest.fixture(scope="module")
-def dry(plant):
-    return [swing(plant, seed, dry=0.15) for seed in (0, 1)]
 
 
 def first(verdict):
@@ -181,6 +126,6 @@ def test_without_a_position_command_or_with_a_free_base_sparse_abstains(plant, d
 
 
 def test_answers_survive_being_written(plant, dry):
-    verdict = BASELINES["sparse"](plant, dry)
+    verdict = BASELINES["sparse"](plant, dry, [])
     assert Verdict.from_json(verdict.to_json()) == verdict
     assert verdict.seconds > 0

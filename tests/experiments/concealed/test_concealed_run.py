@@ -1,5 +1,6 @@
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -71,10 +72,13 @@ def test_a_failure_is_raised_and_loses_no_answer(folder):
 def test_a_baseline_answers_beside_the_diagnosis(folder, in_this_process, monkeypatch):
     """A baseline does not see the held-out recordings."""
     traces = [made_up_trace(name) for name in "abcdef"]
-    monkeypatch.setattr(concealed_run, "read_case", lambda case: (None, traces, []))
+    healthy, plant = [made_up_trace("healthy")], SimpleNamespace(base="fixed")
+    case = plant, traces, healthy
+    monkeypatch.setattr(concealed_run, "read_case", lambda folder: case)
     seen = []
 
-    def answer(plant, some):
+    def answer(plant, some, reference):
+        assert reference == healthy
         seen.append(sorted(trace.name for trace in some))
         return Verdict("none")
 
