@@ -157,6 +157,29 @@ class CommandLine:
         return np.asarray(mean + (1.0 - done) * self._now)
 
 
+class PathLine(CommandLine):
+    """Leads to each command on a straight path, as controllers that plan paths do.
+
+    The path begins when the command is sent and takes as long as the tick before.
+    """
+
+    def __init__(self, start_rad: FloatArray) -> None:
+        """Begin with (j,) targets in force."""
+        super().__init__(start_rad, 0.0)
+        self._from = self._to = start_rad
+        self._sent, self._steps = 0, 1
+
+    def send(self, step: int, command_rad: FloatArray) -> None:
+        """Lead to (j,) position targets from those of physics step number `step`."""
+        self._from, self._to = self.over(step), command_rad
+        self._steps, self._sent = max(step - self._sent, 1), step
+
+    def over(self, step: int) -> FloatArray:
+        """(j,) position targets [rad] in the middle of this physics step."""
+        done = min((step - self._sent + 0.5) / self._steps, 1.0)
+        return np.asarray(self._from + done * (self._to - self._from))
+
+
 class HiddenDrive:
     """Applies commands, joint torques and pushes to a robot; reads its encoders."""
 
@@ -167,13 +190,19 @@ class HiddenDrive:
         world: HiddenEngine,
         step_s: float,
         start_rad: FloatArray,
+        paths: bool = False,
     ) -> None:
-        """Begin with the robot at rest in the (j,) start pose of the engine `world`."""
+        """Begin with the robot at rest in the (j,) start pose of the engine `world`.
+
+        With `paths` the servos' targets move steadily from command to command, which
+        are not delayed; else each command holds until the next.
+        """
         inertia = least_inertia_kg_m2(plant, start_rad)
         around = surroundings(effects)
         self._world, self._step_s = world, step_s
         self._joints = HiddenJoints(plant, effects, step_s, inertia)
-        self._line = CommandLine(start_rad, around.command_delay_s / step_s)
+        held = CommandLine(start_rad, around.command_delay_s / step_s)
+        self._line = PathLine(start_rad) if paths else held
         pushes = [(effect.place, effect.kind.push(effect.values)) for effect in effects]
         self._pushes = [(body, push) for body, push in pushes if push is not None]
         self._late_steps = (around.encoder_delay_s + self._joints.late_s) / step_s

@@ -110,6 +110,7 @@ def run_hidden(
     feed: Feed,
     start_rad: FloatArray,
     seed: np.random.SeedSequence,
+    paths: bool = False,
 ) -> Run:
     """Simulate a robot with hidden physics that follows commands.
 
@@ -121,6 +122,7 @@ def run_hidden(
       feed: gives the command of each tick.
       start_rad: (j,) joint angles at the first tick, where the robot is at rest.
       seed: for the random bumps of uneven ground.
+      paths: whether targets move steadily from command to command, see `HiddenDrive`.
     """
     around = surroundings(effects)
     ground = around.ground(seed) if plant.floating else None
@@ -131,7 +133,7 @@ def run_hidden(
         height_m = float(start_height.heights_m(start_rad[None], [ground])[0])
     world.reset(start_rad, height_m)
     try:
-        drive = HiddenDrive(plant, effects, world, clock.step_s, start_rad)
+        drive = HiddenDrive(plant, effects, world, clock.step_s, start_rad, paths)
         run = _recorded(world, drive, clock, feed)
     finally:
         world.close()

@@ -171,7 +171,8 @@ class _Maker:
         start_rad, feed = motion.feed(number)
         every = (*self._drawn.controller, *mismatch.effects, *effects)
         engine, nobody = self._plan.engine, np.random.SeedSequence(0)  # no ground
-        return run_hidden(plant, every, engine, clock, feed, start_rad, nobody)
+        paths = self._plan.drive == "torques"  # torques without steps at each tick
+        return run_hidden(plant, every, engine, clock, feed, start_rad, nobody, paths)
 
     def made(self) -> MadeCase:
         """The case with its recordings, as noisy sensors make them, and its truth."""

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from worlds.hidden.drive import PathLine
 from worlds.hidden.effects import KINDS, Hidden
 from worlds.hidden.effects.flexible_links import across
 from worlds.hidden.effects.presliding import ELEMENTS, MaxwellSlip
@@ -253,6 +254,47 @@ def test_a_log_of_torques_tells_no_command_and_holds_the_motor_s_torque():
     torque = written.columns["torque.swing"][-1]
     assert torque == pytest.approx(1.1 * WEIGHT_NM * math.sin(angle), rel=1e-3)
     assert written.columns["time"][-1] == pytest.approx(499 / 99)
+
+
+def test_a_path_leads_to_each_command_within_a_tick():
+    line = PathLine(np.array([1.0]))
+    assert line.over(0) == 1.0
+    line.send(10, np.array([3.0]))  # ten steps after the beginning
+    assert line.over(10) == pytest.approx(1.0 + 2.0 * 0.05)
+    assert line.over(14) == pytest.approx(1.0 + 2.0 * 0.45)
+    line.send(20, np.array([3.0]))
+    assert line.over(29) == pytest.approx(3.0)
+    assert line.over(99) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("paths", [True, False])
+def test_on_paths_the_sampled_torque_is_what_the_motion_needs(paths):
+    """With a step at each tick the last torque before the next tells another tale."""
+    plant, hz = limb_plant("two_dof"), 250
+    time_s = np.arange(500) / hz
+    sines = np.stack([0.4 * np.sin(4 * time_s), 0.3 * np.sin(6 * time_s)], axis=1)
+    ticks = np.arange(500) * round(1 / hz / STEP_S)
+    clock, nobody = Clock(STEP_S, ticks, 0), np.random.SeedSequence(0)
+    feed = lambda row, sense: sines[row]  # noqa: E731
+    found = run_hidden(plant, [], "mujoco", clock, feed, sines[0], nobody, paths)
+    needed = inverse(plant, found.position_rad, time_s)
+    off = np.abs(needed - found.torque_nm)[100:-100].max()
+    usual = np.abs(needed).max()
+    assert off < 0.01 * usual if paths else off > 0.1 * usual
+
+
+def inverse(plant, angles, time_s):
+    """Torques (rows, j) that MuJoCo's inverse dynamics find for a motion."""
+    import mujoco
+
+    model = plant.make_spec().compile()
+    data, torques = mujoco.MjData(model), np.zeros_like(angles)
+    speed = np.gradient(angles, time_s, axis=0)
+    for row, change in enumerate(np.gradient(speed, time_s, axis=0)):
+        data.qpos[:], data.qvel[:], data.qacc[:] = angles[row], speed[row], change
+        mujoco.mj_inverse(model, data)
+        torques[row] = data.qfrc_inverse
+    return torques
 
 
 def test_some_ticks_of_a_run_are_each_nth_with_the_recording_s_first():
