@@ -14,6 +14,11 @@ from diagnosis.audit.result import Audit
 from diagnosis.audit.suspicions import contradicted_ranges
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, shared_channels
+from diagnosis.residuals.torque_evidence import (
+    torques_tell,
+    with_motions,
+    with_used_torques,
+)
 from diagnosis.traces.outliers import without_outliers
 from diagnosis.traces.pulses import pulses_of, without_pulses
 from diagnosis.traces.stalls import said_of_stalls, steady
@@ -30,10 +35,12 @@ class Material:
       traces: the longest part of each recording without a stall; torques of pulses
         are replayed, values that pulses falsified are missing.
       reference: recordings of the healthy robot, prepared in the same way.
-      channels: the channels that all recordings measured.
+      channels: the channels that all recordings measured, or torques where the motion
+        of `traces` and `reference` was smoothed to compare those that it needs.
       pulses: torques found in `traces` that no servo asked for.
       plant: the nominal robot model, without ranges that the recordings contradict.
-      limits: sentences about wrong samples and stalls of `traces`, for the report.
+      limits: sentences about wrong samples and stalls of `traces`, and about compared
+        torques, for the report.
     """
 
     plant: Plant
@@ -66,6 +73,13 @@ class Material:
         plant = plant.without_ranges(contradicted_ranges([*traces, *reference], plant))
         ready, pulses = _prepared(plant, traces, drive)
         before, _ = _prepared(plant, reference, drive)
+        held = any(not trace.unheld for trace in (*traces, *reference))
+        why = torques_tell(plant, (*ready, *before), held)
+        if why:
+            plant = with_used_torques(plant, (*ready, *before))
+            every = with_motions(plant, (*ready, *before))
+            ready, before = tuple(every[: len(ready)]), tuple(every[len(ready) :])
+            said = (*said, why)
         return cls(
             plant,
             audited,

@@ -1,7 +1,7 @@
 """Runs a diagnosis: from recordings to a verdict on the physics that a sim lacks.
 
 Recordings are audited and prepared (`material.py`); a search finds effects, pieces of
-physics that the sim lacks (`_searched`); they are fitted again and tested on held-out
+physics that the sim lacks (`learned.py`); they are fitted again and tested on held-out
 data (`_tested`), and become the verdict (`_verdict`).
 """
 
@@ -13,33 +13,30 @@ import numpy as np
 
 from diagnosis.audit.result import Audit
 from diagnosis.conclude.answer import (
+    MOST_LEFT,
     alternatives,
     believed_effects,
-    verdict_kind,
-    without_unsure,
 )
 from diagnosis.conclude.estimates import smallest_detectable
+from diagnosis.conclude.guards import established, objections
 from diagnosis.conclude.held_out_errors import (
     held_out_errors,
     larger_than_learned,
     model_refuted,
+    rms_above_floor,
 )
 from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
+from diagnosis.effects.library import effect
+from diagnosis.learned import Learned
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.data_sets import DataSets, expected_seconds
 from diagnosis.residuals.mismatch_map import mismatch_map, unexplained
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.search.accept import accepted
-from diagnosis.search.all_joints import all_joints
-from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.search.fitting import FittedModel
 from diagnosis.search.hooks import Hooks
-from diagnosis.search.judging import Judge
 from diagnosis.search.reference import (
-    learn_reference,
-    reference_checks,
     reference_limit,
 )
 from diagnosis.search.result import SearchResult
@@ -49,13 +46,9 @@ from diagnosis.traces.trace import DriveBy, Trace
 from diagnosis.verdict import Amount, Fit, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 
-MORE_FLOATING = 4
-"""Number of models that the search fits in addition if the base floats. Contacts make
-the linear estimates unreliable by which it chooses models to fit."""
-
-FIT_REPLAYS, TEST_REPLAYS = 150, 150
-"""Rough numbers of replays of the recordings in sim before the search and in the final
-test; they only scale the progress display."""
+TEST_REPLAYS = 150
+"""Rough number of replays of the recordings in sim in the final test; it only scales
+the progress display."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,8 +121,14 @@ def diagnose(
             material.plant, *recordings, material.channels, threads
         )
         hooks.progress.cost(seconds)
-    data, noise, search = _learned(material, rules, threads, hooks)
-    result, kind = _searched(search, material.audited)
+    learned = Learned.of(material, rules, threads, hooks)
+    material = learned.material
+    data, search, result, kind = (
+        learned.data,
+        learned.search,
+        learned.result,
+        learned.kind,
+    )
     hooks.stage("test", TEST_REPLAYS)
     tested = _tested(data, result, kind, seed)
     verdict = replace(
@@ -138,56 +137,14 @@ def diagnose(
         seconds=time.monotonic() - begun_s,
     )
     given: Model = ()
-    if noise:
-        given = noise.model
-        verdict = replace(verdict, limits=(*verdict.limits, *reference_limit(noise)))
+    if learned.noise:
+        given = learned.noise.model
+        more = reference_limit(learned.noise)
+        verdict = replace(verdict, limits=(*verdict.limits, *more))
     sims = tested.test, data.test
     return Diagnosis(
         verdict, tested.model, material.plant, *sims, material.audited, given
     )
-
-
-def _learned(
-    material: Material, rules: Rules | None, threads: int, hooks: Hooks
-) -> tuple[DataSets, ReferenceNoise | None, Search]:
-    """The data by use, the healthy robot's model errors, and a search ready to run."""
-    plant, reference, channels = material.plant, material.reference, material.channels
-    noise, healthy = None, list[Predictor]()
-    if reference:
-        noise = learn_reference(plant, reference, channels, rules, threads, hooks)
-    hooks.stage("fit", FIT_REPLAYS)
-    data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
-    if reference:
-        healthy = reference_checks(plant, reference, channels, threads, hooks)
-    judge = Judge(data.fit, data.select, _rules(plant, rules), healthy, hooks)
-    return data, noise, Search(judge)
-
-
-def _rules(plant: Plant, rules: Rules | None) -> Rules:
-    """Settings of a search, the default ones for None; a floating base fits more."""
-    rules = rules or Rules()
-    if plant.base == "fixed":
-        return rules
-    return replace(
-        rules,
-        single_effects=rules.single_effects + MORE_FLOATING,
-        further_effects=rules.further_effects + MORE_FLOATING,
-    )
-
-
-def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind]:
-    """Search for effects that the sim lacks, and decide the kind of the verdict.
-
-    Where it would be `unknown`, the search goes on with one effect at all joints.
-    """
-    judge, plant = search.judge, search.judge.fit.plant
-    result = without_unsure(accepted(judge, search.run()), judge.least_gain)
-    kind = verdict_kind(result, plant, audited)
-    # with a floating base, models with effects at all joints would take an hour
-    if plant.base == "fixed" and kind == "unknown":
-        result = all_joints(judge, result)
-        kind = verdict_kind(result, plant, audited)
-    return result, kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +153,8 @@ class _Tested:
 
     The effects, None if there are none, were refitted to all data but the held-out
     ones. `both` simulates these data, `test` the held-out ones, both less the
-    integration error at the effects; `fit` has the errors on held-out data.
+    integration error at the effects; `fit` has the errors on held-out data,
+    `objections` are sentences on why nothing, or less, is established.
     """
 
     result: SearchResult
@@ -205,6 +163,7 @@ class _Tested:
     both: Predictor
     test: Predictor
     fit: Fit
+    objections: tuple[str, ...] = ()
 
     @property
     def model(self) -> Model:
@@ -223,10 +182,16 @@ def _tested(
         result = replace(result, chosen=0)
     winner = result.winner
     both, test = data.calibrated(winner.model if winner else ())
-    refitted = fit_all(both, [winner.model])[0] if winner else None
+    both, refitted, said = established(both, winner.model if winner else ())
     model = refitted.model if refitted else ()
-    fit = held_out_errors((data.learned, data.test), both, test, result, model, seed)
-    return _Tested(result, kind, refitted, both, test, fit)
+    if not model:
+        both, test = data.calibrated(())
+    bare = [one.without_tolerances() for one in (data.learned, data.test, both, test)]
+    fit = held_out_errors((bare[0], bare[1]), bare[2], bare[3], result, model, seed)
+    if model:
+        timed = all(effect(placed.name).timed for placed in model)
+        said = (*said, *objections(fit, timed))
+    return _Tested(result, kind, refitted, both, test, fit, said)
 
 
 def _verdict(
@@ -239,28 +204,45 @@ def _verdict(
     left = tested.refitted.residual if tested.refitted else nominal
     unmodelled = data.test.residuals([()])[0]
     modelled = tested.test.residuals([tested.model])[0]
-    larger = larger_than_learned(data.learned, left, tested.fit)
+    before, after = ((data.learned, left), (data.test, modelled))
+    larger = larger_than_learned(before, after)
     refuted = model_refuted(unmodelled, modelled, judge.least_gain)
-    share = 1 - result.closed(result.winner) if result.winner else 1.0
+    share = _share_left(tested.fit) if tested.model else 1.0
     shape = both, left, share
-    if kind == "none" and larger:
+    above = rms_above_floor(data.test, unmodelled)
+    if kind == "none" and (larger or above**2 > 1 + MOST_LEFT):
         kind, shape = "unknown", (data.test, unmodelled, 1.0)
-    if kind == "effects" and refuted:
-        kind = "unknown"
+    nothing = tested.objections or (result.winner and not tested.model)
+    if kind == "effects" and (refuted or nothing):
+        kind = "unknown" if above**2 > 1 + MOST_LEFT else "none"
     smallest: Mapping[str, Amount] = {}
     if kind in ("none", "not_identifiable"):
         gain = judge.least_fitted
         smallest = smallest_detectable(judge.fit, search.signatures, gain)
     effects = believed_effects(both, result, tested.refitted)
+    if kind == "unknown":  # then none of them is established
+        effects = tuple(replace(one, probability=None) for one in effects)
     return Verdict(
         kind=kind,
         effects=effects if kind != "none" else (),
         smallest_detectable=smallest,
         unexplained=unexplained(*shape) if kind == "unknown" else None,
-        limits=(*larger, *refuted, *material.audited.limits, *material.limits),
+        limits=(
+            *larger,
+            *refuted,
+            *tested.objections,
+            *material.audited.limits,
+            *material.limits,
+        ),
         mismatch=mismatch_map(data.learned, nominal),
         pulses=material.pulses,
         fit=tested.fit,
         next_experiment=next_experiment(material.plant, result, material.traces),
         recordings=data.recordings(),
     )
+
+
+def _share_left(fit: Fit) -> float:
+    """Share of the squared error above the noise that the effects found leave."""
+    left, nominal = (error**2 - fit.floor**2 for error in (fit.corrected, fit.nominal))
+    return float(np.clip(left / nominal, 0.0, 1.0)) if nominal > 0 else 1.0

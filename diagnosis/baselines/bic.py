@@ -9,8 +9,9 @@ from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.baselines.replays import exact_replays
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.screening import Screen, signatures
+from diagnosis.search.screening import Screen
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict
@@ -84,6 +85,7 @@ def intervals(fit: FittedModel) -> list[tuple[float, float]]:
     variance = np.diag(np.linalg.pinv(information))
     x = fit.coordinates.of(fit.model)
     half: FloatArray = NORMAL_80 * np.sqrt(np.maximum(variance, 0.0))
-    ends = [fit.coordinates.model_at(x + sign * half) for sign in (-1.0, 1.0)]
+    inside = [np.clip(x + sign * half, *fit.coordinates.bounds()) for sign in (-1, 1)]
+    ends = [fit.coordinates.model_at(one) for one in inside]
     low, high = ([v for placed in model for v in placed.values] for model in ends)
     return list(zip(low, high, strict=True))

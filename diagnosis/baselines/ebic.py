@@ -14,8 +14,9 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.screening import Screen, signatures
+from diagnosis.search.screening import Screen
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict
@@ -74,7 +75,7 @@ def answer(
     for placed in fit.model:
         own, step = [next(spans) for _ in placed.values], steps[placed.key]
         named.append(found_effect(plant, placed, own, step.weight, step.close))
-    named.sort(key=lambda one: -one.probability)
+    named.sort(key=lambda one: -(one.probability or 0.0))
     return verdict_of(traces, begun_s, named)
 
 

@@ -1,21 +1,18 @@
 """Baseline: sparse regression of the joint torque that the nominal model lacks."""
 
-import copy
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 
-import mujoco
 import numpy as np
 
 from diagnosis.baselines.found import NORMAL_80, found_effect, verdict_of
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.parts import JointMotion, PlacedEffect
-from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant, inverse_dynamics
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.replay.inverse import model_with
+from diagnosis.residuals.replays import variants_of
 from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
@@ -178,22 +175,11 @@ def _changed_columns(
         values = tuple(size if i == number else 0.0 for i in range(len(parameters)))
         variants = variants_of(plant, [(PlacedEffect(kind.name, place, values),)])
         pose = motion.position_rad - variants.joints.offset_rad[0]
-        model = _model_of(plant, variants)
+        fields = {name: one[0] for name, one in variants.fields.items()}
+        model = model_with(plant, fields)
         moves = pose, motion.velocity_rad_s, motion.acceleration_rad_s2
         change = (inverse_dynamics(plant, model, *moves) - motion.torque_nm) / size
         yield Column(kind.name, place, number, torques.weighted(change))
-
-
-def _model_of(plant: Plant, variants: Variants) -> mujoco.MjModel:
-    """A compiled model of the robot with the changes of the first variant."""
-    if not variants.fields:
-        return plant.model
-    model = copy.copy(plant.model)
-    for field, values in variants.fields.items():
-        target = attrgetter(field)(model)
-        target[:] = values[0].reshape(target.shape)
-    mujoco.mj_setConst(model, mujoco.MjData(model))
-    return model
 
 
 THRESHOLD = 0.1

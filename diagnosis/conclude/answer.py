@@ -12,7 +12,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.result import SearchResult
-from diagnosis.verdict import Found, VerdictKind
+from diagnosis.verdict import Found, VerdictKind, When
 
 TIED_NATS = 10.0
 """Models that are less plausible than the best one by at most this [nats] may be the
@@ -89,38 +89,13 @@ def probability(found: SearchResult, placed: PlacedEffect) -> float:
     return float(MOST / (1 + np.exp(-odds)))
 
 
-LEAST_CLOSED = 0.95
+LEAST_CLOSED = 0.5
 """Share of the nominal sim's energy (half the sum of squared residuals) above the noise
 that a model must remove; with less, more is missing and the verdict is `unknown`."""
 
 MOST_LEFT = 0.5
 """If the error energy that remains exceeds that of the noise by at most this share of
 it, hardly more than noise remains, and the verdict is not `unknown`."""
-
-
-UNSURE_NATS = 15.0
-"""An effect is unsure if leaving it out lowers the log-likelihood by less than this."""
-WEAK = 4.0
-"""An unsure effect stays in the answer only if it improves the fit by this many times
-the gain that is asked of other effects."""
-
-
-def without_unsure(searched: SearchResult, least_gain: float) -> SearchResult:
-    """Remove the effect that was added last if it is neither certain nor a large gain.
-
-    Two simulators of the same physics always differ a little, and some effect always
-    explains a part of the difference. The only effect of a model stays. `least_gain`
-    [nats] is the gain that the search required of each effect.
-    """
-    winner = searched.winner
-    if winner is None or searched.chosen == 1:
-        return searched
-    least = min(gap(searched, placed) for placed in winner.model)
-    smaller = searched.best[searched.chosen - 1][0]
-    weak = smaller.selected - winner.selected < WEAK * least_gain
-    if least >= UNSURE_NATS or not weak or not smaller.keys < winner.keys:
-        return searched
-    return without_unsure(replace(searched, chosen=searched.chosen - 1), least_gain)
 
 
 def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
@@ -161,9 +136,15 @@ def believed_effects(
             parameters=own,
             probability=probability(searched, placed),
             confusable_with=alike(searched, both.plant, placed),
-            when=effect(placed.name).acted(placed, first_s, last_s),
+            when=_when(placed, first_s, last_s),
             native=effect(placed.name).native,
         )
         for placed, own in zip(refitted.model, values, strict=True)
     ]
-    return tuple(sorted(found, key=lambda one: -one.probability))
+    return tuple(sorted(found, key=lambda one: -(one.probability or 0.0)))
+
+
+def _when(placed: PlacedEffect, first_s: float, last_s: float) -> When:
+    """When an effect acted in recordings that last from `first_s` to `last_s`."""
+    when = effect(placed.name).acted(placed, first_s, last_s)
+    return replace(when, recording=placed.recording)

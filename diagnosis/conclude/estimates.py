@@ -7,10 +7,10 @@ import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.signatures import Signature
 from diagnosis.search.fitting import Coordinates, FittedModel
-from diagnosis.search.screening import Signature
 from diagnosis.verdict import Amount, Estimate
-from groundwalk.arrays import FloatArray, IntArray
+from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
 Z_80 = 1.2815515655446004
 """Half width of an 80 % interval of the normal distribution, in standard deviations."""
@@ -18,10 +18,6 @@ Z_80 = 1.2815515655446004
 PRIOR_SPREAD = 10.0
 """Standard deviation of the prior on values, in coordinates scaled to be of order one:
 values that the data do not determine get intervals about this wide."""
-
-SYSTEMATIC = 0.015
-"""Relative error of every value from differences between simulators: two simulators of
-the same physics disagree by this much, however long the recordings are."""
 
 FEWEST = 8
 """Fewest time blocks from which a correlation of the errors in neighbouring ones is
@@ -58,8 +54,9 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
 
     They are those of White's sandwich estimator of 1980 with blocks of time: no
     simulator is exact, so residuals are correlated and larger than the sensors' noise.
-    The systematic error of simulators does not show in the data; it is added as a fixed
-    share of each value. The `fit` has a Jacobian by finite differences.
+    What the model's tolerances allow is in the residuals' whitening. Recordings may
+    differ by more than that: see `spread_of_recordings`. The `fit` has a Jacobian by
+    finite differences.
     """
     jacobian, residual = fit.jacobian, fit.residual
     known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
@@ -67,13 +64,27 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
     influence = (jacobian * residual[:, None]) @ bread
     variance = block_variance(influence, predictor.block)
     white = np.diag(bread)
-    systematic = [
-        SYSTEMATIC if p.logarithmic else SYSTEMATIC * abs(c - _neutral(fit, i))
-        for i, (p, c) in enumerate(
-            zip(fit.coordinates.parameters, fit.coordinates.of(fit.model), strict=True)
-        )
-    ]
-    return np.asarray(np.sqrt(np.maximum(variance, white) + np.square(systematic)))
+    spread = spread_of_recordings(predictor, fit)
+    return np.asarray(np.sqrt(np.maximum(np.maximum(variance, white), spread**2)))
+
+
+def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) standard errors, in scaled coordinates, from leaving out each recording.
+
+    The values without one recording, or part of one, follow to first order from the
+    Jacobian (the jackknife: Tukey 1958). 0 if there is only one.
+    """
+    parts = np.unique(predictor.trace)
+    shifts = [_without(fit, predictor.trace != k) for k in parts]
+    apart = np.array(shifts) - np.mean(shifts, axis=0)
+    return np.asarray(np.sqrt((1 - 1 / len(parts)) * np.sum(apart**2, axis=0)))
+
+
+def _without(fit: FittedModel, kept: BoolArray) -> FloatArray:
+    """(p,) change of the fitted values, in scaled coordinates, by some of the data."""
+    jacobian, residual = fit.jacobian[kept], fit.residual[kept]
+    known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
+    return np.asarray(-np.linalg.solve(known, jacobian.T @ residual))
 
 
 def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:
@@ -102,12 +113,6 @@ def _variance(sums: FloatArray) -> float:
         return variance
     padded = np.append(sums, 0.0) if len(sums) % 2 else sums
     return _variance(padded.reshape(-1, 2).sum(axis=1))
-
-
-def _neutral(fit: FittedModel, index: int) -> float:
-    """Scaled coordinate at which a value changes nothing; 0 if that is infinite."""
-    neutral = fit.coordinates.scaled(index, fit.coordinates.parameters[index].neutral)
-    return neutral if np.isfinite(neutral) else 0.0
 
 
 def _values(fit: FittedModel, x: FloatArray) -> list[float]:

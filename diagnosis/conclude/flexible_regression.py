@@ -98,7 +98,8 @@ def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatAr
 def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArray]:
     """For each recording its (T, c + j + 1) simulated channels, commands and time.
 
-    Also (rows, c) errors of the nominal sim, in units of noise, and whether each
+    Where torques are compared, positions and velocities take the place of the first
+    two. Also (rows, c) errors of the nominal sim, in units of noise, and whether each
     counts.
     """
     c = len(predictor.channels.names)
@@ -108,11 +109,13 @@ def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArra
     blocks, first = [], 0
     for trace in predictor.traces:
         last = first + trace.ticks
-        command = trace.command_rad
-        if command is None:
-            command = nominal[first:last, : trace.position_rad.shape[1]]
+        sim, command = nominal[first:last], trace.command_rad
+        if trace.motion is not None:
+            sim, command = trace.motion.position_rad, trace.motion.velocity_rad_s
+        elif command is None:
+            command = sim[:, : trace.position_rad.shape[1]]
         time_s = (trace.time_s - trace.time_s[0])[:, None]
-        blocks.append(np.hstack([nominal[first:last], filled(command), time_s]))
+        blocks.append(np.hstack([sim, filled(command), time_s]))
         first = last
     return blocks, wrong, scored
 

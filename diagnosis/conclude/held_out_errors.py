@@ -56,12 +56,15 @@ def held_out_errors(
                 errors[key] = _error(test, control)
     errors["ceiling"] = flexible_regression_errors(*nominal, regression)
     channels = {}
-    names_noise = zip(test.channels.names, test.channels.noise, strict=True)
-    for i, (name, noise) in enumerate(names_noise):
-        own = {key: float(rms[i] * noise) for key, rms in errors.items()}
+    noise, floor = test.channels.noise, test.channels.floor
+    for i, name in enumerate(test.channels.names):
+        own = {key: float(rms[i] * noise[i]) for key, rms in errors.items()}
         unit = channel_unit(test.plant, name)
-        channels[name] = ChannelFit(unit=unit, floor=float(noise), **own)
-    every = {key: float(np.sqrt(np.mean(rms**2))) for key, rms in errors.items()}
+        channels[name] = ChannelFit(unit=unit, floor=float(floor[i]), **own)
+    every = {
+        key: float(np.sqrt(np.mean((rms * noise / floor) ** 2)))
+        for key, rms in errors.items()
+    }
     return Fit(floor=1.0, channels=channels, **every)
 
 
@@ -94,22 +97,29 @@ def model_refuted(
     )
 
 
+def rms_above_floor(predictor: Predictor, residual: FloatArray) -> float:
+    """Rms over channels of an (N,) residual, as a multiple of the noise floors."""
+    channels = predictor.channels
+    rms = channel_rms(predictor, residual) * channels.noise / channels.floor
+    return float(np.sqrt(np.mean(rms**2)))
+
+
 def larger_than_learned(
-    learned: Predictor, left: FloatArray, fit: Fit
+    learned: tuple[Predictor, FloatArray], test: tuple[Predictor, FloatArray]
 ) -> tuple[str, ...]:
     """A sentence for the limits if held-out errors are much larger than fitted ones.
 
-    `left` (N,) is the residual that the model leaves, in units of noise, on the data of
-    `learned`, to which it was fitted.
+    Each argument is a predictor and the residual (N,) that the model leaves there, in
+    units of noise: of the data that it was fitted to, and of those held out.
     """
-    before = max(float(np.sqrt(np.mean(channel_rms(learned, left) ** 2))), 1.0)
-    if fit.corrected < SURPRISE * before:
+    before, after = max(rms_above_floor(*learned), 1.0), rms_above_floor(*test)
+    if after < SURPRISE * before:
         return ()
-    errors = {name: one.corrected / one.floor for name, one in fit.channels.items()}
-    name = max(errors, key=errors.__getitem__)
+    rms = channel_rms(*test)
+    name = test[0].channels.names[int(np.argmax(rms))]
     return (
         f"The held-out recordings show more error than those that were fitted: "
-        f"{fit.corrected:.2g} instead of {before:.2g} times the noise, most of it in "
+        f"{after:.2g} instead of {before:.2g} times the noise, most of it in "
         f"{name}. Something is missing that hardly shows in the other recordings.",
     )
 

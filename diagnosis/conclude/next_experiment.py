@@ -8,7 +8,8 @@ import numpy as np
 from diagnosis.conclude.answer import TIED_NATS
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import Model, variants_of
+from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.replays import variants_of
 from diagnosis.search.result import SearchResult
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage

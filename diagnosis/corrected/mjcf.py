@@ -15,7 +15,8 @@ from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import STEP_S
 from diagnosis.replay.servos import BatchFriction, BatchServos
-from diagnosis.residuals.predictor import Model, variants_of
+from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.replays import variants_of
 
 CORRECTED_XML = "corrected.xml"
 _LINEAR = 1
@@ -72,7 +73,7 @@ def _comment(variants: Variants, native: Model, model: Model) -> str:
         f"Not in this file, MuJoCo lacks them: {', '.join(others)}." if others else "",
         f"Friction solver parameters (solreffriction, solimpfriction) are stiff at "
         f"{', '.join(rub)}: with softer ones the friction found creeps."
-        if rub
+        if rub and not plant.creeps
         else "",
         "Actuators are position servos with the recordings' gains, named as their "
         "joints. Joints that no recording has are held at zero, and bodies that do "

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 import mujoco
+import numpy as np
 
 from diagnosis.effects.effect import BodyEffect, NumberEffect
-from diagnosis.effects.parts import EffectWords, Parameter
+from diagnosis.effects.parts import EARLIEST_S, LONGEST_S, EffectWords, Parameter
 from diagnosis.effects.scales import mass_kg, weight_n
 from diagnosis.effects.variants import Push, Variants
 from diagnosis.plant.plant import Plant
@@ -15,10 +16,6 @@ from groundwalk.arrays import FloatArray
 _ABOUT_ITS_CENTRE = 1
 """MuJoCo's `body_simple` for a simple body that can rotate; 2 is for one that only
 slides."""
-
-_EARLIEST_S, _LONGEST_S = -2.0, 600.0
-"""Bounds of a push: earliest start, in the recording's time, and longest duration. A
-push may have begun before the recording."""
 
 
 class PayloadMass(NumberEffect, BodyEffect):
@@ -44,6 +41,10 @@ class PayloadMass(NumberEffect, BodyEffect):
         own = float(plant.model.body(place).mass[0])
         high = mass_kg(plant)
         return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
+
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """1 % of the body's own mass: what CAD says of a body without cables."""
+        return 0.01 * float(plant.model.body(place).mass[0])
 
 
 class ComOffset(NumberEffect, BodyEffect):
@@ -81,6 +82,12 @@ class ComOffset(NumberEffect, BodyEffect):
             for name in super().places(plant, traces)
             if plant.model.body(name).simple[0] != _ABOUT_ITS_CENTRE
         )
+
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """1 % of the centre's distance from the joint and of the radius of gyration."""
+        body = plant.model.body(place)
+        gyration_m = float(np.sqrt(body.inertia.max() / body.mass[0]))
+        return 0.01 * (gyration_m + float(np.linalg.norm(body.ipos)))
 
 
 class Drag(NumberEffect, BodyEffect):
@@ -142,8 +149,8 @@ class ExternalForce(BodyEffect):
         force = (Parameter(a, "N", -weight, weight, 0.0, 0.05 * weight) for a in "xyz")
         return (
             *force,
-            Parameter("start", "s", _EARLIEST_S, _LONGEST_S, 0.0, 0.2),
-            Parameter("duration", "s", 0.0, _LONGEST_S, 0.0, 0.2),
+            Parameter("start", "s", EARLIEST_S, LONGEST_S, 0.0, 0.2),
+            Parameter("duration", "s", 0.0, LONGEST_S, 0.0, 0.2),
         )
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:

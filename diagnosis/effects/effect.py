@@ -69,6 +69,9 @@ class Effect(ABC):
     """Whether the effect's last two values are start [s] and duration [s]. If so, it is
     tried at the times at which the recordings show a short error."""
 
+    lasting: ClassVar[bool] = True
+    """Whether a timed effect is also tried as acting all the time."""
+
     threshold: ClassVar[bool] = False
     """Whether the effect acts only beyond its first value, as a limit or a stop does.
     If so, its size cannot be extrapolated from a first try."""
@@ -140,6 +143,15 @@ class Effect(ABC):
         """
         self.apply(copies, row, place, values)
 
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """Standard deviation to which a model states this effect's first value.
+
+        In the value's unit, or its logarithm's for logarithmic parameters; for vectors
+        that of each component. What lies within it is no evidence of missing physics. 0
+        if the effect is no matter of degree, such as a push.
+        """
+        return 0.0
+
     def obstacle(self, recorded: Base, base: Base) -> str:
         """Why a sim with a `base` cannot have the effect; "" if it can."""
         return ""
@@ -209,8 +221,9 @@ class Effect(ABC):
         """
         if self.timed:
             start_s, duration_s = placed.values[-2:]
-            if start_s > first_s or start_s + duration_s < last_s:
-                return When("burst", start_s, start_s + duration_s)
+            end_s = start_s + duration_s
+            if first_s < start_s <= last_s or end_s < last_s:
+                return When("burst", start_s, max(min(end_s, last_s), start_s))
         return When()
 
     def torque_column(self, motion: JointMotion) -> FloatArray | None:

@@ -98,6 +98,10 @@ class GroundSlope(Effect):
             Parameter(name, "rad", -0.3, 0.3, 0.0, 0.03) for name in ("pitch", "roll")
         )
 
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """2 mrad: how level a base is usually mounted."""
+        return 2e-3
+
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Rotate a variant's ground, or its gravity if the base is fixed."""
         if not np.any(values):

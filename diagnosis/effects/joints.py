@@ -47,6 +47,10 @@ class Armature(NumberEffect, JointEffect):
         scale = inertia_kg_m2(plant, place)
         return (Parameter("inertia", "kg m^2", 0.0, 10 * scale, 0.0, 0.5 * scale),)
 
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """1 % of all inertia at the joint, rotor included, in the reference pose."""
+        return 0.01 * inertia_kg_m2(plant, place)
+
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) joint acceleration: the torque of an inertia of 1 kg m^2."""
         return motion.acceleration_rad_s2
@@ -71,6 +75,10 @@ class EncoderOffset(NumberEffect, JointEffect):
         "Measured angle less true angle, as after mounting a servo horn one tooth "
         "aside; the servo acts on the wrong angle, too.",
     )
+
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """1 mrad: how well a joint's zero is usually calibrated."""
+        return 1e-3
 
 
 class Backlash(NumberEffect, ServoEffect):

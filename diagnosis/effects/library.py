@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from contextvars import ContextVar
 from types import MappingProxyType
 
-from diagnosis.effects import bodies, friction, ground, joints, servos
+from diagnosis.effects import bodies, friction, ground, joints, sensors, servos
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
 from groundwalk.errors import BadValueError, UnknownNameError
@@ -21,9 +21,9 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             joints.Backlash(),
             joints.JointElasticity(),
             servos.CommandLatency(),
-            servos.SensorDelay(),
+            sensors.SensorDelay(),
             joints.EncoderOffset(),
-            servos.GyroBias(),
+            sensors.GyroBias(),
             servos.TorqueLimit(),
             servos.SpeedLimit(),
             servos.ServoGain(),
@@ -34,12 +34,14 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             joints.JointSpring(),
             joints.EndStop(),
             servos.ServoFade(),
+            servos.ServoOff(),
             ground.ContactFriction(),
             ground.ContactCompliance(),
             ground.GroundSlope(),
             ground.UnevenGround(),
             bodies.ExternalForce(),
             bodies.Drag(),
+            sensors.TorqueScale(),
         )
     }
 )

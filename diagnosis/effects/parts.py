@@ -17,8 +17,22 @@ but each of the other things once."""
 Values = tuple[float, ...]
 """An effect's values in SI units, in the order of its parameters."""
 
-Interval = tuple[float, float]
-"""Start [s] and duration [s] of an effect or error that does not last."""
+EARLIEST_S, LONGEST_S = -2.0, 600.0
+"""Bounds of an effect that does not last: earliest start, in the recording's time, and
+longest duration. It may have begun before the recording."""
+
+
+class Interval(NamedTuple):
+    """Start [s] and duration [s] of an effect that does not last.
+
+    Attributes:
+      recording: name of the only recording in which it acts; None for all.
+    """
+
+    start_s: float
+    duration_s: float
+    recording: str | None = None
+
 
 SIGN_SPEED_RAD_S = 0.02
 """Speed [rad/s] at which the smooth sign tanh(v / speed) of a velocity v reaches 76 %:
@@ -39,6 +53,8 @@ class Parameter:
       neutral: value at which the effect is absent; may be infinite.
       typical: value to try first.
       logarithmic: whether values are compared by ratio instead of difference.
+      full: whether `high` is all that there is, a value like any other, not a guess of
+        what is possible.
     """
 
     name: str
@@ -48,6 +64,7 @@ class Parameter:
     neutral: float
     typical: float
     logarithmic: bool = False
+    full: bool = False
 
 
 class EffectWords(NamedTuple):

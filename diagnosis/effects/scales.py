@@ -23,7 +23,7 @@ def torque_nm(plant: Plant, joint: str) -> float:
     """A large torque [N m] for a joint, always above 0.
 
     It is the servo's limit, or its torque at an error of 0.1 rad; without a servo the
-    larger of gravity's torque and that for 5 rad/s^2.
+    largest of gravity's torque, that for 5 rad/s^2, and those measured.
     """
     column = plant.joints.index(joint)
     limit = float(plant.servo.max_torque_nm[column])
@@ -33,7 +33,8 @@ def torque_nm(plant: Plant, joint: str) -> float:
     if stiffness > 0:
         return _SERVO_ERROR_RAD * stiffness
     gravity = _gravity_torque_nm(plant, joint)
-    return max(gravity, _ACCELERATION_RAD_S2 * inertia_kg_m2(plant, joint))
+    used = 0.0 if plant.used_nm is None else float(plant.used_nm[column])
+    return max(gravity, _ACCELERATION_RAD_S2 * inertia_kg_m2(plant, joint), used)
 
 
 def inertia_kg_m2(plant: Plant, joint: str) -> float:

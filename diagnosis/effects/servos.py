@@ -12,8 +12,16 @@ from diagnosis.effects.effect import (
     ServoEffect,
     joints_where,
 )
-from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
+from diagnosis.effects.parts import (
+    EARLIEST_S,
+    LONGEST_S,
+    EffectWords,
+    JointMotion,
+    Parameter,
+    Values,
+)
 from diagnosis.effects.scales import speed_rad_s, torque_nm
+from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
@@ -43,6 +51,10 @@ class ServoGain(NumberEffect, ServoEffect):
         "the servo of {joint} has {factor} times its stiffness {usual}",
         "The torque that the servo gives for each radian of error is another one.",
     )
+
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """1 %, as motors of one type differ."""
+        return 0.01
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) torque of the nominal stiffness; the share 1 - factor is missing."""
@@ -74,6 +86,10 @@ class ServoDamping(NumberEffect, JointEffect):
         "the servo of {joint} has {factor} times its damping {usual}",
         "The torque with which servo and motor brake, for each rad/s, is another one.",
     )
+
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """3 %: damping depends on temperature, and data sheets hardly state it."""
+        return 0.03
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints whose servo has damping or back-EMF in any recording."""
@@ -111,6 +127,54 @@ class ServoFade(NumberEffect, ServoEffect):
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) servo torque lost for a rate of 1/s: torque of nominal kp times t."""
         return motion.since_s * motion.pull_nm
+
+
+class ServoOff(JointEffect):
+    """A motor without torque, or with less of it, from one moment on or for some time.
+
+    Stiffness, damping and motor torque are (1 - share) times the nominal ones from
+    `start` for `duration`, in the recording's time.
+
+    Source: smart servos switch their torque off at overload, heat or low voltage until
+    they are told otherwise (Robotis e-Manual, MX-28, "Shutdown").
+    """
+
+    name = "servo_off"
+    native = False
+    timed = True
+    lasting = False
+    joint_by_joint = False
+    on_every_servo = False
+    rarity_nats = 3.0
+    main_parameters = ("share",)
+    words = EffectWords(
+        "motor that switches off",
+        "the motor of {joint} lost {share} of its torque",
+        "A servo switches itself off at overload, heat or low voltage; a motor dies.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The share that is lost; start and duration [s]."""
+        return (
+            Parameter("share", "1", 0.0, 1.0, 0.0, 1.0, full=True),
+            Parameter("start", "s", EARLIEST_S, LONGEST_S, 0.0, 0.2),
+            Parameter("duration", "s", 0.0, LONGEST_S, 0.0, 0.2),
+        )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of joints that a servo or a recorded torque drives."""
+        driven = [
+            (one.servo.kp_nm_rad > 0) | (one.unheld and one.torque_nm is not None)
+            for one in traces
+        ]
+        return joints_where(plant, driven or [plant.servo.kp_nm_rad > 0])
+
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
+        """Switch the motor off in one variant of the model."""
+        share, start_s, duration_s = (float(value) for value in values)
+        joints, at = copies.joints, (row, copies.column(place))
+        joints.off_share[at] = share
+        joints.off_start_s[at], joints.off_end_s[at] = start_s, start_s + duration_s
 
 
 class TorqueLimit(NumberEffect, JointEffect):
@@ -219,6 +283,10 @@ class CommandLatency(NumberEffect):
         )
         return ("commands",) if has_commands else ()
 
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """0.2 ms: the jitter of a clock."""
+        return 2e-4
+
     def twins(self, plant: Plant, place: str) -> tuple[PlacedEffect, ...]:
         """Effects that look alike: late encoders, if the base is fixed."""
         late = PlacedEffect("sensor_delay", "encoders")
@@ -227,58 +295,3 @@ class CommandLatency(NumberEffect):
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) servo torque lost per second of delay: kp times command rate."""
         return motion.kp_nm_rad * motion.command_rate_rad_s
-
-
-class SensorDelay(NumberEffect):
-    """Late encoders: measured(t) = true(t - delay), positions and velocities.
-
-    The delay is usually 2 to 40 ms.
-
-    Source: transfer function exp(-s delay), Astrom and Murray 2008, "Feedback
-    systems", section 8.2.
-    """
-
-    name = "sensor_delay"
-    place_kind = "encoders"
-    native = False
-    rarity_nats = 1.0
-    quantity = "sensor_delay_s"
-    usual = (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.01),)
-    words = EffectWords(
-        "late sensors",
-        "joint positions and velocities are {delay} older than their time stamps say",
-        "What the sensors report has already passed when it gets its time stamp.",
-    )
-
-    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-        """("encoders",), or () if only joint positions are measured on a fixed base.
-
-        Late encoders then cannot be distinguished from late commands.
-        """
-        other = any(trace.torque_nm is not None for trace in traces)
-        return ("encoders",) if plant.base == "floating" or other else ()
-
-
-class GyroBias(NumberEffect):
-    """A constant error of the gyroscope: measured = true + bias, in the sensor frame.
-
-    Source: the usual inertial sensor model without drift, for example Titterton and
-    Weston 2004, "Strapdown inertial navigation technology".
-    """
-
-    name = "gyro_bias"
-    place_kind = "gyroscope"
-    native = False
-    components = 3
-    quantity = "gyro_bias_rad_s"
-    usual = tuple(Parameter(axis, "rad/s", -0.5, 0.5, 0.0, 0.02) for axis in "xyz")
-    words = EffectWords(
-        "gyroscope bias",
-        "the gyroscope is off by {x} about x, {y} about y and {z} about z",
-        "The gyroscope reports a turn rate even when nothing turns.",
-    )
-
-    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-        """("gyroscope",) if a recording has gyroscope measurements, else ()."""
-        has_one = any(trace.gyroscope_rad_s is not None for trace in traces)
-        return ("gyroscope",) if has_one else ()

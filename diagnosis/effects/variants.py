@@ -34,6 +34,8 @@ class Joints:
       kp_factor: multiplies the servo's stiffness.
       damping_factor: multiplies the servo's damping and the motor's back-EMF.
       fade_1_s: share of the stiffness that is lost each second.
+      off_share: share of the motor's torque that is lost from `off_start_s` to
+        `off_end_s`, times of the recording.
       max_torque_nm: torque limit, where below the nominal servo's.
       setpoint_speed_rad_s: highest speed of the servo's set-point.
       gap_rad: total play between servo and joint; no torque passes within it.
@@ -42,11 +44,15 @@ class Joints:
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
       load_share: dry friction as a share of the motor's torque, back-EMF included.
       spring_nm_rad: stiffness between motor and joint; infinite for a rigid gear.
+      torque_factor: measured torque over the true one, where torques are compared.
     """
 
     kp_factor: FloatArray
     damping_factor: FloatArray
     fade_1_s: FloatArray
+    off_share: FloatArray
+    off_start_s: FloatArray
+    off_end_s: FloatArray
     max_torque_nm: FloatArray
     setpoint_speed_rad_s: FloatArray
     gap_rad: FloatArray
@@ -57,6 +63,7 @@ class Joints:
     load_share: FloatArray
     spring_nm_rad: FloatArray
     spring_damping_nm_s_rad: FloatArray
+    torque_factor: FloatArray
 
     @classmethod
     def neutral(cls, n: int, j: int) -> "Joints":
@@ -68,6 +75,7 @@ class Joints:
             "setpoint_speed_rad_s": np.inf,
             "stribeck_speed_rad_s": 0.1,
             "spring_nm_rad": np.inf,
+            "torque_factor": 1.0,
         }
         return cls(**{name: np.full((n, j), value) for name, value in values.items()})
 

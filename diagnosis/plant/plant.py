@@ -45,6 +45,9 @@ class Plant:
       servo: servos of these joints, for recordings that state no gains.
       feet: names of the bodies that touch the ground, left before right.
       options: MuJoCo options of the model's file; None for a file without, as a URDF.
+      used_nm: (j,) largest torques measured at the joints; None if not compared.
+      creeps: whether dry friction is as soft as the model's own solver parameters make
+        it, so that joints creep; otherwise it stops a joint within a step.
 
     Example:
       >>> load_plant("nao", base="floating").joints
@@ -57,6 +60,8 @@ class Plant:
     base: Base = "fixed"
     feet: tuple[str, ...] = ()
     options: ModelOptions | None = None
+    used_nm: FloatArray | None = None
+    creeps: bool = False
 
     def without_ranges(self, joints: Collection[str]) -> "Plant":
         """The same robot model, in which these joints have no end stops."""
@@ -163,11 +168,14 @@ def inverse_dynamics(
     model = copy.copy(model)
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
     data = mujoco.MjData(model)
-    torque = np.zeros_like(position_rad)
+    qpos = np.tile(data.qpos, (len(position_rad), 1))
+    qvel, qacc, torque = (np.zeros((len(position_rad), model.nv)) for _ in range(3))
+    qpos[:, plant.qpos] = position_rad
+    qvel[:, plant.dofs], qacc[:, plant.dofs] = velocity_rad_s, acceleration_rad_s2
+    # views of MuJoCo's own memory: looking them up takes longer than the computation
+    views = data.qpos, data.qvel, data.qacc, data.qfrc_inverse
     for row in range(len(position_rad)):
-        data.qpos[plant.qpos] = position_rad[row]
-        data.qvel[plant.dofs] = velocity_rad_s[row]
-        data.qacc[plant.dofs] = acceleration_rad_s2[row]
+        views[0][:], views[1][:], views[2][:] = qpos[row], qvel[row], qacc[row]
         mujoco.mj_inverse(model, data)
-        torque[row] = data.qfrc_inverse[plant.dofs]
-    return torque
+        torque[row] = views[3]
+    return torque[:, plant.dofs]

@@ -145,6 +145,7 @@ class BatchLaws:
 
     def push_joints(self, torque_nm: FloatArray, time_s: FloatArray) -> None:
         """Apply motor torques (n R, j) to joints without servos, at (R,) times [s]."""
+        torque_nm = torque_nm * self._servos.on_share(time_s)
         position, velocity = self.joint_state()
         if self._elastic is not None:
             self._ctrl[:, self._actuators] = self._elastic.drive(

@@ -43,7 +43,7 @@ class BatchServos:
     Attributes:
       law: present gains and limits of the servos, arrays (rows, j): `kp` [N m/rad],
         `kd` [N m s/rad], `limit` [N m] and `emf`, the back-EMF [N m s/rad].
-      fades: whether any servo becomes weaker with time.
+      fades: whether any servo becomes weaker with time, or is off for some time.
       least_jump_rad: (rows, j) smallest change of a target [rad] that counts as a jump.
     """
 
@@ -61,10 +61,13 @@ class BatchServos:
         batch, sorted by variant, then by run.
         """
         self._joints, self._actuators = joints, columns(plant.actuators)
-        self.fades = bool(joints["fade_1_s"].any())
+        self._goes_off = bool(joints["off_share"].any())
+        self.fades = bool(joints["fade_1_s"].any()) or self._goes_off
+        self._step_s = step_s
         self._stiff = np.isinf(joints["spring_nm_rad"])
         self.law = _laws(servos, joints)
         self._full_kp = kp = self.law["kp"]
+        self._full_kd = self.law["kd"]
         reach = self.law["limit"] / np.maximum(kp, LEAST_KP)
         self.least_jump_rad = JUMP * reach
         self._gain = np.asarray(batch.expand("actuator_gainprm"))
@@ -137,12 +140,28 @@ class BatchServos:
 
     def fade(self, time_s: FloatArray) -> None:
         """Set the stiffness of fading servos at (R,) times [s], one for each run."""
+        on = self.on_share(time_s)
         time_s = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
-        left = np.maximum(1 - self._joints["fade_1_s"] * time_s, 0)
+        left = np.maximum(1 - self._joints["fade_1_s"] * time_s, 0) * on
         self.law["kp"] = kp = self._full_kp * left  # also for motors of elastic joints
-        for field, column, value in ((self._gain, 0, kp), (self._bias, 1, -kp)):
+        self.law["kd"] = kd = self._full_kd * on
+        laws = (self._gain, 0, kp), (self._bias, 1, -kp), (self._bias, 2, -kd)
+        for field, column, value in laws:
             old = field[:, self._actuators, column]
             field[:, self._actuators, column] = np.where(self._stiff, value, old)
+
+    def on_share(self, time_s: FloatArray) -> FloatArray | float:
+        """(rows, j) share of motor torque in the step that begins at (R,) times [s].
+
+        1 unless a motor is off for a part of the step or all of it.
+        """
+        if not self._goes_off:
+            return 1.0
+        begin = np.tile(time_s, len(self._full_kp) // len(time_s))[:, None]
+        since = np.maximum(begin, self._joints["off_start_s"])
+        until = np.minimum(begin + self._step_s, self._joints["off_end_s"])
+        share = np.clip((until - since) / self._step_s, 0.0, 1.0)
+        return np.asarray(1 - self._joints["off_share"] * share)
 
     def soften(self, elastic: ElasticJoints, step_s: float) -> None:
         """Turn actuators of elastic joints into springs between motors and links."""
@@ -218,6 +237,8 @@ class BatchFriction:
         self._torque_nm = np.asarray(batch.expand("dof_frictionloss"))
         self._torque_nm[:, self._dofs] += joints["coulomb_nm"]
         self._least_nm = self._torque_nm[:, self._dofs].copy()
+        if plant.creeps:
+            return
         np.asarray(batch.expand("dof_solimp"))[:] = SOLIMP_FRICTION
         inertia_kg_m2 = np.asarray(batch.expand("dof_M0"))
         damping = np.zeros_like(inertia_kg_m2)
@@ -227,11 +248,22 @@ class BatchFriction:
 
     def follow(self, velocity_rad_s: FloatArray, driven_nm: FloatArray) -> None:
         """Set friction by (rows, j) speeds [rad/s] and by torques in gears [N m]."""
-        joints = self._joints
-        speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
-        more = joints["stribeck_nm"] * np.exp(-(speed**2))
-        more = more + joints["load_share"] * np.abs(driven_nm)
+        more = dry_friction_nm(self._joints, velocity_rad_s, driven_nm)
         self._torque_nm[:, self._dofs] = self._least_nm + more
+
+
+def dry_friction_nm(
+    joints: Mapping[str, FloatArray],
+    velocity_rad_s: FloatArray,
+    driven_nm: FloatArray | float,
+) -> FloatArray:
+    """Largest dry friction [N m] beyond Coulomb's, at speeds and torques in gears.
+
+    `joints` are arrays of `Joints` by name; all arrays have shapes that broadcast.
+    """
+    speed = velocity_rad_s / joints["stribeck_speed_rad_s"]
+    more = joints["stribeck_nm"] * np.exp(-(speed**2))
+    return np.asarray(more + joints["load_share"] * np.abs(driven_nm))
 
 
 def stops_in_a_step(

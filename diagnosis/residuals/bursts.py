@@ -1,8 +1,8 @@
-"""Finds the times at which something may have pushed the robot.
+"""Finds the times at which something may have happened to the robot.
 
-Two detectors: `bursts` finds short intervals of large error, `faint_pushes` finds small
-errors of one sign that last too long to be noise but carry too little energy for the
-first detector.
+Three detectors: `bursts` finds short intervals of large error, `faint_pushes` finds
+small errors of one sign that last too long to be noise but carry too little energy for
+the first detector, `onsets` finds moments from which on the error is large.
 """
 
 from itertools import chain
@@ -10,6 +10,7 @@ from itertools import chain
 import numpy as np
 from scipy.stats import chi2
 
+from diagnosis.effects.parts import Interval
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.trace import stretches
 from groundwalk.arrays import FloatArray
@@ -63,42 +64,136 @@ def bursts(
     motion, raises the median and is no burst. `residual` (N,) is in units of noise;
     `channel` is the index of the only channel to look at, None for all together.
     """
-    found: list[tuple[float, float, float]] = []
+    return [span for span, _ in _bursts(predictor, residual, channel)]
+
+
+def _bursts(
+    predictor: Predictor, residual: FloatArray, channel: int | None = None
+) -> list[tuple[Span, str]]:
+    """The strongest bursts, each with the recording that shows it."""
+    found: list[tuple[float, Span, str]] = []
     for number, trace in enumerate(predictor.traces):
-        rows = predictor.trace == number
-        if channel is not None:
-            rows &= predictor.channel == channel
-        bins = ((trace.time_s - trace.time_s[0]) / BIN_S).astype(int)
-        bins = np.repeat(bins, int(rows.sum()) // trace.ticks)
-        energy = np.bincount(bins, residual[rows] ** 2)
-        scored = np.bincount(bins, predictor.scored[rows])
+        energy, scored = _binned(predictor, residual, number, channel)
         by_chance = chi2.isf(CHANCE / len(scored), np.maximum(scored, 1))
         least = max(STANDS_OUT * np.median(energy), LEAST * scored.mean())
         limit = np.maximum(by_chance, least)
         for first, last in stretches(energy > limit):
             start_s = float(trace.time_s[0] + first * BIN_S)
             end_s = float(trace.time_s[0] + last * BIN_S)
-            found.append((float(energy[first:last].sum()), start_s, end_s))
+            sum_ = float(energy[first:last].sum())
+            found.append((sum_, (start_s, end_s), trace.recording))
     found.sort(reverse=True)
-    return [(start, end) for _, start, end in found[:MOST]]
+    return [(span, recording) for _, span, recording in found[:MOST]]
 
 
-def push_intervals(predictor: Predictor, residual: FloatArray) -> list[Span]:
-    """Start and duration [s] of possible pushes, from an (N,) residual [noise].
+def _binned(
+    predictor: Predictor,
+    residual: FloatArray,
+    number: int,
+    channel: int | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Sum of squares of a trace's residual in each bin, and its number of entries."""
+    trace, rows = predictor.traces[number], predictor.trace == number
+    if channel is not None:
+        rows &= predictor.channel == channel
+    bins = ((trace.time_s - trace.time_s[0]) / BIN_S).astype(int)
+    bins = np.repeat(bins, int(rows.sum()) // trace.ticks)
+    scored = np.bincount(bins, predictor.scored[rows])
+    energy = np.asarray(np.bincount(bins, residual[rows] ** 2), float)
+    return energy, scored.astype(float)
 
-    The first one lasts for all of the recording; the others are the bursts of error or,
-    if there are none, times of small errors of one sign.
+
+def push_intervals(predictor: Predictor, residual: FloatArray) -> list[Interval]:
+    """When something may have happened, from an (N,) residual [noise].
+
+    The first interval lasts for all of the recording; the others are the bursts of
+    error or, if there are none, times of small errors of one sign; and times from which
+    on errors are large. Of several recordings each event may be in one or in all.
     """
-    last_s = max(trace.time_s[-1] for trace in predictor.traces)
+    last_s = max(float(trace.time_s[-1]) for trace in predictor.traces)
     short = [
-        (max(start - REACTION_S, 0.0), max(end - start - BIN_S, BIN_S))
-        for start, end in bursts(predictor, residual)
+        (max(start - REACTION_S, 0.0), max(end - start - BIN_S, BIN_S), recording)
+        for (start, end), recording in _bursts(predictor, residual)
     ]
     faint = [
-        (max(start - REACTION_S, 0.0), end - start)
+        (max(start - REACTION_S, 0.0), end - start, None)
         for start, end in ([] if short else faint_pushes(predictor, residual))
     ]
-    return [(-LEAD_S, float(last_s) + 2 * LEAD_S), *short, *faint]
+    lasting = [
+        (max(start - REACTION_S, 0.0), last_s + LEAD_S - start, recording)
+        for start, recording in onsets(predictor, residual)
+    ]
+    every = [Interval(*one) for one in (*short, *faint, *lasting)]
+    several = len({trace.recording for trace in predictor.traces}) > 1
+    own = [one for one in every if one.recording and several]
+    shared = [one._replace(recording=None) for one in every]
+    return [Interval(-LEAD_S, last_s + 2 * LEAD_S), *shared, *own]
+
+
+def onsets(predictor: Predictor, residual: FloatArray) -> list[tuple[float, str]]:
+    """Times from which on the error is large, each with its recording, surest first.
+
+    Of each recording's bins, the parts one after the other, a first stretch has little
+    energy and the rest much. The likeliest moment is that which explains the energies
+    best by two variances of a normal distribution. `residual` (N,) is in units of
+    noise.
+    """
+    found = []
+    for recording in dict.fromkeys(trace.recording for trace in predictor.traces):
+        own = [
+            number
+            for number, trace in enumerate(predictor.traces)
+            if trace.recording == recording
+        ]
+        own.sort(key=lambda number: float(predictor.traces[number].time_s[0]))
+        parts = [_binned(predictor, residual, number) for number in own]
+        energy, scored = (np.concatenate(one) for one in zip(*parts, strict=True))
+        start_s = np.concatenate(
+            [
+                predictor.traces[number].time_s[0] + BIN_S * np.arange(len(part[0]))
+                for number, part in zip(own, parts, strict=True)
+            ]
+        )
+        counted = scored > 0
+        gain, first = _change(energy[counted], scored[counted])
+        if first:
+            found.append((gain, float(start_s[counted][first]), recording))
+            # between two parts it may have been at any time
+            earliest_s = float(start_s[counted][first - 1]) + BIN_S
+            if earliest_s < found[-1][1] - BIN_S:
+                found.append((gain, earliest_s, recording))
+    found.sort(reverse=True)
+    return [(start, recording) for _, start, recording in found[:MOST]]
+
+
+def _change(energy: FloatArray, scored: FloatArray) -> tuple[float, int]:
+    """Gain [nats] of two variances over one, and the first bin of the second; 0: none.
+
+    The second variance must stand out from the first one and from noise.
+    """
+    if len(energy) < 4:
+        return 0.0, 0
+    sums, counts = np.cumsum(energy), np.cumsum(scored)
+    before = sums[:-1] / counts[:-1]
+    count = counts[-1] - counts[:-1]
+    after = (sums[-1] - sums[:-1]) / count
+    stands_out = after > np.maximum(STANDS_OUT * np.maximum(before, 1.0), LEAST)
+    kept = np.maximum(before, 1.0)
+    gain = 0.5 * (
+        counts[-1] * np.log(max(sums[-1] / counts[-1], 1.0))
+        - counts[:-1] * np.log(kept)
+        - count * np.log(np.maximum(after, 1.0))
+    )
+    gain = np.where(stands_out, gain, 0.0)
+    best = int(np.argmax(gain))
+    if gain[best] <= 0:
+        return 0.0, 0
+    usual = float(np.median(energy[: best + 1] / scored[: best + 1]))
+    first = best + 1  # errors may have begun to grow before
+    least = max(STANDS_OUT * usual, LEAST)
+    while first > 1 and energy[first - 1] > scored[first - 1] * least:
+        first -= 1
+    return float(gain[best]), first
 
 
 def faint_pushes(predictor: Predictor, residual: FloatArray) -> list[Span]:

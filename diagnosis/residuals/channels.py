@@ -1,7 +1,7 @@
 """Channels: the measured quantities that simulations are compared with."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,15 +12,9 @@ from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import continuous
 from groundwalk.arrays import FloatArray
 
-LEAST_NOISE_RAD = 3e-4
-"""Smallest noise [rad] assumed for measured positions and angles: encoders and clocks
-are not better, and smaller differences are errors of the simulator."""
-
-LEAST_RATE_RAD_S = 1e-3
-"""Smallest noise [rad/s] assumed for gyroscopes."""
-
-LEAST_NOISE_M = 2e-4
-"""Smallest noise [m] assumed for the measured position of a floating base."""
+FINEST = 1e-7
+"""Smallest noise assumed, as a share of a channel's range: what rounding numbers for a
+file makes. The accuracy of the simulation itself is added later, see `precise`."""
 
 LEAST_TORQUE = 0.02
 """Smallest noise assumed for measured torques, as a share of their rms: the accuracy to
@@ -33,11 +27,24 @@ class Channels:
 
     Attributes:
       names: names of the channels, for example "position.LKneePitch".
-      noise: (c,) standard deviation of the noise in each channel's unit.
+      noise: (c,) standard deviation in each channel's unit by which residuals are
+        divided: the floor, or what the best model leaves if that is more.
+      floor: (c,) standard deviation of sensor noise and of the simulation's own error;
+        by default `noise`.
     """
 
     names: tuple[str, ...]
     noise: FloatArray
+    floor: FloatArray = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        """Take the noise for the floor by default."""
+        if self.floor is None:
+            object.__setattr__(self, "floor", self.noise)
+
+    def widened(self, left: FloatArray) -> "Channels":
+        """The channels with their noise (c,) times as large, and the same floor."""
+        return replace(self, noise=self.noise * left)
 
     def of_joint(self, joint: str) -> list[int]:
         """Indices of the channels that belong to a joint."""
@@ -56,33 +63,50 @@ def channel_unit(plant: Plant, name: str) -> str:
 def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
     """The channels that all recordings measured and that can be simulated.
 
-    Their noise is estimated from the recordings, with a least value for each sensor.
+    Their noise is estimated from the recordings. If the traces have a `motion`, the
+    torques that it needs are all that is compared; their noise is then what a
+    regression on the motion leaves, and only the floor that of sensors.
     """
+    motions = [trace.motion for trace in traces]
+    if all(motion is not None for motion in motions):
+        each = [(one.noise_nm, one.left_nm) for one in motions if one is not None]
+        names = [f"torque.{joint}" for joint in plant.joints]
+        floor, left = np.median(each, axis=0)
+        floor = np.where(floor > 0, floor, 1.0)
+        return Channels(tuple(names), np.maximum(floor, left), floor)
     names = [f"position.{joint}" for joint in plant.joints]
-    least = [LEAST_NOISE_RAD] * len(names)
     if all(trace.torque_nm is not None and not trace.unheld for trace in traces):
         names += [f"torque.{joint}" for joint in plant.joints]
-        every = np.concatenate([t.torque_nm for t in traces if t.torque_nm is not None])
-        least += (LEAST_TORQUE * np.sqrt(np.nanmean(every**2, axis=0))).tolist()
     if all(trace.gyroscope_rad_s is not None for trace in traces):
         names += [f"gyroscope.{axis}" for axis in "xyz"]
-        least += [LEAST_RATE_RAD_S] * 3
     if plant.base == "floating":
         names += [f"base.position.{axis}" for axis in "xyz"]
         names += [f"base.{angle}" for angle in ("roll", "pitch", "yaw")]
-        least += [LEAST_NOISE_M] * 3 + [LEAST_NOISE_RAD] * 3
     bare = Channels(tuple(names), np.ones(len(names)))
+    measured = [measured_of(trace, bare) for trace in traces]
     found = [
-        [noise_of(trace.time_s, one).total for one in measured_of(trace, bare).T]
-        for trace in traces
+        [noise_of(trace.time_s, one).total for one in values.T]
+        for trace, values in zip(traces, measured, strict=True)
     ]
-    noise = np.maximum(np.median(found, axis=0), least)
+    noise = np.maximum(np.median(found, axis=0), _least(names, np.vstack(measured)))
     return Channels(tuple(names), np.where(noise > 0, noise, 1.0))
+
+
+def _least(names: Sequence[str], values: FloatArray) -> FloatArray:
+    """(c,) smallest noise of the channels whose (rows, c) values were measured."""
+    there = np.isfinite(values)
+    low, high = (np.where(there, values, side).T for side in (np.inf, -np.inf))
+    reach = FINEST * np.maximum(high.max(axis=1) - low.min(axis=1), 0.0)
+    is_torque = np.array([name.startswith("torque.") for name in names])
+    size = np.sqrt(np.mean(np.where(there, values, 0.0) ** 2, axis=0))
+    return np.asarray(np.where(is_torque, LEAST_TORQUE * size, reach))
 
 
 def measured_of(trace: Trace, channels: Channels) -> FloatArray:
     """(T, c) values of the c channels that a recording measured, in their units."""
-    parts = [trace.position_rad]
+    parts = []
+    if any(name.startswith("position.") for name in channels.names):
+        parts.append(trace.position_rad)
     if any(name.startswith("torque.") for name in channels.names):
         assert trace.torque_nm is not None
         parts.append(trace.torque_nm)

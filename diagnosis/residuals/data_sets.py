@@ -4,15 +4,19 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import LEAST_FLOATING_S, LEAST_S, Split, shortened, split
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Recordings
+from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 
 TOO_SHORT = (
@@ -32,6 +36,21 @@ base floats: its contacts take long to simulate."""
 MOST_WRONG = 0.25
 """Largest rms, in units of noise, of the integration error that a simulation may have
 after correction; a larger error would be mistaken for missing physics."""
+
+
+WINDOWS_S = (8.0, 4.0, 2.0, 1.0)
+"""Lengths [s] of windows that are tried for joints without servos, longest first."""
+
+STANDS_OUT = 8.0
+"""Something happened in a recording if the nominal sim's error in it is this multiple
+of its usual error in the others: more than by other motions."""
+
+NEAR = 0.02
+"""Largest distance of a replay from the recorded motion, as a share of each joint's
+range in the recording, in 95 % of the rows."""
+
+PRECISE_S = 20.0
+"""Most seconds of the recordings on which the error of the simulation is measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,10 +87,12 @@ class DataSets:
         Raises:
           BadRecordingError: the traces are too short.
         """
-        parts = affordable(plant, split(traces))
+        window_s = longest_window_s(plant, traces, channels, threads)
+        errors = errors_of_event(plant, traces, channels, threads, window_s)
+        parts = affordable(plant, split(traces, errors))
         every = [*parts.fit, *parts.select, *parts.test]
-        options = None, threads, noise, on_replay
-        whole = exact_steps(Predictor(plant, every, channels, *options))
+        options = None, threads, noise, on_replay, window_s
+        whole = exact_steps(predictor_of(plant, every, channels, *options))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         fit, select = whole.part(0, first), whole.part(first, last)
         learned, test = whole.part(0, last), whole.part(last, len(every))
@@ -96,9 +117,87 @@ def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
     for step_s in STEPS_S[whole.plant.base]:
         if step_s < whole.step_s:
             whole = whole.stepped(step_s)
-        if step_s == whole.step_s and whole.calibrate(model) < MOST_WRONG:
+        if step_s == whole.step_s and whole.correct(model).max() < MOST_WRONG:
             break
+    whole.doubt(model)
     return whole
+
+
+def precise(
+    plant: Plant, traces: Sequence[Trace], channels: Channels, threads: int = 1
+) -> Channels:
+    """The channels, whose noise includes the error of the simulation itself.
+
+    That is what integration leaves at the shortest time step, see `Predictor`.
+    """
+    some = shortened(traces, PRECISE_S)
+    for step_s in STEPS_S[plant.base]:
+        predictor = predictor_of(plant, some, channels, step_s, threads)
+        error = predictor.correct()
+        if error.max() < MOST_WRONG:
+            break
+    wider = np.hypot(1.0, error)
+    return Channels(channels.names, channels.noise * wider, channels.floor * wider)
+
+
+def longest_window_s(
+    plant: Plant, traces: Sequence[Trace], channels: Channels, threads: int = 1
+) -> float:
+    """Length [s] of windows for joints without servos, over which replays stay close.
+
+    In long windows small effects grow large. But a replay must stay near the recorded
+    motion, or it says nothing about it. 0 if all joints have servos.
+    """
+    if plant.base == "floating" or not any(
+        trace.loose and trace.motion is None for trace in traces
+    ):
+        return 0.0
+    some, joints = shortened(traces, PRECISE_S), len(plant.joints)
+    reach = np.max(
+        [np.nanmax(t.position_rad, 0) - np.nanmin(t.position_rad, 0) for t in some],
+        axis=0,
+    )
+    for longest_s in WINDOWS_S:
+        predictor = Predictor(
+            plant, some, channels, threads=threads, window_s=longest_s
+        )
+        wrong = np.abs(predictor.residuals([()])[0] * channels.noise[predictor.channel])
+        far = wrong.reshape(-1, len(channels.names))[:, :joints] / np.maximum(
+            reach, 1e-9
+        )
+        if np.quantile(far, 0.95) < NEAR:
+            return longest_s
+    return 0.0
+
+
+def errors_of_event(
+    plant: Plant,
+    traces: Sequence[Trace],
+    channels: Channels,
+    threads: int,
+    window_s: float,
+) -> list[FloatArray] | None:
+    """The nominal sim's errors, if it is far more wrong in one recording than usual.
+
+    Then something happened that the others do not show, and recordings are to be cut
+    into parts that all show it. Errors are for each recording the largest of the
+    channels in each row (T,) [noise].
+    """
+    if len(traces) < 2 or plant.base == "floating":
+        return None
+    predictor = Predictor(plant, traces, channels, threads=threads, window_s=window_s)
+    (left,) = predictor.residuals([()])
+    left = left * (channels.noise / channels.floor)[predictor.channel]
+    rms = [
+        np.sqrt(np.mean(left[(predictor.trace == k) & predictor.scored] ** 2))
+        for k in range(len(traces))
+    ]
+    *others, most = sorted(rms)
+    if most < STANDS_OUT * max(float(np.median(others)), 1.0):
+        return None
+    size = np.abs(left).reshape(-1, len(channels.names)).max(axis=1)
+    ends = np.cumsum([trace.ticks for trace in traces])
+    return np.split(size, ends[:-1])
 
 
 def affordable(plant: Plant, parts: Split) -> Split:
@@ -135,7 +234,7 @@ def expected_seconds(
     that in `traces` and takes as long.
     """
     fit = affordable(plant, split(traces)).fit
-    predictor = Predictor(plant, fit, channels, threads=threads)
+    predictor = predictor_of(plant, fit, channels, threads=threads)
     models: list[Model] = []
     for name, kind in all_effects().items():
         for place in kind.places(plant, predictor.traces)[:1]:

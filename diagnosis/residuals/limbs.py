@@ -55,7 +55,7 @@ class Limb:
             if (_joint_of(name) in mine if _joint_of(name) else self.first)
         ]
         names = tuple(whole.names[i] for i in chosen)
-        return Channels(names, whole.noise[chosen]), chosen
+        return Channels(names, whole.noise[chosen], whole.floor[chosen]), chosen
 
 
 def _joint_of(channel: str) -> str | None:

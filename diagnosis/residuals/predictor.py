@@ -1,24 +1,21 @@
 """Simulates models of a robot on recordings (replays), and returns their residuals."""
 
 from collections.abc import Callable, Sequence
+from copy import copy
 
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.effects.parts import PlacedEffect
-from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
-from diagnosis.replay.replay import replay
-from diagnosis.residuals.channels import Channels, measured_of, shared_channels, stacked
-from diagnosis.residuals.limbs import Limb, limbs_of
+from diagnosis.residuals.channels import Channels, measured_of, shared_channels
 from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
-from diagnosis.residuals.start_state import SPREADS, STEPS, StartUncertainty, nudged
+from diagnosis.residuals.replays import Model as Model
+from diagnosis.residuals.replays import Replays, tolerated
+from diagnosis.residuals.start_state import StartUncertainty
+from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.trace import Trace
-from diagnosis.traces.windows import is_left_over, runs_of, window_s
+from diagnosis.traces.windows import is_left_over, window_s
 from groundwalk.arrays import BoolArray, FloatArray
-
-Model = tuple[PlacedEffect, ...]
-"""A hypothesis: the nominal robot model plus these effects, or nothing for ()."""
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
 """Time steps of simulations [s] by the kind of base, tried in this order until the
@@ -32,10 +29,7 @@ BLOCK_S = 0.5
 """Length [s] of the time blocks of which standard errors take account: errors in
 different blocks count as independent, those in one block may be correlated."""
 
-MOST_ROWS = 192
-"""Most simulations in one batch; more would need more memory and save no time."""
-
-WORST = 1e4
+WORST = 1e7
 """Residuals are clipped to this size [noise]; a simulation that diverges gets it in all
 rows after that."""
 
@@ -66,6 +60,7 @@ class Predictor:
         threads: int = 1,
         noise: ReferenceNoise | None = None,
         on_replay: Callable[[int], None] | None = None,
+        window_s: float = 0.0,
     ) -> None:
         """Estimate the states from which the simulations of the traces start.
 
@@ -78,14 +73,14 @@ class Predictor:
           noise: model errors that recordings of the healthy robot show, or None.
           on_replay: called after each batch with its number of simulations, counted as
             simulations of all traces at the step `step_s`.
+          window_s: least length of windows in which joints without servos are
+            simulated.
         """
         self.plant, self.traces = plant, list(traces)
         self.step_s, self._threads = step_s or STEPS_S[plant.base][0], threads
         self.channels = channels or shared_channels(plant, traces)
-        self._limbs = limbs_of(plant)
-        per_trace = [runs_of(plant, trace) for trace in traces]
-        self._runs = [run for runs in per_trace for run in runs]
-        self._first_run = np.cumsum([0, *(len(runs) for runs in per_trace)]).tolist()
+        self._window_s = window_s
+        self._replays = Replays(plant, traces, self.channels, threads, window_s)
         rows = [trace.ticks for trace in traces]
         c = len(self.channels.names)
         self._measured = np.concatenate(
@@ -96,8 +91,9 @@ class Predictor:
         self._fine_correction = self._correction
         self._ends = np.cumsum(rows).tolist()
         self._doubt: StartUncertainty | None = None
+        self._tolerance: Tolerance | None = None
         self._noise, self._on_replay = noise, on_replay
-        self.blocks = blocks_of(self._runs, self._scored.any(axis=1))
+        self.blocks = blocks_of(self._replays.runs, self._scored.any(axis=1))
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
         self.scored = self._scored.reshape(-1)
@@ -116,54 +112,107 @@ class Predictor:
         some._correction = self._correction[own]
         some._fine_correction = self._fine_correction[own]
         if self._doubt is not None:
-            runs = self._first_run[first], self._first_run[last]
-            some._doubt = self._doubt.part(*runs)
+            runs = self._replays.first_run
+            some._doubt = self._doubt.part(runs[first], runs[last])
+        if self._tolerance is not None:
+            entries = np.zeros_like(self._scored)
+            entries[own] = True
+            some._tolerance = self._tolerance.part(entries.reshape(-1))
         return some
+
+    @property
+    def noise_energy(self) -> float:
+        """Energy [nats] that a right model leaves on average.
+
+        It is 1/2 for each entry that counts, less what whitening takes out of noise.
+        """
+        taken = [one.taken for one in (self._doubt, self._tolerance) if one is not None]
+        return 0.5 * float(self.scored.sum() - sum(taken))
+
+    def without_tolerances(self) -> "Predictor":
+        """The same predictor, whose residuals are not whitened with tolerances."""
+        some = copy(self)
+        some._tolerance = None
+        return some
+
+    def with_likely_tolerances(self, model: Model) -> "Predictor":
+        """The same predictor; its tolerances are as wide as the model's errors are."""
+        some = copy(self)
+        if self._tolerance is not None:
+            (left,) = self.without_tolerances().residuals([model])
+            some._tolerance = self._tolerance.scaled(self._tolerance.likely_scale(left))
+        return some
+
+    @property
+    def by_torque(self) -> bool:
+        """Whether torques that the motion needs are compared, without a replay."""
+        return False
+
+    def on(self, plant: Plant) -> "Predictor":
+        """An uncalibrated predictor of the same traces with another robot model."""
+        own = self.channels, self.step_s, self._threads, self._noise, self._on_replay
+        return type(self)(plant, self.traces, *own, self._window_s)
 
     def stepped(
         self, step_s: float, traces: Sequence[Trace] | None = None
     ) -> "Predictor":
         """An uncalibrated predictor with a time step [s] of given or its own traces."""
         own = self.channels, step_s, self._threads, self._noise, self._on_replay
-        return Predictor(self.plant, self.traces if traces is None else traces, *own)
+        some = self.traces if traces is None else traces
+        return type(self)(self.plant, some, *own, self._window_s)
 
-    def calibrate(self, model: Model = ()) -> float:
+    def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.
 
-        Both are then taken out of the residuals of all models. Returns the rms [noise]
-        of the integration error that remains; large if the simulation of `model`
-        diverges.
+        Both are then taken out of the residuals of all models, and so is what errors
+        within the tolerances of the nominal model change. Returns (c,) the rms, in
+        units of noise, of the integration error that remains in each channel. Without
+        `tolerances` those stay that were found before.
+        """
+        error = self.correct(model)
+        self.doubt(model, tolerances)
+        return error
+
+    def doubt(self, model: Model = (), tolerances: bool = True) -> None:
+        """Find what wrong start states change, and errors within tolerances."""
+        known = self._tolerance
+        self._doubt, self._tolerance = self._start_doubt(model), None
+        if not tolerances:
+            self._tolerance = known
+        elif self.plant.base == "fixed":  # contacts outdo tolerances by far
+            self._tolerance = Tolerance(self._tolerated(model))
+
+    def correct(self, model: Model = ()) -> FloatArray:
+        """Measure the integration error of a model, to be taken out of all residuals.
+
+        Returns (c,) the rms, in units of noise, of that which remains in each channel;
+        large if the simulation of `model` diverges.
         """
         coarse, fine, finer = (
             self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
         )
         self._correction = 2 * finer - fine - coarse
         self._fine_correction = 2 * (finer - fine)
-        self._doubt = self._start_doubt(model)
         # the extrapolation leaves the error of second order
         left = (finer - fine) - (fine - coarse) / 2
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
-        return float(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2)))
+        return np.asarray(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2, axis=0)))
 
     def _start_doubt(self, model: Model) -> StartUncertainty | None:
         """How wrong start states change simulations; None if noise includes that."""
         # with a floating base the reference noise contains the errors of wrong starts
         if self._noise is not None and self.plant.base == "floating":
             return None
-        runs, models = nudged(self._runs), [self._given(model)]
-        variants = variants_of(self.plant, models)
-        results = replay(runs, variants, self.step_s, self._threads)
-        stacks = [stacked(result, self.channels)[0] for result in results]
-        count = len(self._runs)
-        plain, *moved = (
-            np.concatenate(stacks[k * count : (k + 1) * count]) for k in range(3)
-        )
-        changes = []
-        for other, step, spread in zip(moved, STEPS, SPREADS, strict=True):
-            change = (other - plain) * (spread / step) / self.channels.noise
-            changes.append(np.nan_to_num(np.where(self._scored, change, 0.0)))
-        ends = np.cumsum([run.trace.ticks for run in self._runs])
-        return StartUncertainty(changes, ends.tolist())
+        changes = self._replays.start_errors(self._given(model), self.step_s)
+        changes = np.where(self._scored, changes, 0.0) / self.channels.noise
+        ends = np.cumsum([run.trace.ticks for run in self._replays.runs])
+        return StartUncertainty(np.nan_to_num(changes), ends.tolist())
+
+    def _tolerated(self, model: Model) -> FloatArray:
+        """(k, N) changes of the residual that lie within the model's tolerances."""
+        changed = [(*model, one) for one in tolerated(self.plant, self.traces)]
+        residuals = self.residuals([model, *changed])
+        return np.asarray(residuals[1:] - residuals[0])
 
     def _given(self, model: Model) -> Model:
         """The model, and the effects that recordings of the healthy robot show."""
@@ -172,7 +221,7 @@ class Predictor:
     def _warming(self) -> BoolArray:
         """(rows,) whether errors in a row do not count: at starts, in short windows."""
         flags = []
-        for run in self._runs:
+        for run in self._replays.runs:
             since_s = run.trace.time_s - run.trace.time_s[0]
             whole = window_s(self.plant, run.trace) is None
             left_over = is_left_over(self.plant, run.trace)
@@ -216,49 +265,28 @@ class Predictor:
         healthy robot show, are taken out. `exactly` predicts by `exact` instead of
         `predict`.
         """
+        return self._whitened(self._errors(models, exactly))
+
+    def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
+        """(n, rows, c) measured less predicted values of n models [noise]."""
         predicted = self.exact(models) if exactly else self.predict(models)
         wrong = (self._measured - predicted) / self.channels.noise
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
-        wrong = np.where(self._scored, wrong, 0.0)
+        return np.where(self._scored, wrong, 0.0)
+
+    def _whitened(self, wrong: FloatArray) -> FloatArray:
+        """(n, N) errors (n, rows, c) without what is no evidence, in units of noise."""
         if self._doubt is not None:
             wrong = self._doubt.without(wrong)
         if self._noise is not None:
             wrong = self._noise.without(wrong, self.blocks)
-        return wrong.reshape(len(models), -1)
+        flat = wrong.reshape(len(wrong), -1)
+        return flat if self._tolerance is None else self._tolerance.without(flat)
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
-        """(n, rows, c) simulated values without corrections, limb by limb."""
-        predicted = np.empty((len(models), *self._measured.shape))
-        for limb in self._limbs:
-            felt = [limb.felt(self._given(model)) for model in models]
-            rows = {model: i for i, model in enumerate(dict.fromkeys(felt))}
-            own, columns = limb.channels(self.channels)
-            found = self._replayed_limb(limb, list(rows), step_s, own)
-            predicted[:, :, columns] = found[[rows[model] for model in felt]]
+        """(n, rows, c) simulated values without corrections."""
+        given = [self._given(model) for model in models]
+        predicted = self._replays.values(given, step_s)
         if self._on_replay is not None:
             self._on_replay(len(models) * round(self.step_s / step_s))
         return predicted
-
-    def _replayed_limb(
-        self, limb: Limb, models: Sequence[Model], step_s: float, own: Channels
-    ) -> FloatArray:
-        """(n, rows, channels of the limb) simulated values of one limb, in batches."""
-        runs = [limb.run(run) for run in self._runs]
-        most = max(1, MOST_ROWS // len(runs))
-        parts = []
-        for first in range(0, len(models), most):
-            variants = variants_of(limb.plant, models[first : first + most])
-            results = replay(runs, variants, step_s, self._threads)
-            stacks = [stacked(result, own) for result in results]
-            parts.append(np.concatenate(stacks, axis=1))
-        return np.concatenate(parts)
-
-
-def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
-    """Model fields, servos and forces with which a batch simulates n models."""
-    variants = Variants(plant, len(models))
-    for row, model in enumerate(models):
-        for placed in model:
-            values = np.array(placed.values)
-            effect(placed.name).apply(variants, row, placed.place, values)
-    return variants

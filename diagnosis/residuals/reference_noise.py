@@ -60,12 +60,12 @@ def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
         for start, stop in itertools.pairwise([*starts.tolist(), len(number)]):
             rows = slice(first + start, first + stop)
             within = since_s[start:stop] / FLOATING_WINDOW_S - number[start]
-            blocks.append(Block(rows, _waves(within, scored[rows])))
+            blocks.append(Block(rows, waves(within, scored[rows])))
         first += len(number)
     return blocks
 
 
-def _waves(within: FloatArray, scored: BoolArray) -> FloatArray:
+def waves(within: FloatArray, scored: BoolArray) -> FloatArray:
     """(rows, waves) Legendre polynomials over [0, 1), orthonormal on scored rows."""
     if scored.sum() < FEWEST_ROWS:
         return np.zeros((len(within), 0))

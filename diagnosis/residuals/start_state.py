@@ -2,8 +2,8 @@
 
 A simulation starts from measured positions, known up to sensor noise, and velocities,
 known less well. The error of a wrong start fades within moments on well damped servos
-and lasts for seconds on others. Its course (signature) is measured once, and the part
-of a residual that has this course is removed.
+and lasts for seconds on others. Its course (signature) is measured once for each joint,
+and residuals are whitened with it: start states are marginalised, not fitted.
 """
 
 import itertools
@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
 
@@ -24,35 +25,38 @@ SPREADS = (2e-3, 0.3)
 """Standard deviations of the errors of start positions [rad] and velocities [rad/s]."""
 
 
-def nudged(runs: Sequence[Run]) -> list[Run]:
-    """The windows unchanged, with other start positions, and with other velocities.
+def nudged(runs: Sequence[Run], joints: Sequence[Sequence[int]]) -> list[list[Run]]:
+    """The windows with other start positions, then with other start velocities.
 
-    Three times as many windows, in this order. All joints' starts are changed at once:
-    servos are stiff, so that each joint hardly moves the others.
+    A list of windows for each change: first the positions of each group of `joints`
+    (indices) in turn, then their velocities. Groups hold joints that do not move each
+    other.
     """
-    dq, dv = STEPS
-    positions = [replace(run, position_rad=run.position_rad + dq) for run in runs]
-    speeds = [replace(run, velocity_rad_s=run.velocity_rad_s + dv) for run in runs]
-    return [*runs, *positions, *speeds]
+    changes = []
+    for field, step in zip(("position_rad", "velocity_rad_s"), STEPS, strict=True):
+        for group in joints:
+            more = np.zeros_like(runs[0].position_rad)
+            more[list(group)] = step
+            changes.append(
+                [replace(run, **{field: getattr(run, field) + more}) for run in runs]
+            )
+    return changes
 
 
 class StartUncertainty:
     """Courses of the error (signatures) by wrong start states, window by window."""
 
-    def __init__(self, changes: Sequence[FloatArray], ends: Sequence[int]) -> None:
-        """Prepare the projection that removes the signatures.
+    def __init__(self, changes: FloatArray, ends: Sequence[int]) -> None:
+        """Prepare the whitening.
 
-        `changes` (rows, c) of the simulated channels, in units of noise and 0 where
+        `changes` (k, rows, c) of the simulated channels, in units of noise and 0 where
         errors do not count, are those by start positions, then by start velocities that
         are wrong by one standard deviation; `ends` are the rows after each window.
         """
-        signatures = np.stack(changes)
-        self._windows = []
-        for first, last in itertools.pairwise([0, *ends]):
-            own = signatures[:, first:last]
-            # 1 on the diagonal is the prior: a standard normal error of the start
-            gram = np.einsum("krc,lrc->ckl", own, own) + np.eye(len(own))
-            self._windows.append((own, np.linalg.inv(gram)))
+        self._windows = [
+            (last - first, Tolerance(changes[:, first:last].reshape(len(changes), -1)))
+            for first, last in itertools.pairwise([0, *ends])
+        ]
 
     def part(self, first: int, last: int) -> "StartUncertainty":
         """The start uncertainty of the windows `first` to `last - 1` only."""
@@ -60,14 +64,17 @@ class StartUncertainty:
         some._windows = self._windows[first:last]
         return some
 
+    @property
+    def taken(self) -> float:
+        """Number of the entries' squares that whitening takes out of noise."""
+        return sum(tolerance.taken for _, tolerance in self._windows)
+
     def without(self, residual: FloatArray) -> FloatArray:
-        """(n, rows, c) residuals less the part that wrong start states explain."""
+        """(n, rows, c) residuals, whitened."""
         cleaned, first = [], 0
-        for own, inverse in self._windows:
-            last = first + own.shape[1]
-            part = residual[:, first:last]
-            seen = np.einsum("krc,nrc->nck", own, part)
-            size = np.einsum("ckl,ncl->nck", inverse, seen)
-            cleaned.append(part - np.einsum("krc,nck->nrc", own, size))
-            first = last
+        for rows, tolerance in self._windows:
+            part = residual[:, first : first + rows]
+            flat = tolerance.without(part.reshape(len(part), -1))
+            cleaned.append(flat.reshape(part.shape))
+            first += rows
         return np.concatenate(cleaned, axis=1)

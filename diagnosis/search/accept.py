@@ -107,7 +107,7 @@ def without_idle_values(judge: Judge, result: SearchResult) -> SearchResult:
     if start == winner.model:
         return result
     (judged,) = fitted_exactly(judge, [judge.judged([start])[0].model])
-    if judge.worth(judged.selected, winner.selected, result.nothing):
+    if judge.worth(judged, winner):
         return result
     others = [one for one in result.best[result.chosen] if one.keys != judged.keys]
     return result.with_models(result.chosen, [judged, *others])
@@ -124,7 +124,7 @@ def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
         smaller = judge.judged(without_each(winner.model))
         kept = [judged.model for judged in smaller]
         best = min(fitted_exactly(judge, kept), key=lambda judged: judged.evidence)
-        if judge.worth(best.selected, winner.selected, result.nothing):
+        if judge.worth(best, winner):
             break
         size = result.chosen - 1
         others = [one for one in result.best.get(size, []) if one.keys != best.keys]

@@ -13,10 +13,11 @@ import numpy as np
 
 from diagnosis.effects.library import all_effects
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import Nudges, fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import Judged, SearchResult, without_each
-from diagnosis.search.screening import Guess, Screen, signatures
+from diagnosis.search.screening import Guess, Screen
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import BoolArray
 

@@ -7,9 +7,10 @@ import numpy as np
 
 from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.signatures import Signature
 from diagnosis.search.result import Judged, keys_of, without_each
 from diagnosis.search.rules import Rules
-from diagnosis.search.screening import Screen, Signature
+from diagnosis.search.screening import Screen
 from groundwalk.arrays import FloatArray
 
 FEW_JOINTS = 6
@@ -66,9 +67,18 @@ class Candidates:
             starts += self._partners(best[0])
         if residual is not None:
             known = {keys_of(model) for model in starts}
-            pairs = self._screen.pairs(residual, self._rules.pairs)
-            starts += [one.model for one in pairs if keys_of(one.model) not in known]
+            pairs = self.pairs(residual, scanned=False)
+            starts += [model for model in pairs if keys_of(model) not in known]
         return self._scanned(starts)
+
+    def pairs(self, residual: FloatArray, scanned: bool = True) -> list[Model]:
+        """The pairs of effects that explain most of a residual (N,) of the nominal sim.
+
+        `scanned` tries several sizes of one of each pair.
+        """
+        guesses = self._screen.pairs(residual, self._rules.pairs)
+        models = [guess.model for guess in guesses]
+        return self._scanned(models) if scanned else models
 
     def swapped(self, judged: Judged) -> list[Model]:
         """Variants of a model with one effect replaced by another, or moved."""
@@ -90,6 +100,13 @@ class Candidates:
         """Linear estimate of the most [nats] that one more effect would gain."""
         guesses = self._screen.singles(judged.fit.residual, judged.fit.jacobian)
         return max((guess.gain for guess in guesses), default=0.0)
+
+    def gain_by_chance(self, residual: FloatArray) -> float:
+        """The gain [nats] that the best single effect has by chance in 1 of 100 cases.
+
+        `residual` (N,) is that which a fitted model leaves on the fitting data [noise].
+        """
+        return self._screen.gain_by_chance(residual)
 
     def _scanned(self, starts: Sequence[Model]) -> list[Model]:
         """Models with the best of several simulated sizes of their last effect.

@@ -1,13 +1,13 @@
 """Fits the parameters of models by nonlinear least squares, several at a time."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.effects.parts import Parameter, PlacedEffect
+from diagnosis.effects.parts import Parameter
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep
@@ -80,7 +80,7 @@ class Coordinates:
         """The model whose values have the (p,) scaled coordinates `x`."""
         values = iter(map(_value, self.parameters, x))
         return tuple(
-            PlacedEffect(old.name, old.place, tuple(islice(values, len(old.values))))
+            replace(old, values=tuple(islice(values, len(old.values))))
             for old in self.model
         )
 

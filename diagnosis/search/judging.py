@@ -3,13 +3,30 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from scipy.stats import chi2
 
+from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import MOST_STEPS, FittedModel, fit_all
 from diagnosis.search.hooks import Hooks
-from diagnosis.search.result import Judged, pack, ranked, unpack
+from diagnosis.search.result import VALUE_NATS, Judged, pack, ranked, unpack
 from diagnosis.search.rules import Rules
 from groundwalk.arrays import FloatArray
+
+CONTRADICTED = 3.0
+"""Loss [nats] on the selection data from which on they contradict a model: odds of 20
+to 1 (Kass and Raftery 1995, "Bayes factors": strong evidence)."""
+
+
+def gain_of_noise(candidates: int) -> float:
+    """Gain [nats] of the best of independent candidates in 1 of 100 cases of noise."""
+    return 0.5 * float(chi2.isf(0.01 / max(candidates, 1), 1))
+
+
+def places_of_effects(predictor: Predictor) -> int:
+    """Number of effects at their places that the recordings could show."""
+    kinds = all_effects().values()
+    return sum(len(one.places(predictor.plant, predictor.traces)) for one in kinds)
 
 
 class Judge:
@@ -21,6 +38,8 @@ class Judge:
       residual: (N,) residual of the nominal sim on the fitting data [noise].
       nothing, nothing_fit: energy of the nominal sim on selection and fitting data.
       floor, floor_fit: energy that noise alone leaves on them.
+      least_gain: gain [nats] that no effect reaches by chance, see `chance.py`; at
+        first that of independent noise, later that of the residual of the best model.
     """
 
     def __init__(
@@ -38,8 +57,7 @@ class Judge:
         """
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.healthy, self.hooks = healthy, hooks or Hooks()
-        self.floor = 0.5 * float(select.scored.sum())
-        self.floor_fit = 0.5 * float(fit.scored.sum())
+        self.floor, self.floor_fit = select.noise_energy, fit.noise_energy
         # Models of one size hardly differ in what they fit by chance, so the fitting
         # data count in their comparison. They do not on a floating base, where two
         # recordings differ by chance, and not with a reference, which is compared with
@@ -48,88 +66,64 @@ class Judge:
         self.residual = fit.residuals([()])[0]
         self.nothing_fit = 0.5 * float(self.residual @ self.residual)
         self.nothing = self.energies([()])[0]
+        self.least_gain = gain_of_noise(places_of_effects(fit))
 
     def ranked(self, judged: Sequence[Judged]) -> list[Judged]:
         """Models in the order of their plausibility, the most plausible first."""
         return ranked(judged, self.floor + self._weight * self.floor_fit)
 
     @property
-    def least_gain(self) -> float:
-        """Log-likelihood [nats] that an effect must gain on the selection data."""
-        pattern = self.rules.least_pattern**2 * self.floor
-        return max(self.rules.least_gain, pattern / len(self.fit.channels.names))
-
-    @property
     def least_fitted(self) -> float:
-        """Log-likelihood [nats] an effect must gain on the fitting data to be reported.
+        """Gain [nats] that an effect must have on the fitting data to be reported.
 
-        The effect is taken to show in the fitting data as much as in the selection
-        data. With a fixed base the sum of both gains must be large enough, with a
-        floating base each of them.
+        With a floating base it must gain as much on the selection data, in which the
+        effect is taken to show as much.
         """
-        share = float(self.fit.scored.sum() / self.select.scored.sum())
         if self.fit.plant.base == "fixed":
-            return max(self.least_gain, 2 * self.least_gain * share / (1 + share))
+            return self.least_gain
+        share = float(self.fit.scored.sum() / self.select.scored.sum())
         return max(1.0, share) * self.least_gain
 
-    def worth(self, before: float, after: float, nothing: float) -> bool:
-        """Whether adding an effect to a model improves the fit enough to be believed.
+    def worth(self, smaller: Judged, larger: Judged) -> bool:
+        """Whether a larger model explains more than effects do by chance."""
+        gain = smaller.evidence - larger.evidence
+        least = self.least_gain + self._price(larger.model) - self._price(smaller.model)
+        matters = self._matters(smaller.selected - larger.selected)
+        return gain > least and matters
 
-        Energies [nats] of the smaller model, the larger one and the nominal sim are
-        those on the selection data.
-        """
-        return before - after > self.least_gain and self.matters(before, after, nothing)
-
-    def matters(self, before: float, after: float, nothing: float) -> bool:
-        """Whether a larger model removes enough of the energy that is left to explain.
-
-        Arguments are those of `worth`. The noise level itself is uncertain; close to it
-        no minimum share is required.
-        """
-        rules = self.rules
-        left = before - (1 + rules.unsure_floor) * self.floor
-        return before - after > max(
-            rules.least_share_of_rest * left,
-            rules.least_share * (nothing - self.floor),
-            0.0,
-        )
-
-    def believes(self, best: Judged, energy: float, fitted: float) -> bool:
+    def believes(self, best: Judged, smaller: Judged | None = None) -> bool:
         """Whether the best model of a round of the search is believed.
 
-        `energy` and `fitted` [nats] are those of the best smaller model on the
-        selection and on the fitting data.
+        It is compared with the best smaller model, None for the nominal sim. The gain
+        on the fitting data must not be by chance, and the selection data must not
+        contradict it: an end stop or a push need not occur there. With a floating base
+        recordings differ by chance, so that the gain must show in both.
         """
-        gains = fitted - best.fit.energy, energy - best.selected
-        if self.shows(*gains) and self.matters(energy, best.selected, self.nothing):
-            return True
-        return len(best.model) == 1 and self.hints(*gains)
+        energy = smaller.selected if smaller else self.nothing
+        fitted = smaller.fit.energy if smaller else self.nothing_fit
+        least = self.least_gain + self._price(best.model)
+        least -= self._price(smaller.model if smaller else ())
+        gained, selected = fitted - best.fit.energy, energy - best.selected
+        is_free = self.fit.plant.base == "floating"
+        here = selected > (least if is_free else -CONTRADICTED)
+        return gained > least and here and self._matters(gained)
 
-    def shows(self, fitted: float, selected: float) -> bool:
-        """Whether an effect gains enough [nats] on fitting and on selection data each.
+    def _price(self, model: Model) -> float:
+        """Gain [nats] that a model needs beyond that of effects with one value each.
 
-        A model that gains on the selection data by chance gains little on the fitting
-        data.
+        More values, and start and end chosen freely, fit more by chance.
         """
-        return min(fitted, selected) > self.least_gain
-
-    def hints(self, fitted: float, selected: float) -> bool:
-        """Whether a single effect gains enough [nats] on both kinds of data together.
-
-        A joint may move less in the selection data than in the fitting data, and an end
-        stop or a push may not occur there at all. With a floating base the answer is
-        no: recordings differ by chance, so that gains in only one of them mean nothing.
-        """
-        rules, gain = self.rules, fitted + selected
-        left = self.nothing_fit - (1 + rules.unsure_floor) * self.floor_fit
-        if self.fit.plant.base != "fixed" or gain < rules.least_share_of_rest * left:
-            return False
-        both = fitted > self.least_gain and selected > rules.least_hint
-        one = (
-            fitted > rules.fitted_only * self.least_gain
-            and selected > -rules.least_hint
+        rows = sum(trace.ticks for trace in self.fit.traces)
+        timed = [one for one in model if effect(one.name).timed]
+        return float(len(timed) * np.log(rows)) + sum(
+            VALUE_NATS * (len(one.values) - 1) + effect(one.name).rarity_nats
+            for one in model
         )
-        return bool((both and gain > 2 * self.least_gain) or one)
+
+    def _matters(self, gain: float) -> bool:
+        """Whether a gain [nats] is the share of the error that the user asks for."""
+        share = self.rules.least_share
+        return share == 0 or gain > share * (self.nothing - self.floor)
 
     def judged(
         self,

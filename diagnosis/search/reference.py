@@ -8,6 +8,8 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.search.everywhere import everywhere, more_is_missing
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import pack_noise, unpack_noise
@@ -47,7 +49,7 @@ class _Simulations(NamedTuple):
     ) -> Predictor:
         """A calibrated predictor of some recordings."""
         options = None, self.threads, noise, self.hooks.advance
-        predictor = Predictor(self.plant, traces, self.channels, *options)
+        predictor = predictor_of(self.plant, traces, self.channels, *options)
         predictor.calibrate()
         return predictor
 
@@ -161,8 +163,10 @@ def _explained(
     whole = sims.predictor([*fit, *select])
     parted = whole.part(0, len(fit)), whole.part(len(fit), len(whole.traces))
     judge = Judge(*parted, rules, hooks=sims.hooks)
-    winner = Search(judge).run().winner
-    return winner.model if winner else ()
+    result = Search(judge).run()
+    if more_is_missing(judge.fit, result):
+        result = everywhere(judge, result)
+    return result.winner.model if result.winner else ()
 
 
 def _shifted(trace: Trace) -> list[Trace]:

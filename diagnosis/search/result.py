@@ -88,12 +88,12 @@ class SearchResult:
 
         The larger one of the shares on the selection data and on fitting and selection
         data: an effect such as an end stop may show in the fitting data only, and a
-        robot may fall in many ways there.
+        robot may fall in many ways there. At most 1: tolerances explain noise, too.
         """
         excess, gained = self.nothing - self.floor, self.nothing - judged.selected
         more = self.nothing_fit - self.floor_fit, self.nothing_fit - judged.fit.energy
         shares = (gained, excess), (gained + more[1], excess + more[0])
-        return max((a / b for a, b in shares if b > 0), default=0.0)
+        return min(max((a / b for a, b in shares if b > 0), default=0.0), 1.0)
 
 
 def keys_of(model: Model) -> frozenset[str]:
@@ -174,10 +174,13 @@ def unpack_noise(saved: Saved) -> ReferenceNoise:
 
 
 def _plain(model: Model) -> list[list[Any]]:
-    """A model as lists [effect, place, values], one for each effect."""
-    return [[one.name, one.place, list(one.values)] for one in model]
+    """A model as lists [effect, place, values, recording], one for each effect."""
+    return [[one.name, one.place, list(one.values), one.recording] for one in model]
 
 
 def _model(plain: list[list[Any]]) -> Model:
-    """A model from lists [effect, place, values]."""
-    return tuple(PlacedEffect(effect, place, tuple(v)) for effect, place, v in plain)
+    """A model from lists [effect, place, values, recording]."""
+    return tuple(
+        PlacedEffect(name, place, tuple(values), recording)
+        for name, place, values, recording in plain
+    )

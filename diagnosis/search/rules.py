@@ -1,15 +1,15 @@
 """Settings of a search for missing effects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
 class Rules:
     """How many models a search tries, and when it believes an effect.
 
-    The defaults were set on recordings with hidden effects of known truth. An energy is
-    half the sum of squared residuals in units of noise [nats]; a gain is a reduction of
-    energy; a guess is a model whose gain is estimated linearly, without simulation.
+    An energy is half the sum of squared residuals in units of noise [nats]; a gain is a
+    reduction of energy; a guess is a model whose gain is estimated linearly, without
+    simulation.
 
     Attributes:
       single_effects: number of single effects that are fitted at the start.
@@ -31,16 +31,6 @@ class Rules:
         tried even if no single effect helps; below it a search may end.
       promising: below that level a search ends if no guess gains this share of
         `least_gain`.
-      least_gain: gain [nats] on the selection data that an effect needs.
-      least_hint: the same for a single effect that also shows on the fitting data.
-      fitted_only: a single effect that gains this multiple of `least_gain` on the
-        fitting data needs no gain on the selection data.
-      least_pattern: an effect must gain as much as a pattern of this rms [noise] would;
-        smaller patterns are errors of integrators and clocks.
-      least_share_of_rest: share of the remaining energy above the noise that an effect
-        must remove.
-      unsure_floor: relative uncertainty of the noise energy, within which no share is
-        required.
       least_share: share of the nominal sim's energy above the noise that an effect must
         remove.
 
@@ -62,10 +52,19 @@ class Rules:
     largest: int = 3
     suspicious: float = 1.5
     promising: float = 0.5
-    least_gain: float = 15.0
-    least_hint: float = 3.0
-    fitted_only: float = 4.0
-    least_pattern: float = 0.15
-    least_share_of_rest: float = 0.3
-    unsure_floor: float = 0.1
-    least_share: float = 0.0001
+    least_share: float = 0.0
+
+    @property
+    def again(self) -> "Rules":
+        """Settings of a search that begins with what an earlier one found."""
+        return replace(
+            self,
+            single_effects=min(self.single_effects, 5),
+            further_effects=min(self.further_effects, 2),
+            growths_each=min(self.growths_each, 2),
+            pairs=min(self.pairs, 2),
+            finished=min(self.finished, 5),
+            refinements=min(self.refinements, 2),
+            compared=min(self.compared, 4),
+            swaps=min(self.swaps, 3),
+        )

@@ -14,109 +14,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.effects.library import all_effects, effect
-from diagnosis.effects.parts import Interval, PlacedEffect
-from diagnosis.plant.plant import Plant
+from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect, Values
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.fitting import Coordinates
-from diagnosis.traces.usage import Usage
+from diagnosis.residuals.signatures import Signature
+from diagnosis.search.chance import by_chance, independent_blocks, signs
 from groundwalk.arrays import FloatArray, IntArray
-
-
-@dataclass(frozen=True, eq=False)
-class Signature:
-    """The change of the residual that an effect of a tried size causes at a place.
-
-    Attributes:
-      placed: the effect with the values that were tried.
-      change: (rows,) change of the residual, in units of noise.
-      rows: (rows,) indices into the residual: all, or those of the joint's channels.
-      two_sided: whether the effect may also have the opposite sign.
-    """
-
-    placed: PlacedEffect
-    change: FloatArray
-    rows: IntArray
-    two_sided: bool
-
-
-def signatures(
-    predictor: Predictor,
-    base: Model,
-    usage: Usage,
-    intervals: Sequence[Interval] = (),
-    names: Sequence[str] = (),
-) -> list[Signature]:
-    """Simulate effects at all their places, to see how each changes the residual.
-
-    The effects `names`, all if empty, are added to the model `base`, one or one kind at
-    a time. The `usage` of the joints sets the sizes that are tried; `intervals` are
-    start and duration [s] of possible pushes.
-    """
-    trials = _trials(predictor, usage, intervals, names or tuple(all_effects()))
-    models = [base, *(base + added for added, _ in trials)]
-    residuals = predictor.residuals(models)
-    found = []
-    for row, (added, joint_wise) in enumerate(trials, start=1):
-        change = residuals[row] - residuals[0]
-        for placed in added:
-            rows = np.arange(len(change))
-            if joint_wise:
-                own = predictor.channels.of_joint(placed.place)
-                rows = np.flatnonzero(np.isin(predictor.channel, own))
-            # whether its first value may be below and above the neutral one
-            first = Coordinates(predictor.plant, (placed,)).parameters[0]
-            two_sided = first.low < first.neutral < first.high
-            found.append(Signature(placed, change[rows], rows, two_sided))
-    return found
-
-
-def _trials(
-    predictor: Predictor,
-    usage: Usage,
-    intervals: Sequence[Interval],
-    names: Sequence[str],
-) -> list[tuple[Model, bool]]:
-    """Effects to simulate together, and whether these are one kind at all joints."""
-    trials: list[tuple[Model, bool]] = []
-    for name in names:
-        kind = effect(name)
-        places = kind.places(predictor.plant, predictor.traces)
-        if kind.at_tips:
-            places = tuple(p for p in places if p in tips(predictor.plant)) or places
-        options = {
-            place: kind.first_tries(predictor.plant, place, usage) for place in places
-        }
-        if kind.timed:
-            options = {
-                place: [values[:-2] + when for when in intervals for values in tries]
-                for place, tries in options.items()
-            }
-        if not any(options.values()):
-            continue
-        if kind.place_kind == "joint" and kind.joint_by_joint:
-            for level in range(max(map(len, options.values()))):
-                model = tuple(
-                    PlacedEffect(name, place, values[level])
-                    for place, values in options.items()
-                )
-                trials.append((model, True))
-        else:
-            trials += [
-                ((PlacedEffect(name, place, each),), False)
-                for place, values in options.items()
-                for each in values
-            ]
-    return trials
-
-
-def tips(plant: Plant) -> frozenset[str]:
-    """Names of the bodies that carry no other body, such as hands and feet."""
-    model = plant.model
-    carrying = {int(parent) for parent in model.body_parentid[1:]}
-    every = range(1, model.nbody)
-    return frozenset(model.body(i).name for i in every if i not in carrying)
-
 
 SHORT, VECTORS_PAIRED = 200, 20
 """Numbers of the most promising candidates for pairs: of pairs of scalar effects, and
@@ -205,6 +108,32 @@ class Screen:
                 best[keys] = guess
         return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
 
+    def gain_by_chance(self, residual: FloatArray) -> float:
+        """The gain [nats] that the best candidate has by chance in 1 of 100 cases.
+
+        `residual` (N,) is that which a model leaves [noise]: see `chance.py`.
+        """
+        return by_chance(np.max([*self.gains_by_chance(residual).values()], axis=0))
+
+    def gains_by_chance(self, residual: FloatArray) -> dict[str, FloatArray]:
+        """(draws,) gains [nats] of each effect and place in draws of signs, by key."""
+        block = independent_blocks(self._predictor, residual)
+        count = int(block.max()) + 1
+        parts = np.stack(
+            [np.bincount(block, one * residual, count) for one in self._columns]
+        )
+        wanted = signs(count) @ parts.T
+        best: dict[str, FloatArray] = {}
+        for group in self._groups:
+            own, key = wanted[:, group], self._found[group[0]].placed.key
+            if len(group) == 1 and not self._found[group[0]].two_sided:
+                own = np.maximum(own, 0.0)
+            products = self._products[np.ix_(group, group)]
+            inverse = np.linalg.pinv(products, rcond=SAME, hermitian=True)
+            gain = 0.5 * np.einsum("di,ij,dj->d", own, inverse, own)
+            best[key] = np.maximum(best.get(key, 0.0), gain)
+        return best
+
     def _promising(self, view: _View) -> list[tuple[list[int], list[int]]]:
         """Pairs of effects, as groups of signature indices, whose gain to compute."""
         alone = [group for group in self._groups if len(group) == 1]
@@ -238,8 +167,8 @@ class Screen:
         both = np.outer(power, power)
         rest = both - products**2
         apart = np.triu(rest > SAME * both, 1)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            size = (wanted[:, None] * power - wanted * products) / rest
+        size = wanted[:, None] * power - wanted * products
+        size = np.divide(size, rest, out=np.zeros_like(rest), where=rest != 0)
         sided = np.array([self._found[row].two_sided for row in rows], bool)
         possible = apart & ((size > 0) | sided[:, None]) & ((size.T > 0) | sided)
         gain = 0.5 * (size * wanted[:, None] + size.T * wanted)
@@ -247,14 +176,15 @@ class Screen:
 
     def _grouped(self) -> list[list[int]]:
         """Indices of signatures, grouped such that vector effects are complete."""
-        vectors: dict[tuple[str, tuple[float, ...]], list[int]] = {}
+        vectors: dict[tuple[str, str | None, Values], list[int]] = {}
         alone = []
         for row, signature in enumerate(self._found):
             placed = signature.placed
             components = effect(placed.name).components
             if components > 1:
                 rest = placed.values[components:]
-                vectors.setdefault((placed.key, rest), []).append(row)
+                same = placed.key, placed.recording, rest
+                vectors.setdefault(same, []).append(row)
             elif self._products[row, row] > 0:
                 alone.append([row])
         return [*alone, *vectors.values()]
@@ -274,7 +204,9 @@ class Screen:
         """The best allowed sizes of some groups of signatures; None if useless."""
         rows = [row for group in groups for row in group]
         products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]
-        ridge = np.diag(view.ridge * np.diag(self._products)[rows] + 1e-12)
+        power = np.diag(self._products)[rows]
+        # a component that changes nothing, up to rounding, stays small
+        ridge = np.diag(view.ridge * power + TINY * power.max() + 1e-12)
         size = np.linalg.solve(products + ridge, target)
         sided = [self._found[row].two_sided or not view.bounded for row in rows]
         least = np.where(sided, -LARGEST_STRETCH, 0.0)

@@ -6,15 +6,16 @@ fitted, fits use the fitting data only, and the selection data decide whether an
 is believed. `accept.py` tests the result further.
 """
 
+import itertools
 from collections.abc import Sequence
 
 from diagnosis.effects.library import all_effects
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates, grown
-from diagnosis.search.judging import Judge, distinct
-from diagnosis.search.result import Judged, SearchResult
-from diagnosis.search.screening import Signature, signatures
+from diagnosis.search.judging import Judge, distinct, gain_of_noise
+from diagnosis.search.result import Judged, SearchResult, keys_of
 from diagnosis.traces.usage import Usage
 
 
@@ -26,35 +27,39 @@ class Search:
       signatures: changes of the residual by each effect at each place; filled by `run`.
     """
 
-    def __init__(self, judge: Judge) -> None:
+    def __init__(self, judge: Judge, promising: Sequence[Model] = ()) -> None:
         """Prepare a search; the predictors of `judge` must be calibrated already."""
-        self.judge = judge
+        self.judge, self._promising = judge, promising
         self.signatures: list[Signature] = []
         self._rules, self._fit = judge.rules, judge.fit
+        # whitened with tolerances a short error is no longer short
+        self._bare = judge.fit.without_tolerances()
         self._usage = Usage.of(judge.fit.plant, judge.fit.traces)
 
     def run(self) -> SearchResult:
         """Add effects to models until another one does not improve them enough."""
         judge, residual = self.judge, self.judge.residual
-        intervals = push_intervals(self._fit, residual)
+        intervals = push_intervals(self._bare, self._bare.residuals([()])[0])
         self.signatures = signatures(self._fit, (), self._usage, intervals)
         starts = Candidates(self._fit, self.signatures, self._rules)
-        best = {1: self._round(1, starts.alone(residual))}
+        best = {1: self._round(1, self._with_promising(1, starts.alone(residual)))}
         chosen, size = 0, 1
-        energy, fitted = judge.nothing, judge.nothing_fit
+        before: Judged | None = None
         while best.get(size):
-            if judge.believes(best[size][0], energy, fitted):
+            left = best[size][0].fit.residual
+            judge.least_gain = max(starts.gain_by_chance(left), gain_of_noise(1))
+            if judge.believes(best[size][0], before):
                 chosen = size
                 best[size] = self._refined(best[size])
-                energy, fitted = best[size][0].selected, best[size][0].fit.energy
+                before = best[size][0]
                 starts = self._starts_from(best[size][0])
             # two effects together may explain what neither explains alone, such as
             # backlash and the friction that damps it
-            elif size > chosen + 1 or energy < self._rules.suspicious * judge.floor:
+            elif size > chosen + 1 or not self._much_is_left(before):
                 break
             larger = self._larger(starts, best[size])
             size += 1
-            best[size] = self._round(size, larger)
+            best[size] = self._round(size, self._with_promising(size, larger))
         if chosen:
             replaced = starts.swapped(best[chosen][0])
             swapped = self._round(chosen, replaced, "replacements of ")
@@ -62,6 +67,15 @@ class Search:
         return SearchResult(
             judge.nothing, judge.floor, best, chosen, judge.nothing_fit, judge.floor_fit
         )
+
+    def _with_promising(self, size: int, starts: list[Model]) -> list[Model]:
+        """The models to start from, if any, and the promising ones of their size."""
+        return [*starts, *(m for m in self._promising if len(m) == size)]
+
+    def _much_is_left(self, best: Judged | None) -> bool:
+        """Whether so much remains to be explained that pairs of effects are tried."""
+        energy = best.selected if best else self.judge.nothing
+        return energy >= self._rules.suspicious * self.judge.floor
 
     def _round(
         self, size: int, starts: Sequence[Model], kind: str = ""
@@ -74,8 +88,9 @@ class Search:
 
     def _starts_from(self, leader: Judged) -> Candidates:
         """Candidates that include pushes visible in the leading model's residual."""
-        left = leader.fit.residual
-        _, *bursts = push_intervals(self._fit, left)
+        left = leader.fit.residual, self._bare.residuals([leader.model])[0]
+        found = [push_intervals(self._fit, one)[1:] for one in left]
+        bursts = list(dict.fromkeys(itertools.chain(*found)))
         pushes: list[Signature] = []
         if bursts:
             timed = [name for name, kind in all_effects().items() if kind.timed]
@@ -90,12 +105,29 @@ class Search:
         if len(leader.model) == self._rules.largest:
             return []
         if leader.selected > self._rules.suspicious * judge.floor:
-            return starts.larger(best, near=alone, residual=residual)
+            larger = starts.larger(best, near=alone, residual=residual)
+            if alone and not self._promising:
+                larger += self._hidden_pairs(larger)
+            return larger
         gain = starts.promised(leader) * judge.select.scored.sum()
         least = self._rules.promising * judge.least_gain * self._fit.scored.sum()
         if gain < least:
             return []
         return starts.larger(best, near=False, residual=residual)
+
+    def _hidden_pairs(self, known: Sequence[Model]) -> list[Model]:
+        """Pairs, beside those known, that explain most of the residual as it is.
+
+        Two effects that nearly cancel each other leave little beyond tolerances, from
+        which linear estimates do not tell which they are.
+        """
+        (left,) = self._bare.residuals([()])
+        found = signatures(
+            self._bare, (), self._usage, push_intervals(self._bare, left)
+        )
+        pairs = Candidates(self._bare, found, self._rules).pairs(left)
+        keys = {keys_of(model) for model in known}
+        return [model for model in pairs if keys_of(model) not in keys]
 
     def _refined(self, best: list[Judged]) -> list[Judged]:
         """Fit the best models again with the integration error of the best one.
@@ -104,15 +136,15 @@ class Search:
         effects are fitted as well.
         """
         judge = self.judge
-        for _ in range(self._rules.refinements):
+        for again in range(self._rules.refinements):
             before = best[0]
             for part in (self._fit, judge.select):
-                part.calibrate(before.model)
+                part.calibrate(before.model, tolerances=not again)
             first, others = best[: self._rules.beam], best[self._rules.beam :]
             wider = grown(before.model)
-            again = [*(judged.model for judged in first), *wider]
+            models = [*(judged.model for judged in first), *wider]
             known = [None, *(judged.fit.jacobian for judged in first[1:])]
-            tried = judge.judged(again, [*known, *(None for _ in wider)])
+            tried = judge.judged(models, [*known, *(None for _ in wider)])
             best = distinct(judge.ranked([*tried, *others]))
             if best[0].keys == before.keys or best[0] not in tried:
                 break

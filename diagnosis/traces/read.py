@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -129,21 +130,20 @@ def trace_of(recording: Recording, plant: Plant, name: str) -> Trace:
         raise BadRecordingError(
             f"{name}: its base is {recording.metadata.base}, the plant's {plant.base}"
         )
+    channels: dict[str, Any] = {
+        field: _of_joints(recording, quantity, plant.joints)
+        for quantity, field in JOINT_FIELDS.items()
+        if quantity != "position"
+    }
+    for vector, field in VECTOR_FIELDS.items():
+        if recording.has(vector) and (vector != "foot_force" or len(plant.feet) == 2):
+            channels[field] = recording.vector(vector)
     return Trace(
         name=name,
         time_s=recording.time_s,
         position_rad=recording.joint_values("position", plant.joints),
         servo=with_gains(plant.servo, plant.joints, recording.metadata.servo),
-        **{
-            field: _of_joints(recording, quantity, plant.joints)
-            for quantity, field in JOINT_FIELDS.items()
-            if quantity != "position"
-        },
-        **{
-            field: recording.vector(vector) if recording.has(vector) else None
-            for vector, field in VECTOR_FIELDS.items()
-            if vector != "foot_force" or len(plant.feet) == 2
-        },
+        **channels,
     )
 
 

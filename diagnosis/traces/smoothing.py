@@ -53,7 +53,30 @@ def smooth(
     knots = _knots(time_s)
     centre = float(np.mean(values[valid]))
     coefficients = _fit(time_s[valid], values[valid] - centre, noise_std, knots)
-    spline = BSpline(knots, coefficients, _DEGREE)
+    return _smoothed(BSpline(knots, coefficients, _DEGREE), time_s, centre)
+
+
+def smooth_below(time_s: FloatArray, values: FloatArray, cutoff_hz: float) -> Smoothed:
+    """Smooth one channel such that a sine of `cutoff_hz` keeps half of its size.
+
+    The spline, its gaps and its limits are those of `smooth`; it delays nothing. Its
+    penalty's weight follows from the frequency (see `_passed`), not from the noise.
+    """
+    valid = np.isfinite(values)
+    if valid.sum() < _LEAST_ROWS:
+        nothing = np.full(len(values), np.nan)
+        return Smoothed(nothing, nothing, nothing)
+    knots = _knots(time_s)
+    turn = np.pi * min(cutoff_hz * float(np.median(np.diff(time_s))), 0.5)
+    stiffness = float((2 * np.sin(turn)) ** (-2 * _ORDER))
+    centre = float(np.mean(values[valid]))
+    normal = _Normal(time_s[valid], values[valid] - centre, knots)
+    coefficients = normal.coefficients(stiffness)
+    return _smoothed(BSpline(knots, coefficients, _DEGREE), time_s, centre)
+
+
+def _smoothed(spline: BSpline, time_s: FloatArray, centre: float) -> Smoothed:
+    """A spline, plus a constant, and its derivatives at (T,) times."""
     return Smoothed(
         np.asarray(spline(time_s) + centre, float),
         np.asarray(spline(time_s, 1), float),
@@ -77,28 +100,49 @@ def _knots(time_s: FloatArray) -> FloatArray:
     return np.asarray(knots)
 
 
+class _Normal:
+    """The normal equations of a spline with a smoothing penalty."""
+
+    def __init__(
+        self, time_s: FloatArray, values: FloatArray, knots: FloatArray
+    ) -> None:
+        design = BSpline.design_matrix(time_s, knots, _DEGREE)
+        count = design.shape[1]
+        self._gram = design.T @ design
+        diagonals = [self._gram.diagonal(k) for k in range(_DEGREE + 1)]
+        self._bands = _upper_bands(diagonals, count)
+        self._bands[-1] += _RIDGE
+        self._cost = _penalty_bands(count)
+        self.target = np.asarray(design.T @ values, float)
+        self._energy = float(values @ values)
+
+    def coefficients(self, stiffness: float) -> FloatArray:
+        """Spline coefficients for one weight of the penalty.
+
+        Raises:
+          LinAlgError: a gap without values is too long for so stiff a spline.
+        """
+        bands = self._bands + stiffness * self._cost
+        return np.asarray(solveh_banded(bands, self.target, check_finite=False))
+
+    def residual(self, coefficients: FloatArray) -> float:
+        """Sum of the squared distances of values and spline."""
+        less = 2 * coefficients @ self.target
+        return float(self._energy - less + coefficients @ (self._gram @ coefficients))
+
+
 def _fit(
     time_s: FloatArray, values: FloatArray, noise_std: float, knots: FloatArray
 ) -> FloatArray:
     """Spline coefficients for the penalty weight with the smallest Mallows' Cp."""
-    design = BSpline.design_matrix(time_s, knots, _DEGREE)
-    count = design.shape[1]
-    gram = design.T @ design
-    bands = _upper_bands([gram.diagonal(k) for k in range(_DEGREE + 1)], count)
-    bands[-1] += _RIDGE
-    cost = _penalty_bands(count)
-    target = np.asarray(design.T @ values, float)
-    energy = float(values @ values)
-    best, chosen = np.inf, target
+    normal = _Normal(time_s, values, knots)
+    best, chosen = np.inf, normal.target
     for stiffness in _STIFFNESS:
         try:
-            coefficients = solveh_banded(
-                bands + stiffness * cost, target, check_finite=False
-            )
-        except LinAlgError:  # a gap too long for so stiff a spline to cross
+            coefficients = normal.coefficients(stiffness)
+        except LinAlgError:
             break
-        residual = energy - 2 * coefficients @ target
-        residual += coefficients @ (gram @ coefficients)
+        residual = normal.residual(coefficients)
         criterion = residual + 2 * noise_std**2 * _freedom(stiffness, len(values))
         if criterion < best:
             best, chosen = criterion, coefficients
@@ -108,14 +152,20 @@ def _fit(
 def _freedom(stiffness: float, rows: int) -> float:
     """Degrees of freedom of a smoothing spline on evenly spaced rows, a knot each.
 
-    Far from the ends a signal of w radians per row is multiplied by
-    1 / (1 + stiffness w^6). Its mean over w, times the rows, counts, plus three for the
-    parabola that the penalty does not see.
+    The share of a signal that the spline passes, in the mean over all frequencies,
+    times the rows counts, plus three for the parabola that the penalty does not see.
     """
     frequency = (np.arange(512) + 0.5) * np.pi / 512
-    # the difference operator's own response, exact for all frequencies
-    passed = 1 / (1 + stiffness * (2 * np.sin(frequency / 2)) ** (2 * _ORDER))
-    return float(rows * passed.mean() + _ORDER)
+    return float(rows * _passed(frequency, stiffness).mean() + _ORDER)
+
+
+def _passed(frequency: FloatArray, stiffness: float) -> FloatArray:
+    """Share of signals of w radians per row that a spline passes, far from its ends.
+
+    It is 1 / (1 + stiffness w^6), with the difference operator's own response for w.
+    """
+    response = (2 * np.sin(frequency / 2)) ** (2 * _ORDER)
+    return np.asarray(1 / (1 + stiffness * response))
 
 
 def _penalty_bands(count: int) -> FloatArray:

@@ -50,20 +50,23 @@ class Split:
     test: tuple[Trace, ...]
 
 
-def split(traces: Sequence[Trace]) -> Split:
+def split(traces: Sequence[Trace], errors: Sequence[FloatArray] | None = None) -> Split:
     """Divide traces into data for fitting, for selection and for the final test.
 
     If there are six traces, or three of which one is shorter than 8 s, whole ones are
     set aside for selection and test, such that all joints that move in them move in the
     rest, too. Otherwise, or if that is impossible, each trace is cut into parts, 0.2 s
     apart; their uses are ordered such that each use has as much motion as possible.
+    If `errors` are given, the size of an error in each row (T,) of each trace, each one
+    is cut, such that what is fitted shows as much error as the rest.
     There is no randomness: the same traces are always divided alike.
 
     Raises:
       BadRecordingError: a trace is too short to be cut.
     """
     long = all(trace.duration_s >= _LONG_S for trace in traces)
-    if len(traces) >= (_LEAST_WHOLE_IF_LONG if long else _LEAST_WHOLE):
+    least = _LEAST_WHOLE_IF_LONG if long else _LEAST_WHOLE
+    if errors is None and len(traces) >= least:
         travel = np.stack([_travel(trace) for trace in traces])
         seconds = np.array([trace.duration_s for trace in traces])
         left = list(range(len(traces)))
@@ -75,7 +78,7 @@ def split(traces: Sequence[Trace]) -> Split:
             return Split(
                 *(tuple(traces[k] for k in part) for part in (fit, select, test))
             )
-    return _cut(traces)
+    return _cut(traces, errors)
 
 
 def _travel(trace: Trace) -> FloatArray:
@@ -147,20 +150,26 @@ def _covered(taken: FloatArray, rest: FloatArray) -> float:
     return float((rest.max(axis=0)[moves] / taken.max(axis=0)[moves]).min())
 
 
-def _cut(traces: Sequence[Trace]) -> Split:
+def _cut(traces: Sequence[Trace], errors: Sequence[FloatArray] | None) -> Split:
     """Cut each trace into parts, with uses in the order that covers motion best.
+
+    Errors (T,) in each row of the traces count like a motion.
 
     The uses of each trace begin one part later in that order than those of the trace
     before, so that an event at the same time in all, such as a push, gets several uses.
     """
-    best, chosen = -np.inf, list[tuple[Trace, int]]()
+    best, chosen = -np.inf, list[tuple[Trace, int, FloatArray]]()
     for order in sorted(set(permutations((FIT, FIT, SELECT, TEST)))):
         parts = []
         for k, trace in enumerate(traces):
             first = k % len(order)
-            parts += _parts(trace, order[first:] + order[:first])
+            own = None if errors is None else errors[k]
+            parts += [
+                (part, use, np.append(_motion(part), _largest(trace, part, own)))
+                for part, use in _parts(trace, order[first:] + order[:first])
+            ]
         motion = [
-            np.stack([_motion(part) for part, use in parts if use == wanted])
+            np.stack([moved for _, use, moved in parts if use == wanted])
             for wanted in (FIT, SELECT, TEST)
         ]
         covered = min(1.0, _covered(motion[TEST], motion[FIT]))
@@ -172,10 +181,18 @@ def _cut(traces: Sequence[Trace]) -> Split:
             best, chosen = covered, parts
     return Split(
         *(
-            tuple(part for part, use in chosen if use == wanted)
+            tuple(part for part, use, _ in chosen if use == wanted)
             for wanted in (FIT, SELECT, TEST)
         )
     )
+
+
+def _largest(trace: Trace, part: Trace, errors: FloatArray | None) -> float:
+    """The largest of a trace's errors (T,) in a part of it; 0 if they are unknown."""
+    if errors is None:
+        return 0.0
+    first, last = np.searchsorted(trace.time_s, part.time_s[[0, -1]])
+    return float(errors[first : last + 1].max())
 
 
 def _parts(trace: Trace, order: tuple[int, ...]) -> list[tuple[Trace, int]]:

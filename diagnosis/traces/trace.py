@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import find_objects, label
 
 from diagnosis.plant.servo import Servo
+from diagnosis.traces.motion import Motion
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
 
@@ -47,6 +48,7 @@ class Trace:
 
     Attributes:
       name: name of the recording, with the time span if it is a part.
+      part_of: name of the recording of which this is a part; "" for a whole one.
       servo: the servos of this recording; gains may differ between recordings.
       position_rad, velocity_rad_s, torque_nm: (T, j) measured at the joints.
       command_rad, command_torque_nm: (T, j) position and torque targets.
@@ -56,6 +58,8 @@ class Trace:
       base_position_m, base_linear_velocity_m_s: (T, 3) world frame.
       base_orientation: (T, 4) quaternion w, x, y, z, base to world.
       base_angular_velocity_rad_s: (T, 3) body frame.
+      motion: smoothed motion, if the torque that it needs is compared with the measured
+        torque; None if a replayed motion is compared with the measured one.
 
     Example:
       >>> plant, traces = read_traces(["a.parquet"], "nao")
@@ -78,6 +82,13 @@ class Trace:
     base_orientation: FloatArray | None = None
     base_linear_velocity_m_s: FloatArray | None = None
     base_angular_velocity_rad_s: FloatArray | None = None
+    motion: Motion | None = None
+    part_of: str = ""
+
+    @property
+    def recording(self) -> str:
+        """Name of the recording, also of a part."""
+        return self.part_of or self.name
 
     @property
     def ticks(self) -> int:
@@ -112,7 +123,8 @@ class Trace:
             for name in (*JOINT_FIELDS.values(), "added_nm")
             if (values := getattr(self, name)) is not None
         }
-        return replace(self, servo=self.servo.of(chosen), **changes)
+        motion = self.motion and self.motion.of(chosen)
+        return replace(self, servo=self.servo.of(chosen), motion=motion, **changes)
 
     def part(self, start: int, stop: int) -> "Trace":
         """Rows `start` to `stop - 1`, with their time span added to the name."""
@@ -123,7 +135,9 @@ class Trace:
             if isinstance(getattr(self, field.name), np.ndarray)
         }
         name = f"{self.name}[{self.time_s[start]:.3g}-{self.time_s[stop - 1]:.3g} s]"
-        return replace(self, name=name, **changes)
+        motion = self.motion and self.motion.part(start, stop)
+        own = {**changes, "motion": motion}
+        return replace(self, name=name, part_of=self.recording, **own)
 
 
 def driven_by_torques(trace: Trace) -> Trace:

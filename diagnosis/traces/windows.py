@@ -61,7 +61,7 @@ def window_s(plant: Plant, trace: Trace) -> float | None:
     """Length [s] of the windows in which a trace is replayed; None for all at once."""
     if plant.base == "floating":
         return FLOATING_WINDOW_S
-    return UNHELD_WINDOW_S if trace.loose else None
+    return UNHELD_WINDOW_S if trace.loose and trace.motion is None else None
 
 
 def is_left_over(plant: Plant, trace: Trace) -> bool:
@@ -69,11 +69,16 @@ def is_left_over(plant: Plant, trace: Trace) -> bool:
     return plant.base == "floating" and trace.duration_s < LEAST_WINDOW_S
 
 
-def runs_of(plant: Plant, trace: Trace) -> list[Run]:
-    """Divide all rows of a trace into the windows in which it is replayed."""
+def runs_of(plant: Plant, trace: Trace, least_s: float = 0.0) -> list[Run]:
+    """Divide all rows of a trace into the windows in which it is replayed.
+
+    Windows of a fixed base last `least_s` at least.
+    """
     longest_s = window_s(plant, trace)
     if longest_s is None:
         return [Run.of(trace)]
+    if plant.base == "fixed":
+        longest_s = max(longest_s, least_s)
     position, velocity, _ = smooth_columns(trace.time_s, trace.position_rad)
     base = _bases(trace) if plant.base == "floating" else None
     since_s = trace.time_s - trace.time_s[0]

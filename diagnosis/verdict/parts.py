@@ -76,11 +76,13 @@ class PlacedEffect:
       place: joint, body, or the word for a place that exists once, such as "feet".
       values: values of the effect's parameters, in the order of its class and in SI
         units; empty where only effect and place matter. Not written to JSON.
+      recording: the only recording in which it acted; None for all.
     """
 
     name: str
     place: str
     values: tuple[float, ...] = field(default=(), metadata=NOT_IN_JSON)
+    recording: str | None = field(default=None, metadata=NOT_IN_JSON)
 
     @classmethod
     def parse(cls, key: str) -> "PlacedEffect":
@@ -98,7 +100,8 @@ class PlacedEffect:
 class When:
     """When an effect acted: always, in a burst (for a while) or as a drift (growing).
 
-    Bursts and drifts have a start and an end in the recording's time.
+    Bursts and drifts have a start and an end in the recording's time. `recording` is
+    the name of the only one in which the effect acted, None if that is all of them.
 
     Example:
       >>> When("burst", 1.0, 2.5).end_s
@@ -108,6 +111,7 @@ class When:
     kind: Course = "always"
     start_s: float | None = None
     end_s: float | None = None
+    recording: str | None = None
 
     def __post_init__(self) -> None:
         """Refuse bursts without times, and ends before their starts."""
@@ -129,7 +133,7 @@ class Found:
       place: where it is: a joint, a body, "feet", "commands" or "world".
       parameters: the estimates by the parameters' names.
       probability: probability from 0 to 1 that this is the right effect at the right
-        place, calibrated on test cases (`diagnosis.conclude.answer`).
+        place; None in a verdict "unknown", in which no effect is established.
       confusable_with: other effects, each of which could replace this one and explain
         the recordings about as well.
       when: whether it acts always, for a while, or growing.
@@ -142,14 +146,15 @@ class Found:
     name: str
     place: str
     parameters: Mapping[str, Estimate]
-    probability: float
+    probability: float | None
     confusable_with: tuple[PlacedEffect, ...] = ()
     when: When = When()
     native: bool = True
 
     def __post_init__(self) -> None:
         """Refuse probabilities outside of 0 to 1."""
-        check_number("probability", self.probability, 0.0, 1.0)
+        if self.probability is not None:
+            check_number("probability", self.probability, 0.0, 1.0)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,12 @@ from experiments.diagnosis_report.findings import (
     pulse_sentences,
     told_together,
 )
-from experiments.diagnosis_report.numbers import amount_text, errors_text, percent
+from experiments.diagnosis_report.numbers import (
+    amount_text,
+    errors_text,
+    percent,
+    sure_text,
+)
 from experiments.diagnosis_report.place_words import at_words, choice, listing
 from experiments.diagnosis_report.text import badge, doubts, headline, next_step
 
@@ -116,7 +121,7 @@ def _all_found(verdict: Verdict) -> Iterator[tuple[str, str]]:
 def _found(effect: Found) -> str:
     """A text such as "play at ...: gap 0.030 rad (0.027 to 0.034); 97 % sure"."""
     values = ", ".join(f"{name} {value}" for name, value in parameter_rows(effect))
-    return f"{at_words(effect)}: {values}; {percent(effect.probability)} sure"
+    return f"{at_words(effect)}: {values}; {sure_text(effect.probability)}"
 
 
 def _errors(verdict: Verdict) -> Iterator[tuple[str, str]]:

@@ -91,7 +91,9 @@ def finding(effect: Found, changed: bool = False) -> str:
     if course == "always":
         return clause
     doing = "from" if course == "burst" else "growing from"
-    return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s"
+    only = effect.when.recording
+    where = f" of {only} only" if only else ""
+    return f"{clause}, {doing} {start_s:.3g} to {end_s:.3g} s{where}"
 
 
 def parameter_rows(effect: Found) -> list[tuple[str, str]]:

@@ -73,6 +73,11 @@ def percent(part: float) -> str:
     return "under 1 %" if text == "0 %" and part > 0 else text
 
 
+def sure_text(probability: float | None) -> str:
+    """How sure an effect is, such as "97 % sure"; None is "not established"."""
+    return "not established" if probability is None else f"{percent(probability)} sure"
+
+
 def unit_text(unit: str) -> str:
     """A unit as it is printed: "" for the unit "1", and "m²" for "m^2"."""
     return {"1": ""}.get(unit, unit.replace("^2", "²").replace("^3", "³"))

@@ -8,12 +8,7 @@ from typing import Any
 from diagnosis import Verdict
 from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
 from diagnosis.effects import effect as kind_of
-from diagnosis.residuals.channels import (
-    LEAST_NOISE_M,
-    LEAST_NOISE_RAD,
-    LEAST_RATE_RAD_S,
-    LEAST_TORQUE,
-)
+from diagnosis.residuals.channels import LEAST_TORQUE
 from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
@@ -30,6 +25,7 @@ from experiments.diagnosis_report.numbers import (
     error_unit,
     errors_text,
     percent,
+    sure_text,
 )
 from experiments.diagnosis_report.place_words import place_words
 from experiments.diagnosis_report.text import answer, badge, doubts, next_step, question
@@ -48,11 +44,8 @@ _COLUMNS = ("nominal", "corrected", "floor", "ceiling", "wrong_place", "wrong_ef
 _USES = {"fit": "fitted on", "select": "selected on", "test": "held out"}
 NOISE_FLOOR = (
     "The noise floor of a channel is the noise measured in these recordings "
-    f"(audit.json), but at least {1e3 * LEAST_NOISE_RAD:.1g} mrad for a turning joint, "
-    f"{1e3 * LEAST_NOISE_RAD:.1g} mm for a sliding one, {1e3 * LEAST_NOISE_M:.1g} mm "
-    f"for a base's position, {1e3 * LEAST_RATE_RAD_S:.1g} mrad/s for a gyroscope and "
-    f"{100 * LEAST_TORQUE:.0f} % of a measured torque: smaller errors are within the "
-    "accuracy of encoders, clocks, simulation and motor constants."
+    f"(audit.json) and the error of the simulation itself, for measured torques at "
+    f"least {100 * LEAST_TORQUE:.0f} % of them, the accuracy of motor constants."
 )
 """The page's explanation of the words "noise floor"."""
 
@@ -176,10 +169,11 @@ def _effect_row(effect: Found) -> dict[str, Any]:
     course, times = effect.when, "all the time"
     if course.kind != "always":
         times = f"{course.kind}, {course.start_s:.3g} to {course.end_s:.3g} s"
+        times += f" of {course.recording}" if course.recording else ""
     return {
         **_label_and_place(effect.name, effect.place),
         "parameters": parameter_rows(effect),
-        "sure": percent(effect.probability),
+        "sure": sure_text(effect.probability),
         "when": times,
         "meaning": kind_of(effect.name).words.meaning,
         "native": effect.native,

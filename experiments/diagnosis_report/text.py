@@ -5,7 +5,12 @@ from typing import NamedTuple
 from diagnosis import Verdict
 from diagnosis.verdict import Fit
 from experiments.diagnosis_report.findings import findings, pulse_sentences
-from experiments.diagnosis_report.numbers import error_unit, errors_text, percent
+from experiments.diagnosis_report.numbers import (
+    error_unit,
+    errors_text,
+    percent,
+    sure_text,
+)
 from experiments.diagnosis_report.place_words import (
     answer_words,
     at_words,
@@ -166,8 +171,8 @@ def doubts(verdict: Verdict) -> list[str]:
         others = [at_words(other) for other in effect.confusable_with]
         if others:
             rest = f"the recordings do not rule out {listing(others, 'or')} instead"
-        sure = percent(effect.probability)
-        lines.append(sentence(f"{at_words(effect)}: {sure} sure; {rest}"))
+        sure = sure_text(effect.probability)
+        lines.append(sentence(f"{at_words(effect)}: {sure}; {rest}"))
     answers = [answer_words(one) for one in verdict.alternatives]
     if answers and verdict.kind != "not_identifiable":
         lines.append(f"Other answers that fit about as well: {listing(answers, 'or')}.")

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from diagnosis import PlacedEffect, Verdict
 from diagnosis.verdict import Errors, Found, Pulse
 from experiments.diagnosis_report.findings import pulse_sentences
-from experiments.diagnosis_report.numbers import estimate_text, percent
+from experiments.diagnosis_report.numbers import estimate_text, percent, sure_text
 from experiments.diagnosis_report.text import answer, badge, next_step
 from experiments.real_robot_study.cases import RealRobot
 from experiments.reports.report import markdown_table
@@ -45,7 +45,7 @@ def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
             if name in ("start", "duration") and effect.when.kind == "always":
                 continue
             bounds = sane_bounds(robot, effect.name, name)
-            sure = percent(effect.probability)
+            sure = sure_text(effect.probability)
             text = estimate_text(value)
             rows.append([effect.place, effect.name, name, text, sure, bounds])
     if not rows:

@@ -10,7 +10,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
 

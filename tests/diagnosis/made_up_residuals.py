@@ -15,7 +15,10 @@ def two_traces():
     """A predictor of six seconds each, on clocks that do not begin at 0."""
     plant = arm()
     traces = [recorded(plant, duration_s=6.0, seed=seed) for seed in range(2)]
-    traces = [replace(trace, time_s=trace.time_s + START_S) for trace in traces]
+    traces = [
+        replace(trace, name=f"trace {k}", time_s=trace.time_s + START_S)
+        for k, trace in enumerate(traces)
+    ]
     return Predictor(plant, traces, CHANNELS)
 
 

@@ -13,6 +13,7 @@ VALUES = {
     "armature": (0.01,),
     "payload_mass": (0.1,),
     "stribeck_friction": (0.1, 0.1, 0.1),
+    "external_force": (0.0, 0.0, 1.0, 0.5, 0.2),
 }
 
 

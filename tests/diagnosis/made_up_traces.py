@@ -7,7 +7,7 @@ from joint_rigs import ARM, plant_of, run_from, ticks, trace_of
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 
 FINE_S = 5e-4
 NOISE_RAD = 3e-4

@@ -103,7 +103,7 @@ def test_where_nothing_is_missing_nothing_is_named():
     assert verdict.effects == verdict.alternatives == ()
     assert verdict.fit.corrected == verdict.fit.nominal < 1.6
     assert verdict.fit.wrong_place is None
-    assert 0 < verdict.smallest_detectable["viscous_friction@elbow"].value < 0.1
+    assert 0 < verdict.smallest_detectable["viscous_friction@elbow"].value < 0.3
     assert verdict.next_experiment is None
 
 
@@ -114,7 +114,7 @@ def test_what_the_library_lacks_is_not_named_with_confidence():
     assert verdict.kind == "unknown"
     assert verdict.unexplained.channel == "position.elbow"
     assert verdict.unexplained.share > 0.3
-    assert all(found.probability < 0.7 for found in verdict.effects)
+    assert all(found.probability is None for found in verdict.effects)
 
 
 PENDULUMS = """<body name="one"><joint name="first" axis="0 -1 0"/>

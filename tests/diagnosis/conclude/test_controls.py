@@ -25,7 +25,7 @@ def predictor():
     trace = recorded(PLANT, ("servo_gain", "elbow", 0.8), duration_s=2.0)
     predictor = Predictor(PLANT, [trace], CHANNELS, step_s=0.004)
     predictor.calibrate()
-    return predictor
+    return predictor.without_tolerances()
 
 
 def energy(predictor, model):

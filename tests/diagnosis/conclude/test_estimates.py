@@ -7,11 +7,16 @@ import pytest
 from made_up_traces import arm
 from scipy.stats import binom
 
-from diagnosis.conclude.estimates import Z_80, estimates, standard_errors
+from diagnosis.conclude.estimates import (
+    Z_80,
+    estimates,
+    spread_of_recordings,
+    standard_errors,
+)
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.search.fitting import Coordinates, FittedModel
 
-BLOCKS, ROWS = 60, 25
+BLOCKS, ROWS, RECORDINGS = 60, 25, 4
 DIAGNOSES = 40
 KEYS = ("encoder_offset", "elbow"), ("joint_spring", "shoulder")
 PLANT = arm()
@@ -37,7 +42,11 @@ def toy(seed, common):
     x = -np.linalg.lstsq(jacobian, noise, rcond=None)[0]
     model = coordinates.model_at(x)
     fit = FittedModel(model, noise + jacobian @ x, jacobian, coordinates)
-    predictor = SimpleNamespace(block=np.repeat(np.arange(BLOCKS), ROWS), plant=PLANT)
+    predictor = SimpleNamespace(
+        block=np.repeat(np.arange(BLOCKS), ROWS),
+        trace=np.repeat(np.arange(RECORDINGS), BLOCKS * ROWS // RECORDINGS),
+        plant=PLANT,
+    )
     return predictor, fit, x
 
 
@@ -74,27 +83,17 @@ def test_white_noise_would_make_them_too_narrow():
     assert held(of_white_noise, 0.5) < LIKELY[0]
 
 
-def test_what_sims_disagree_by_is_not_known_better():
-    """Without noise 1.5 % of a value's distance from nothing; of ratios in all."""
+def test_recordings_that_disagree_widen_an_interval():
+    """A value that changes from recording to recording, as much as it is large."""
     predictor, fit, _ = toy(0, 0.0)
-    coordinates = Coordinates(
-        PLANT,
-        (
-            PlacedEffect("viscous_friction", "elbow", (0.3,)),
-            PlacedEffect("servo_gain", "shoulder", (0.8,)),
-            PlacedEffect("armature", "elbow", (0.0,)),
-        ),
-    )
-    exact = FittedModel(
-        coordinates.model, 0 * fit.residual, 1e6 * fit.jacobian, coordinates
-    )
-    viscous, gain, armature = estimates(predictor, exact)
-    friction = viscous["coefficient"]
-    assert friction.high - 0.3 == pytest.approx(Z_80 * 0.015 * 0.3, rel=1e-3)
-    assert 0.3 - friction.low == pytest.approx(Z_80 * 0.015 * 0.3, rel=1e-3)
-    assert np.log(gain["factor"].high / 0.8) == pytest.approx(Z_80 * 0.015, rel=1e-3)
-    assert armature["inertia"].high < 1e-6
-    assert friction.unit == "N m s/rad"
+    signs = np.array([1.0, -1.0, 1.0, -1.0])[predictor.trace]
+    shifted = fit.residual + 5.0 * signs * fit.jacobian[:, 0]
+    apart = FittedModel(fit.model, shifted, fit.jacobian, fit.coordinates)
+    # the mean of four values that are 5 off either way: 5 / sqrt(3)
+    spread = spread_of_recordings(predictor, apart)[0]
+    assert spread == pytest.approx(5.0 / np.sqrt(3), rel=0.3)
+    assert standard_errors(predictor, apart)[0] >= spread
+    assert spread_of_recordings(predictor, fit)[0] < 0.2 * spread
 
 
 def test_names_and_order_are_those_of_the_effects():

@@ -7,10 +7,11 @@ from diagnosis.conclude.held_out_errors import (
     channel_rms,
     larger_than_learned,
     model_refuted,
+    rms_above_floor,
 )
-from diagnosis.verdict import ChannelFit, Fit
+from diagnosis.residuals.channels import Channels
 
-CHANNELS = SimpleNamespace(names=("position.a", "position.b"))
+CHANNELS = Channels(("position.a", "position.b"), np.array([1.0, 0.1]))
 LEARNED = SimpleNamespace(
     channels=CHANNELS,
     channel=np.array([0, 0, 0, 1, 1]),
@@ -18,32 +19,33 @@ LEARNED = SimpleNamespace(
 )
 
 
-def fit_of(a, b):
-    """Errors on the test data, in units of noise; the noise of b is 0.1."""
-    channels = {
-        "position.a": ChannelFit(unit="rad", nominal=50.0, floor=1.0, corrected=a),
-        "position.b": ChannelFit(unit="rad", nominal=5.0, floor=0.1, corrected=0.1 * b),
-    }
-    together = float(np.sqrt((a**2 + b**2) / 2))
-    return Fit(nominal=50.0, floor=1.0, corrected=together, channels=channels)
-
-
 def test_rms_is_of_the_rows_that_are_scored():
     found = channel_rms(LEARNED, np.array([3.0, 4.0, 0.0, 1.0, 1.0]))
     assert found == pytest.approx([np.sqrt(12.5), 1.0])
 
 
+def leaving(a, b):
+    """A predictor and a residual of rms a and b in its channels."""
+    return LEARNED, np.array([a, a, 0.0, b, b])
+
+
 def test_a_test_that_is_much_worse_is_told_with_its_worst_channel():
-    left = np.array([1.0, 1.0, 0.0, 1.0, 1.0])
-    (said,) = larger_than_learned(LEARNED, left, fit_of(1.0, 20.0))
+    (said,) = larger_than_learned(leaving(1.0, 1.0), leaving(1.0, 20.0))
     assert "14 instead of 1 times" in said
     assert "position.b" in said
 
 
 @pytest.mark.parametrize(("left", "test"), [(1.0, 1.5), (15.0, 20.0), (0.1, 1.0)])
 def test_a_test_as_good_as_what_was_learned_from_is_none(left, test):
-    residual = left * np.array([1.0, 1.0, 0.0, 1.0, 1.0])
-    assert larger_than_learned(LEARNED, residual, fit_of(test, test)) == ()
+    assert larger_than_learned(leaving(left, left), leaving(test, test)) == ()
+
+
+def test_where_more_than_noise_is_left_errors_are_still_told_by_the_noise():
+    wide = CHANNELS.widened(np.array([3.0, 3.0]))
+    predictor = SimpleNamespace(**{**vars(LEARNED), "channels": wide})
+    residual = np.array([1.0, 1.0, 0.0, 1.0, 1.0])
+    assert rms_above_floor(LEARNED, residual) == pytest.approx(1.0)
+    assert rms_above_floor(predictor, residual) == pytest.approx(3.0)
 
 
 def test_a_model_that_makes_the_test_worse_is_refuted():

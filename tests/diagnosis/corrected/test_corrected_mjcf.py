@@ -12,7 +12,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.load import load_plant
 from diagnosis.plant.servo import Servo
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 from diagnosis.traces.windows import Run
 
 STEPS_PER_TICK = 5

@@ -10,7 +10,7 @@ import terrain
 from diagnosis.corrected.sim import sim_plant
 from diagnosis.plant.load import load_plant
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 from diagnosis.traces.windows import Run
 from groundwalk.errors import BadModelError
 from worlds import SensorNoise, WorldOptions

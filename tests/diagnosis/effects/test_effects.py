@@ -8,6 +8,7 @@ from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
+from diagnosis.traces.motion import Motion
 from diagnosis.traces.trace import Trace
 from groundwalk.errors import UnknownNameError
 
@@ -33,12 +34,14 @@ PARAMETERS = {
     "joint_spring": "stiffness rest",
     "end_stop": "angle side",
     "servo_fade": "rate",
+    "servo_off": "share start duration",
     "contact_friction": "coefficient",
     "contact_compliance": "stiffness",
     "ground_slope": "pitch roll",
     "uneven_ground": "height",
     "external_force": "x y z start duration",
     "drag": "coefficient",
+    "torque_scale": "factor",
 }
 
 WALKER = """
@@ -70,7 +73,19 @@ def trace(**channels):
     return Trace("test", time_s, np.zeros((3, 2)), servo(), **channels)
 
 
-EVERYTHING = [trace(command_rad=np.zeros((3, 2)), gyroscope_rad_s=np.zeros((3, 3)))]
+def compared():
+    """A motion whose torques are compared."""
+    zero = np.zeros((3, 2))
+    return Motion(zero, zero, zero, zero == 0, 1, np.ones(2), np.ones(2))
+
+
+EVERYTHING = [
+    trace(
+        command_rad=np.zeros((3, 2)),
+        gyroscope_rad_s=np.zeros((3, 3)),
+        motion=compared(),
+    )
+]
 
 
 def contents(variants):
@@ -164,7 +179,8 @@ def test_where_effects_may_be():
             assert places[name] == ("trunk", "left", "right")
     driven = {name for name, found in places.items() if found == ("hip",)}
     assert driven == {
-        *("backlash", "servo_gain", "servo_damping", "servo_fade", "speed_limit"),
+        *("backlash", "servo_gain", "servo_damping", "servo_fade", "servo_off"),
+        "speed_limit",
     }
     assert places["torque_limit"] == ("hip", "knee")
 
@@ -172,7 +188,7 @@ def test_where_effects_may_be():
 def test_where_effects_cannot_be():
     fixed, bare = walker(base="fixed"), [trace()]
     none = ("command_latency", "gyro_bias", "speed_limit", "contact_friction")
-    for name in (*none, "contact_compliance", "uneven_ground"):
+    for name in (*none, "contact_compliance", "uneven_ground", "torque_scale"):
         assert effect(name).places(fixed, bare) == ()
     assert effect("ground_slope").places(fixed, bare) == ("world",)
     assert effect("contact_friction").places(walker(feet=()), bare) == ()

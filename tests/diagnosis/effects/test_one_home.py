@@ -12,6 +12,8 @@ ROOMS = (
 HOMES = ("diagnosis/effects/", "worlds/hidden/effects/")
 DATA = {
     "experiments/concealed/draw.py": "pairs that are drawn together",
+    "experiments/concealed/second/motion.py": "servos of two gains",
+    "experiments/concealed/second/nuisance.py": "small mismatch in every case",
     "experiments/real_robot_study/cases.py": "what others published",
     "worlds/real/hidden_robot.py": "whose friction replaces that of the world",
 }

@@ -11,7 +11,7 @@ from swinger_rig import KD, KP, swinger
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
 

@@ -20,7 +20,7 @@ from joint_rigs import (
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 
 TIME_S = ticks(0.6)
 

@@ -35,7 +35,7 @@ from wheel_rig import (
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 
 # The servo
 

@@ -29,7 +29,7 @@ from wheel_rig import (
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
-from diagnosis.residuals.predictor import variants_of
+from diagnosis.residuals.replays import variants_of
 
 # What effects do to the servo
 

@@ -63,9 +63,12 @@ def test_what_comes_back_with_every_motion_is_no_burst(predictor):
 
 
 def test_pushes_may_last_or_begin_a_little_before_a_burst(predictor):
-    always, short = push_intervals(predictor, pushed(predictor, 7.0, 7.3))
-    assert always[0] <= START_S
-    assert sum(always) > 11.0
-    assert short[0] == pytest.approx(7.0 - REACTION_S, abs=BIN_S)
-    assert short[1] == pytest.approx(0.3, abs=2 * BIN_S)
+    always, short, own = push_intervals(predictor, pushed(predictor, 7.0, 7.3))
+    assert always.start_s <= START_S
+    assert always.start_s + always.duration_s > 11.0
+    assert short.start_s == pytest.approx(7.0 - REACTION_S, abs=BIN_S)
+    assert short.duration_s == pytest.approx(0.3, abs=2 * BIN_S)
+    # it may have been in all recordings, or in this one only
+    assert short.recording is None
+    assert own == short._replace(recording=predictor.traces[1].recording)
     assert push_intervals(predictor, noise(predictor)) == [always]

@@ -27,7 +27,8 @@ def test_energies_do_not_tell_it_but_its_length_is_tried(predictor):
     faint = pushed(predictor, 7.0, 7.5, 2.0)
     assert bursts(predictor, faint) == []
     _, *short = push_intervals(predictor, faint)
-    starts, durations = np.transpose(short)
+    starts = [one.start_s for one in short]
+    durations = [one.duration_s for one in short]
     np.testing.assert_allclose(starts, 7.0, atol=0.3)
     assert max(durations) == pytest.approx(0.5, abs=0.03)
 

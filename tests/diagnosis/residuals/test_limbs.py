@@ -11,7 +11,8 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.replay import replay
 from diagnosis.residuals.channels import stacked
 from diagnosis.residuals.limbs import limbs_of
-from diagnosis.residuals.predictor import Channels, Predictor, variants_of
+from diagnosis.residuals.predictor import Channels, Predictor
+from diagnosis.residuals.replays import variants_of
 from diagnosis.traces.windows import Run
 
 NAMES = ("upper", "lower", "shoulder", "elbow")

@@ -33,8 +33,8 @@ def search(selected, least):
         asked.extend(starts)
         return [judged(starts[0], selected)]
 
-    def worth(before, after, nothing):
-        return before - after > least
+    def worth(smaller, larger):
+        return smaller.selected - larger.selected > least
 
     return SimpleNamespace(judged=fitted, worth=worth, asked=asked, selected=selected)
 
@@ -74,8 +74,8 @@ def leaving_out(energies):
     def fitted(starts):
         return [judged(start, energies[start[0].name]) for start in starts]
 
-    def worth(before, after, nothing):
-        return before - after > 20.0
+    def worth(smaller, larger):
+        return smaller.selected - larger.selected > 20.0
 
     return SimpleNamespace(judged=fitted, worth=worth)
 

@@ -17,7 +17,7 @@ START = tuple(
 def predictor():
     some = Predictor(arm(), [measured(1, gain=(0.9, 0.8))], CHANNELS)
     some.calibrate()
-    return some
+    return some.without_tolerances()
 
 
 def test_all_joints_are_fitted_at_once(predictor):

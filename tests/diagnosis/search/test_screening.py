@@ -7,7 +7,8 @@ from made_up_traces import arm, recorded
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
-from diagnosis.search.screening import Screen, Signature, signatures
+from diagnosis.residuals.signatures import Signature, signatures
+from diagnosis.search.screening import Screen
 from diagnosis.traces.usage import Usage
 
 NOISE_RAD = 4e-4
@@ -31,6 +32,7 @@ def screened(*effects, names=CANDIDATES, noise_rad=NOISE_RAD, base=()):
     trace = recorded(plant, *effects, noise_rad=noise_rad, duration_s=3.0)
     predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
     predictor.calibrate()
+    predictor = predictor.without_tolerances()
     usage = Usage.of(plant, [trace])
     residual = predictor.residuals([base])[0]
     found = signatures(predictor, base, usage, names=names)

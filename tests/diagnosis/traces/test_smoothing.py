@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from diagnosis.traces.noise import noise_of, quantum_of
-from diagnosis.traces.smoothing import smooth
+from diagnosis.traces.smoothing import smooth, smooth_below
 
 HZ, SECONDS = 100, 40
 
@@ -136,3 +136,22 @@ def test_no_row_is_beyond_the_last_knot():
             time_s = 0.1 + tick_s * np.arange(rows)
             found = smooth(time_s, np.sin(time_s))
             assert np.isfinite(found.value).all()
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.25, 1.0), (1.0, 0.5), (4.0, 0.0)])
+def test_a_cut_off_halves_a_sine(share, kept):
+    """Far below the sampling rate 1 / (1 + (w / w0)^6) of a sine is kept."""
+    time_s = np.arange(2000) * 0.005
+    wave = np.sin(2 * np.pi * share * 3.0 * time_s)
+    wave[900:905] = np.nan
+    smooth = smooth_below(time_s, wave, 3.0)
+    rows = slice(300, 800)
+    size = np.sum(smooth.value[rows] * wave[rows]) / np.sum(wave[rows] ** 2)
+    assert size == pytest.approx(kept, abs=0.01)
+    rate = np.gradient(smooth.value, time_s)
+    np.testing.assert_allclose(smooth.rate[rows], rate[rows], atol=0.02)
+    assert np.isfinite(smooth.acceleration).all()
+
+
+def test_too_few_values_are_not_smoothed_below_a_frequency():
+    assert np.isnan(smooth_below(np.arange(5.0), np.ones(5), 0.1).value).all()

@@ -145,7 +145,7 @@ def test_an_error_below_the_noise_floor_closes_all_and_no_more(tmp_path):
 def test_the_noise_floor_is_explained(tmp_path):
     text = Page(report(tmp_path, made_up.ONE)).text
     assert "the noise measured in these recordings (audit.json)" in text
-    assert "at least 0.3 mrad for a turning joint" in text
+    assert "the error of the simulation itself" in text
     assert "noise alone makes" not in text
 
 

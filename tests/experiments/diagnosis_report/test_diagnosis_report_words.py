@@ -51,12 +51,14 @@ PARAMETERS = {
     "joint_spring": ("stiffness", "rest"),
     "end_stop": ("angle", "side"),
     "servo_fade": ("rate",),
+    "servo_off": ("share",),
     "contact_friction": ("coefficient",),
     "contact_compliance": ("stiffness",),
     "ground_slope": ("pitch", "roll"),
     "uneven_ground": ("height",),
     "external_force": ("x", "y", "z", "start", "duration"),
     "drag": ("coefficient",),
+    "torque_scale": ("factor",),
 }
 BODIES = {"payload_mass", "com_offset", "external_force", "drag"}
 ELSEWHERE = {
@@ -68,7 +70,7 @@ UNSAID = {"end_stop": {"side"}, "external_force": {"start", "duration"}}
 
 def test_every_effect_has_words_and_no_other():
     assert all_effects().keys() == PARAMETERS.keys()
-    assert len(PARAMETERS) == 26
+    assert len(PARAMETERS) == 28
     for words in (one.words for one in all_effects().values()):
         assert re.fullmatch(r"[A-Z].*\.", words.meaning)
         assert len(words.label) < 40

@@ -1,0 +1,196 @@
+"""The guards that effects must pass before a verdict names them.
+
+A search finds the effects that explain most. Whether anything is established is asked
+here: an effect whose values might be those of no effect, or that ran into a bound, is
+taken out; and what is left must predict held-out recordings better, better than the
+same at a wrong place and than another effect, and much of what a regression without
+physics could.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.conclude.answer import MOST_LEFT
+from diagnosis.conclude.estimates import Z_80, standard_errors
+from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.bursts import BIN_S, push_intervals
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.verdict import Fit
+
+HALF = 0.5
+"""Share of what could be explained that an answer must explain, and of what it explains
+that a wrong answer must not reach: more than a coincidence, less than all."""
+
+MOST_OF_IT = 0.75
+"""Share of the squared error above the noise that an answer must take away: the error
+falls to half. What is left is otherwise as large as what was found."""
+
+ON_BOUND = 1e-3
+"""Distance from a bound, as a share of the way between both, within which a value
+counts as on the bound."""
+
+SHIFTS, FITTED = (-10, 3), 3
+"""First and last shift, in bins of 50 ms, of the start of an effect that does not last,
+and number of the best starts that are fitted: an event shows late, and a fit does not
+find a moment from far away."""
+
+ROUNDS = 2
+"""How often values and the width of tolerances are estimated in turn."""
+
+SECONDARY = ("start", "duration", "side", "rest")
+"""Names of parameters that do not say how large an effect is."""
+
+
+def established(
+    both: Predictor, model: Model
+) -> tuple[Predictor, FittedModel | None, tuple[str, ...]]:
+    """The effects of a model, refitted, without those that may be nothing.
+
+    Effects are removed one at a time, those that may be nothing before those on a
+    bound. Returns the predictor `both` with tolerances as wide as this robot needs, the
+    effects fitted with it, None if none is left, and sentences on those on a bound.
+    """
+    said = list[str]()
+    model = _retimed(both.without_tolerances(), model)
+    both, model = _as_exact_as_seen(both, model)
+    while model:
+        fitted = fit_all(both, [model])[0]
+        model = fitted.model
+        doubtful = _may_be_nothing(both, fitted)
+        bound = [one for one in model if _on_bound(both, one)]
+        if doubtful is None and not bound:
+            return both, fitted, tuple(said)
+        gone = doubtful if doubtful is not None else bound[0]
+        if doubtful is None:
+            name = effect(gone.name).words.label
+            said.append(
+                f"{name} at {gone.place} would fit best at the end of its possible "
+                "range, so something else is behind it: it is not stated"
+            )
+        model = tuple(one for one in model if one is not gone)
+    return both, None, tuple(said)
+
+
+def _retimed(both: Predictor, model: Model) -> Model:
+    """The effects, those that do not last at the times that suit all data best.
+
+    A search sees a part of the data only, in which the moment itself may be missing.
+    """
+    for placed in model:
+        if not effect(placed.name).timed:
+            continue
+        rest = tuple(one for one in model if one is not placed)
+        options = [model]
+        for when in push_intervals(both, both.residuals([rest])[0]):
+            end_s = when.start_s + when.duration_s
+            for start_s in when.start_s + BIN_S * np.arange(*SHIFTS):
+                times = (float(start_s), end_s - float(start_s))
+                other = replace(placed, values=(*placed.values[:-2], *times))
+                if when.recording == placed.recording:
+                    options.append((*rest, other))
+        energies = (both.residuals(options) ** 2).sum(axis=1)
+        best = [options[int(k)] for k in np.argsort(energies)[:FITTED]]
+        model = min(fit_all(both, best), key=lambda fit: fit.energy).model
+    return model
+
+
+def _as_exact_as_seen(both: Predictor, model: Model) -> tuple[Predictor, Model]:
+    """A predictor with tolerances as wide as the model needs, and the model refitted.
+
+    Values and tolerances are estimated in turn, from values that ignore tolerances:
+    with wide tolerances values are so uncertain that wrong ones would keep them wide.
+    """
+    bare = both.without_tolerances()
+    for _ in range(ROUNDS if model else 0):
+        model = fit_all(bare, [model])[0].model
+        bare = both.with_likely_tolerances(model)
+    return bare if model else both, model
+
+
+def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None:
+    """The effect with the least evidence among those whose values may be neutral.
+
+    An effect may be nothing if the neutral value of each of its parameters that has one
+    lies in its 80 % interval.
+    """
+    errors = standard_errors(both, fitted)
+    x = fitted.coordinates.of(fitted.model)
+    first, worst, least = 0, None, 1.0
+    for placed in fitted.model:
+        ratios = []
+        for i in range(first, first + len(placed.values)):
+            parameter = fitted.coordinates.parameters[i]
+            if np.isfinite(parameter.neutral) and parameter.name not in SECONDARY:
+                neutral = fitted.coordinates.scaled(i, parameter.neutral)
+                ratios.append(abs(x[i] - neutral) / (Z_80 * errors[i]))
+        first += len(placed.values)
+        if ratios and max(ratios) < least:
+            worst, least = placed, max(ratios)
+    return worst
+
+
+def _on_bound(both: Predictor, placed: PlacedEffect) -> bool:
+    """Whether a value has run into a bound that is not that of no effect."""
+    kind = effect(placed.name)
+    parameters = kind.parameters(both.plant, placed.place)
+    for parameter, value in zip(parameters, placed.values, strict=True):
+        if parameter.name in SECONDARY:
+            continue
+        margin = ON_BOUND * (parameter.high - parameter.low)
+        ends = [parameter.low] if parameter.full else [parameter.low, parameter.high]
+        if any(abs(value - end) < margin and end != parameter.neutral for end in ends):
+            return True
+    return False
+
+
+def objections(fit: Fit, timed: bool) -> tuple[str, ...]:
+    """Sentences on why effects are not established, from errors on held-out data.
+
+    `timed` says that they acted for a while only, perhaps not in the held-out data.
+    """
+    gained = fit.nominal**2 - fit.corrected**2
+    if timed and gained >= -(fit.floor**2):
+        return ()
+    if gained <= 0:
+        return ("The effects found do not predict held-out motions better.",)
+    said = []
+    possible = fit.nominal**2 - fit.floor**2
+    if fit.ceiling is not None and fit.ceiling < fit.nominal:
+        possible = min(possible, fit.nominal**2 - fit.ceiling**2)
+    share = gained / (fit.nominal**2 - fit.floor**2)
+    if share < MOST_OF_IT and fit.corrected**2 > (1 + MOST_LEFT) * fit.floor**2:
+        said.append(
+            f"The effects found take away {share:.0%} of the squared error above the "
+            "noise in held-out motions: something else is missing, too."
+        )
+    elif gained < HALF * possible:
+        said.append(
+            f"The effects found explain {gained / possible:.0%} of what could be "
+            "explained of the error in held-out motions, less than half."
+        )
+    controls = (
+        (fit.wrong_place, "the same effect at another place"),
+        (fit.wrong_effect, "another effect at the same place"),
+    )
+    said += [
+        f"In held-out motions {words} explains about as much."
+        for error, words in controls
+        if error is not None and _does_as_well(fit, error)
+    ]
+    return tuple(said)
+
+
+def _does_as_well(fit: Fit, control: float) -> bool:
+    """Whether a control takes away half of the main effect's share, and leaves little.
+
+    Similar effects explain much of each other; but the right one leaves far less.
+    """
+    alone = fit.nominal if fit.without is None else fit.without
+    left = max(fit.corrected**2 / fit.floor**2 - 1, MOST_LEFT)
+    return bool(
+        alone**2 - control**2 > HALF * (alone**2 - fit.corrected**2)
+        and control**2 / fit.floor**2 - 1 < left / HALF
+    )

@@ -1,0 +1,99 @@
+"""Effects of sensors: late encoders, a gyroscope's bias, a wrong scale of torques."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.effects.effect import JointEffect, NumberEffect
+from diagnosis.effects.parts import EffectWords, Parameter
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+
+
+class TorqueScale(NumberEffect, JointEffect):
+    """A wrong scale of measured torques: measured = factor * true.
+
+    Torques are usually measured as motor currents: a wrong torque constant or gear
+    ratio is a wrong scale, and so is a sensor that was calibrated badly.
+
+    Source: identification of drive gains, Gautier and Briot 2014, "Global
+    identification of joint drive gains and dynamic parameters of robots".
+    """
+
+    name = "torque_scale"
+    native = False
+    on_every_servo = False
+    rarity_nats = 1.0
+    quantity = "torque_factor"
+    combined = np.multiply
+    usual = (Parameter("factor", "1", 0.1, 10.0, 1.0, 1.2, logarithmic=True),)
+    words = EffectWords(
+        "scale of measured torque",
+        "the measured torque of {joint} is {factor} times the true one",
+        "A motor's torque constant, a gear ratio or a torque sensor is not what the "
+        "recording takes it for.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of all joints if measured torques are compared, else ()."""
+        compared = bool(traces) and all(trace.motion is not None for trace in traces)
+        return plant.joints if compared else ()
+
+    def tolerance(self, plant: Plant, place: str) -> float:
+        """2 %: the accuracy to which the constants of a motor are known."""
+        return 0.02
+
+
+class SensorDelay(NumberEffect):
+    """Late encoders: measured(t) = true(t - delay), positions and velocities.
+
+    The delay is usually 2 to 40 ms.
+
+    Source: transfer function exp(-s delay), Astrom and Murray 2008, "Feedback
+    systems", section 8.2.
+    """
+
+    name = "sensor_delay"
+    place_kind = "encoders"
+    native = False
+    rarity_nats = 1.0
+    quantity = "sensor_delay_s"
+    usual = (Parameter("delay", "s", 0.0, 0.2, 0.0, 0.01),)
+    words = EffectWords(
+        "late sensors",
+        "joint positions and velocities are {delay} older than their time stamps say",
+        "What the sensors report has already passed when it gets its time stamp.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """("encoders",), or () if only joint positions are measured on a fixed base.
+
+        Late encoders then cannot be distinguished from late commands.
+        """
+        other = any(trace.torque_nm is not None for trace in traces)
+        return ("encoders",) if plant.base == "floating" or other else ()
+
+
+class GyroBias(NumberEffect):
+    """A constant error of the gyroscope: measured = true + bias, in the sensor frame.
+
+    Source: the usual inertial sensor model without drift, for example Titterton and
+    Weston 2004, "Strapdown inertial navigation technology".
+    """
+
+    name = "gyro_bias"
+    place_kind = "gyroscope"
+    native = False
+    components = 3
+    quantity = "gyro_bias_rad_s"
+    usual = tuple(Parameter(axis, "rad/s", -0.5, 0.5, 0.0, 0.02) for axis in "xyz")
+    words = EffectWords(
+        "gyroscope bias",
+        "the gyroscope is off by {x} about x, {y} about y and {z} about z",
+        "The gyroscope reports a turn rate even when nothing turns.",
+    )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """("gyroscope",) if a recording has gyroscope measurements, else ()."""
+        has_one = any(trace.gyroscope_rad_s is not None for trace in traces)
+        return ("gyroscope",) if has_one else ()

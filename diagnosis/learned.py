@@ -1,0 +1,198 @@
+"""Searches recordings for missing effects, again if they leave more than noise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnosis.audit.result import Audit
+from diagnosis.conclude.answer import verdict_kind
+from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
+from diagnosis.material import Material
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.data_sets import DataSets, precise
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.search.accept import accepted
+from diagnosis.search.all_joints import all_joints
+from diagnosis.search.everywhere import everywhere, more_is_missing
+from diagnosis.search.hooks import Hooks
+from diagnosis.search.judging import Judge
+from diagnosis.search.reference import learn_reference, reference_checks
+from diagnosis.search.result import SearchResult
+from diagnosis.search.rules import Rules
+from diagnosis.search.search import Search
+from diagnosis.verdict import VerdictKind
+from groundwalk.arrays import FloatArray
+
+MORE_FLOATING = 4
+"""Number of models that the search fits in addition if the base floats. Contacts make
+the linear estimates unreliable by which it chooses models to fit."""
+
+MORE_THAN_NOISE = 2.0
+"""If the best model leaves this multiple of the noise in a channel, the recordings are
+searched again, with what it leaves as noise: no model of this robot is better."""
+
+FIT_REPLAYS = 150
+"""Rough number of replays of the recordings in sim before the search; it only scales
+the progress display."""
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What a search found in recordings that were divided by use.
+
+    Attributes:
+      material: the recordings, and the robot model that was taken.
+      data: predictors of the recordings, by use.
+      noise: model errors that recordings of the healthy robot show, or None.
+      search: the search, which has ended.
+      result: what it found.
+      kind: the kind of verdict that follows from that.
+    """
+
+    material: Material
+    data: DataSets
+    noise: ReferenceNoise | None
+    search: Search
+    result: SearchResult
+    kind: VerdictKind
+
+    @classmethod
+    def of(
+        cls, material: Material, rules: Rules | None, threads: int, hooks: Hooks
+    ) -> "Learned":
+        """Search, and search again if the best model leaves much more than noise.
+
+        What it leaves is then the noise: no model of this robot is better, and only
+        what stands out from it is evidence. It also searches again if dry friction that
+        lets joints creep fits better than such that stops them.
+        """
+        traces = (*material.traces, *material.reference)
+        channels = precise(material.plant, traces, material.channels, threads)
+        given = _rules(material.plant, rules)
+        first = cls._of(material, channels, given, threads, hooks)
+        soft = first._creeps()
+        wider = np.ones(len(channels.names))
+        if not (first.noise or soft):
+            left = _left(first.data.learned, first.result)
+            wider = np.maximum(left, channels.floor / channels.noise)
+        if not soft and max(wider.max(), 1 / wider.min()) <= MORE_THAN_NOISE:
+            return first
+        if soft:
+            limits = (*material.limits, CREEPS)
+            plant = softly(material.plant)
+            material = replace(material, plant=plant, limits=limits)
+        found = _best_of_each_size(first.search, first.result)
+        wide = channels.widened(wider)
+        return cls._of(material, wide, given.again, threads, hooks, found)
+
+    def _creeps(self) -> bool:
+        """Whether dry friction that lets joints creep fits better."""
+        model = self.result.winner.model if self.result.winner else ()
+        learned = self.data.learned
+        if learned.by_torque or not rubs(learned.plant, model):
+            return False
+        return creeps(learned, model, self.search.judge.least_gain)
+
+    @classmethod
+    def _of(
+        cls,
+        material: Material,
+        channels: Channels,
+        rules: Rules,
+        threads: int,
+        hooks: Hooks,
+        promising: Sequence[Model] = (),
+    ) -> "Learned":
+        """One search, which also tries the models `promising`."""
+        data, noise, search = _divided(
+            material, channels, rules, threads, hooks, promising
+        )
+        found = _searched(search, material.audited)
+        return cls(material, data, noise, search, *found)
+
+
+def _left(learned: Predictor, result: SearchResult) -> FloatArray:
+    """(c,) rms of what the best model leaves in each channel, in units of noise.
+
+    The median over blocks of time, since an event that is not explained is no noise.
+    """
+    model = result.winner.model if result.winner else ()
+    (left,) = learned.residuals([model])
+    scored = learned.scored
+    blocks = int(learned.block.max()) + 1
+    rms = []
+    for channel in range(len(learned.channels.names)):
+        own = scored & (learned.channel == channel)
+        sums = np.bincount(learned.block[own], left[own] ** 2, blocks)
+        counts = np.bincount(learned.block[own], minlength=blocks)
+        some = counts > 0
+        rms.append(np.sqrt(np.median(sums[some] / counts[some])) if some.any() else 0.0)
+    return np.array(rms)
+
+
+def _divided(
+    material: Material,
+    channels: Channels,
+    rules: Rules,
+    threads: int,
+    hooks: Hooks,
+    promising: Sequence[Model] = (),
+) -> tuple[DataSets, ReferenceNoise | None, Search]:
+    """The data by use, the healthy robot's model errors, and a search ready to run.
+
+    The search also tries the models `promising`.
+    """
+    plant, reference = material.plant, material.reference
+    noise, healthy = None, list[Predictor]()
+    if reference:
+        noise = learn_reference(plant, reference, channels, rules, threads, hooks)
+    hooks.stage("fit", FIT_REPLAYS)
+    data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
+    if reference:
+        healthy = reference_checks(plant, reference, channels, threads, hooks)
+    judge = Judge(data.fit, data.select, rules, healthy, hooks)
+    return data, noise, Search(judge, promising)
+
+
+def _best_of_each_size(search: Search, result: SearchResult) -> list[Model]:
+    """The best models of each size that a search can try."""
+    rules = search.judge.rules
+    return [
+        one.model
+        for size, models in result.best.items()
+        if size <= rules.largest
+        for one in models[: rules.beam]
+    ]
+
+
+def _rules(plant: Plant, rules: Rules | None) -> Rules:
+    """Settings of a search, the default ones for None; a floating base fits more."""
+    rules = rules or Rules()
+    if plant.base == "fixed":
+        return rules
+    return replace(
+        rules,
+        single_effects=rules.single_effects + MORE_FLOATING,
+        further_effects=rules.further_effects + MORE_FLOATING,
+    )
+
+
+def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind]:
+    """Search for effects that the sim lacks, and decide the kind of the verdict.
+
+    Where it would be `unknown`, the search goes on with one effect at all joints.
+    """
+    judge, plant = search.judge, search.judge.fit.plant
+    result = accepted(judge, search.run())
+    kind = verdict_kind(result, plant, audited)
+    # with a floating base, models with effects at all joints would take an hour
+    if more_is_missing(judge.fit, result):
+        result = everywhere(judge, result)
+        kind = verdict_kind(result, plant, audited)
+    elif plant.base == "fixed" and kind == "unknown":
+        result = all_joints(judge, result)
+        kind = verdict_kind(result, plant, audited)
+    return result, kind

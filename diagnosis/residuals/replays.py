@@ -1,0 +1,166 @@
+"""Simulates models of a robot on the windows of recordings (replays)."""
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects.variants import Variants
+from diagnosis.plant.plant import Plant
+from diagnosis.replay.replay import replay
+from diagnosis.residuals.channels import Channels, stacked
+from diagnosis.residuals.limbs import Limb, limbs_of
+from diagnosis.residuals.start_state import SPREADS, STEPS, nudged
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.windows import Run, runs_of
+from groundwalk.arrays import BoolArray, FloatArray
+
+Model = tuple[PlacedEffect, ...]
+"""A hypothesis: the nominal robot model plus these effects, or nothing for ()."""
+
+MOST_ROWS = 192
+"""Most simulations in one batch; more would need more memory and save no time."""
+
+
+class Replays:
+    """Simulates models on all windows of some recordings, limb by limb.
+
+    Attributes:
+      runs: the windows of all recordings, one after the other.
+      first_run: index of each recording's first window, and the number of windows.
+    """
+
+    def __init__(
+        self,
+        plant: Plant,
+        traces: Sequence[Trace],
+        channels: Channels,
+        threads: int,
+        window_s: float,
+    ) -> None:
+        """Divide recordings into windows; arguments are those of `Predictor`."""
+        self._plant, self._channels, self._threads = plant, channels, threads
+        self._limbs = limbs_of(plant)
+        per_trace = [runs_of(plant, trace, window_s) for trace in traces]
+        self.runs = [run for runs in per_trace for run in runs]
+        self.first_run = np.cumsum([0, *(len(runs) for runs in per_trace)]).tolist()
+        ticks = [trace.ticks for trace in traces]
+        self._recording = np.repeat([trace.recording for trace in traces], ticks)
+
+    def values(self, models: Sequence[Model], step_s: float) -> FloatArray:
+        """(n, rows, c) simulated values of c channels with a time step [s]."""
+        shape = len(models), len(self._recording), len(self._channels.names)
+        predicted = np.empty(shape)
+        for rows, runs, acting in self.together(models):
+            for limb in self._limbs:
+                felt = [limb.felt(model) for model in acting]
+                number = {model: i for i, model in enumerate(dict.fromkeys(felt))}
+                own, columns = limb.channels(self._channels)
+                found = self._of_limb(limb, runs, list(number), step_s, own)
+                place = np.ix_(np.arange(len(models)), rows, np.array(columns))
+                predicted[place] = found[[number[model] for model in felt]]
+        return predicted
+
+    def together(
+        self, models: Sequence[Model]
+    ) -> Iterator[tuple[BoolArray, list[Run], list[Model]]]:
+        """Yield groups of recordings, and the effects of the models that act in them.
+
+        Recordings are simulated together unless an effect acts in one of them only. A
+        group is given by its rows (rows,) and windows.
+        """
+        alone = {one.recording for model in models for one in model} - {None}
+        rest = {str(name) for name in np.unique(self._recording)} - alone
+        for group in (rest, *({one} for one in sorted(map(str, alone)))):
+            runs = [run for run in self.runs if run.trace.recording in group]
+            if runs:
+                yield (
+                    np.isin(self._recording, list(group)),
+                    runs,
+                    [
+                        tuple(one for one in model if one.recording in (None, *group))
+                        for model in models
+                    ],
+                )
+
+    def start_errors(self, model: Model, step_s: float) -> FloatArray:
+        """(k, rows, c) changes of simulated values by wrong start states.
+
+        Each is by one joint's position or velocity that is wrong by one standard
+        deviation, with the effects of a model that act in all recordings.
+        """
+        lasting = tuple(one for one in model if one.recording is None)
+        variants = variants_of(self._plant, [lasting])
+        columns = np.arange(len(self._channels.names))
+        # joints of different limbs do not move each other, so they share a simulation
+        limbs = [one.columns for one in self._limbs]
+        groups = [
+            [column for column in same if column is not None]
+            for same in itertools.zip_longest(*limbs)
+        ]
+        plain, *moved = (
+            self._stacked(runs, variants, step_s)
+            for runs in (self.runs, *nudged(self.runs, groups))
+        )
+        spreads = np.repeat(np.divide(SPREADS, STEPS), len(groups))
+        own = [limb.channels(self._channels)[1] for limb in self._limbs]
+        return np.stack(
+            [
+                np.where(np.isin(columns, mine), (other - plain) * spread, 0.0)
+                for other, spread in zip(moved, spreads, strict=True)
+                for mine in own
+            ]
+        )
+
+    def _stacked(
+        self, runs: Sequence[Run], variants: Variants, step_s: float
+    ) -> FloatArray:
+        """(rows, c) simulated values of all windows, one after the other."""
+        results = replay(runs, variants, step_s, self._threads)
+        return np.concatenate([stacked(one, self._channels)[0] for one in results])
+
+    def _of_limb(
+        self,
+        limb: Limb,
+        some: Sequence[Run],
+        models: Sequence[Model],
+        step_s: float,
+        own: Channels,
+    ) -> FloatArray:
+        """(n, rows of the runs, channels of the limb) simulated values, in batches."""
+        runs = [limb.run(run) for run in some]
+        most = max(1, MOST_ROWS // len(runs))
+        parts = []
+        for first in range(0, len(models), most):
+            variants = variants_of(limb.plant, models[first : first + most])
+            results = replay(runs, variants, step_s, self._threads)
+            stacks = [stacked(result, own) for result in results]
+            parts.append(np.concatenate(stacks, axis=1))
+        return np.concatenate(parts)
+
+
+def tolerated(plant: Plant, traces: Sequence[Trace]) -> list[PlacedEffect]:
+    """Effects of the size of a robot model's tolerances, each component by itself."""
+    found = []
+    for name, kind in all_effects().items():
+        for place in kind.places(plant, traces):
+            size = kind.tolerance(plant, place)
+            parameters = kind.parameters(plant, place)
+            for i in range(kind.components if size else 0):
+                values = [one.neutral for one in parameters]
+                is_factor = parameters[i].logarithmic
+                values[i] = values[i] * np.exp(size) if is_factor else values[i] + size
+                found.append(PlacedEffect(name, place, tuple(values)))
+    return found
+
+
+def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
+    """Model fields, servos and forces with which a batch simulates n models."""
+    variants = Variants(plant, len(models))
+    for row, model in enumerate(models):
+        for placed in model:
+            values = np.array(placed.values)
+            effect(placed.name).apply(variants, row, placed.place, values)
+    return variants

@@ -1,0 +1,106 @@
+"""What is found is not yet established: guards on made-up errors, and on real fits."""
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from known_arms import CHANNELS, NOISE_RAD
+from made_up_traces import arm, recorded
+
+from diagnosis.conclude.guards import established, objections
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.verdict import Fit
+
+GOOD = Fit(
+    nominal=10.0,
+    corrected=1.5,
+    floor=1.0,
+    ceiling=3.0,
+    wrong_place=9.0,
+    wrong_effect=11.0,
+    channels={},
+)
+
+
+def said(timed=False, **changes):
+    return " ".join(objections(replace(GOOD, **changes), timed))
+
+
+def test_a_good_answer_meets_no_objection():
+    assert said() == ""
+    assert said(ceiling=None, wrong_place=None, wrong_effect=None) == ""
+
+
+def test_what_predicts_no_better_is_not_established():
+    assert "do not predict" in said(corrected=10.0)
+    assert "do not predict" in said(corrected=12.0)
+
+
+def test_the_error_must_fall_to_half():
+    """Squares count: of 100, 1 is noise; 5.2 leaves 26 of 99, 5.0 leaves 24."""
+    alone = {"wrong_place": None, "wrong_effect": None}
+    assert "something else" in said(corrected=5.2, **alone)
+    assert said(corrected=5.0, **alone) == ""
+    # what is left is hardly more than noise
+    assert said(nominal=1.6, corrected=1.2, ceiling=None, **alone) == ""
+
+
+@pytest.mark.parametrize(
+    ("control", "words"),
+    [("wrong_place", "at another place"), ("wrong_effect", "another effect")],
+)
+def test_a_wrong_answer_must_not_do_about_as_well(control, words):
+    """Of 98 explained 1.25 are left; a wrong answer leaves 1.6 at 1.6, 8 at 3.0."""
+    assert words in said(**{control: 1.6})
+    assert said(**{control: 3.0}) == ""
+
+
+def test_of_several_effects_the_main_one_is_compared():
+    """Others explain all but 8 of 99; of these a wrong answer explains 5, or none."""
+    assert "another effect" in said(without=3.0, wrong_effect=1.7)
+    assert said(without=3.0, wrong_effect=2.9) == ""
+
+
+def test_what_acted_for_a_while_need_not_be_in_the_held_out_data():
+    assert said(timed=True, nominal=1.0, corrected=1.0) == ""
+    assert "do not predict" in said(timed=True, nominal=1.0, corrected=3.0)
+
+
+@cache
+def predictor(*effects):
+    traces = [
+        recorded(arm(), *effects, duration_s=2.0, seed=seed, noise_rad=NOISE_RAD)
+        for seed in range(2)
+    ]
+    some = Predictor(arm(), traces, CHANNELS)
+    some.calibrate(tuple(PlacedEffect(n, p, tuple(v)) for n, p, *v in effects))
+    return some
+
+
+GAIN = "servo_gain", "elbow", 0.7
+
+
+def test_an_effect_that_may_be_nothing_is_taken_out():
+    both = predictor(GAIN)
+    nothing = PlacedEffect("viscous_friction", "shoulder", (0.001,))
+    _, fitted, told = established(both, (PlacedEffect(*GAIN[:2], (0.75,)), nothing))
+    (kept,) = fitted.model
+    assert kept.key == "servo_gain@elbow"
+    assert kept.values[0] == pytest.approx(0.7, rel=0.03)
+    assert told == ()
+
+
+def test_where_nothing_is_left_nothing_is():
+    nothing = PlacedEffect("viscous_friction", "shoulder", (0.001,))
+    assert established(predictor(), (nothing,))[1:] == (None, ())
+    assert established(predictor(), ())[1:] == (None, ())
+
+
+def test_a_value_that_runs_into_its_bound_is_not_stated():
+    """Commands are 0.9 s late, and the library allows for 0.6 s."""
+    both = predictor(("command_latency", "commands", 0.9))
+    late = PlacedEffect("command_latency", "commands", (0.5,))
+    _, fitted, told = established(both, (late,))
+    assert fitted is None
+    assert "end of its possible range" in told[0]

@@ -1,0 +1,91 @@
+"""Arms that an unknown controller moves: what their torques say, from end to end."""
+
+import numpy as np
+import pytest
+from torque_arm import arm, loaded, moved, rubbing
+
+from diagnosis.pipeline import diagnose
+
+COULOMB_NM, VISCOUS = (1.0, 2.0, 0.8), (1.5, 3.0, 0.7)
+
+
+def verdict_of(*traces, **options):
+    return diagnose(arm(), traces, np.random.SeedSequence(1), **options).verdict
+
+
+def found(verdict):
+    """Values by effect and place."""
+    return {
+        (one.name, one.place): [each.value for each in one.parameters.values()]
+        for one in verdict.effects
+    }
+
+
+@pytest.mark.parametrize("noise_rad", [1e-5, 1e-3])
+def test_a_right_model_lacks_nothing(noise_rad):
+    verdict = verdict_of(moved(noise_rad=noise_rad))
+    assert verdict.kind == "none"
+    assert verdict.effects == ()
+    assert any(
+        "torques that the recorded motion needs" in text for text in verdict.limits
+    )
+
+
+@pytest.mark.parametrize("noise_rad", [1e-5, 1e-4])
+def test_a_payload_is_found_at_its_link(noise_rad):
+    verdict = verdict_of(moved(loaded(1.0, "lower"), noise_rad=noise_rad))
+    assert verdict.kind == "effects"
+    ((place, (mass_kg,)),) = found(verdict).items()
+    assert place == ("payload_mass", "lower")
+    assert mass_kg == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.slow
+def test_friction_at_all_joints_is_found():
+    verdict = verdict_of(moved(rubbing(COULOMB_NM, VISCOUS)))
+    assert verdict.kind == "effects"
+    values = found(verdict)
+    assert len(values) == 6
+    for k, joint in enumerate(arm().joints):
+        (coulomb_nm,) = values["coulomb_friction", joint]
+        (viscous,) = values["viscous_friction", joint]
+        assert coulomb_nm == pytest.approx(COULOMB_NM[k], rel=0.1)
+        assert viscous == pytest.approx(VISCOUS[k], rel=0.1)
+
+
+@pytest.mark.slow
+def test_a_payload_is_found_beside_friction_at_all_joints():
+    def change(model):
+        rubbing(COULOMB_NM, VISCOUS)(model)
+        loaded(0.7, "lower")(model)
+
+    values = found(verdict_of(moved(change)))
+    assert len(values) == 7
+    (mass_kg,) = values["payload_mass", "lower"]
+    assert mass_kg == pytest.approx(0.7, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("joint", "scale"), [("elbow", (1, 1, 1.3)), ("shoulder", (1, 0.8, 1))]
+)
+def test_a_wrong_scale_of_torques_is_no_inertia(joint, scale):
+    verdict = verdict_of(moved(scale=scale))
+    assert verdict.kind == "effects"
+    ((place, (factor,)),) = found(verdict).items()
+    assert place == ("torque_scale", joint)
+    assert factor == pytest.approx(np.prod(scale), rel=0.02)
+
+
+@pytest.mark.slow
+def test_only_what_has_changed_since_is_named():
+    healthy = moved(rubbing(COULOMB_NM, VISCOUS), seed=3)
+
+    def change(model):
+        rubbing(COULOMB_NM, VISCOUS)(model)
+        loaded(0.7, "lower")(model)
+
+    verdict = verdict_of(moved(change), reference=[healthy])
+    assert verdict.kind == "effects"
+    ((place, (mass_kg,)),) = found(verdict).items()
+    assert place == ("payload_mass", "lower")
+    assert mass_kg == pytest.approx(0.7, rel=0.1)
