@@ -14,7 +14,7 @@ import tyro
 
 from experiments.command_line import run_verb
 from experiments.concealed.reading import CASES, FORMAT, HASH, SEALED, TRUTH
-from experiments.concealed.sets import SETS, make_case
+from experiments.concealed.sets import REAL_SET, SETS, make_case
 from experiments.concealed.written import case_name
 from experiments.runs.options import REPEATABLE, check_at_least
 from experiments.runs.processes import as_done, process_pool
@@ -40,6 +40,8 @@ class ConcealedMake:
         of cases.
       set: which kind of cases: 1, exact models with one thing wrong; 2, models with
         many small errors, too, on more robots (docs/concealed.md).
+      real: folder with real recordings, of which one thing is made wrong in two of
+        three cases (docs/concealed.md); `set` does not matter then.
       threads: number of processes; 0 for one per core.
     """
 
@@ -49,6 +51,7 @@ class ConcealedMake:
     cases: int = 200
     seed: int = 1
     set: int = 1
+    real: Annotated[Path | None, tyro.conf.arg(metavar="DATA_DIR")] = None
     threads: int = 0
 
     def __post_init__(self) -> None:
@@ -57,7 +60,14 @@ class ConcealedMake:
             raise BadValueError(f"set is {self.set}; {' or '.join(map(str, SETS))}")
         if not 1 <= self.cases <= _MOST_CASES:
             raise BadValueError(f"cases is {self.cases}; from 1 to {_MOST_CASES}")
+        if self.real is not None and not self.real.is_dir():
+            raise BadValueError(f"{self.real} is no folder of real recordings")
         check_at_least(self, seed=0, threads=0)
+
+    @property
+    def which(self) -> int:
+        """Number of the set that is made."""
+        return self.set if self.real is None else REAL_SET
 
 
 def main(config: ConcealedMake) -> None:
@@ -88,7 +98,7 @@ def _open(config: ConcealedMake) -> None:
 
 def _stamp(config: ConcealedMake) -> dict[str, object]:
     """Format, seed and number of a set; the first set's files have no number."""
-    which = {} if config.set == 1 else {"set": config.set}
+    which = {} if config.which == 1 else {"set": config.which}
     return {"format": FORMAT, "seed": config.seed, **which}
 
 
@@ -98,12 +108,15 @@ def _make_all(config: ConcealedMake, parts: Path) -> None:
     cases.mkdir(parents=True, exist_ok=True)
     missing = [i for i in range(config.cases) if not (cases / case_name(i)).exists()]
     done, where = config.cases - len(missing), (cases, parts, config.seed)
+    data = () if config.real is None else (config.real,)
     with (
         progress("cases", config.cases, done) as task,
         process_pool(config.threads, len(missing)) as pool,
     ):
         calls = {
-            number: pool.submit(make_case, config.set, *where, number, config.cases)
+            number: pool.submit(
+                make_case, config.which, *where, number, config.cases, *data
+            )
             for number in missing
         }
         for _, call in as_done(calls):

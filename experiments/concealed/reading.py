@@ -22,7 +22,7 @@ FORMAT = 1
 def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
     """Robot model, recordings and reference recordings of a test case, not its truth.
 
-    Only robots that stand or walk have reference recordings.
+    Not all cases have reference recordings.
     """
     path = folder / PLANT_FILE
     if not path.is_file():

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 import tyro
 
+from diagnosis.effects import all_effects
 from experiments.command_line import run_verb
 from experiments.concealed.reading import ANSWERS, CASES
 from experiments.concealed.scoring.answers import Answer, Named
@@ -140,10 +141,16 @@ def consult_all(
 ) -> dict[str, Oracle]:
     """Fits of the true effects (oracles) of all test cases with known hidden effects.
 
+    None are made of effects that this version of the diagnosis does not know.
     Each is stored in the set's folder, and only computed again if an answer changed.
     The effects of all `answers` are replayed on the held-out recordings.
     """
-    named = {name: case for name, case in cases.items() if case.kind in NAMED_KINDS}
+    known = all_effects()
+    named = {
+        name: case
+        for name, case in cases.items()
+        if case.kind in NAMED_KINDS and all(one.name in known for one in case.effects)
+    }
     found = {
         name: {m: each[name].effects for m, each in answers.items() if name in each}
         for name in named

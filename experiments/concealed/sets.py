@@ -4,9 +4,11 @@ How a case is written is the same for all sets (`written.py`).
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 
 from experiments.concealed.case import first_case
+from experiments.concealed.doctored.case import doctored_case
 from experiments.concealed.second.case import second_case
 from experiments.concealed.written import MadeCase, case_name, write_case
 
@@ -15,16 +17,26 @@ CaseMaker = Callable[[int, int, int], MadeCase]
 case."""
 
 SETS: Mapping[int, CaseMaker] = {1: first_case, 2: second_case}
-"""Makers of the cases of each set, by the set's number (docs/concealed.md)."""
+"""Makers of the simulated cases of each set, by its number (docs/concealed.md)."""
+REAL_SET = 3
+"""Number of the set whose cases are doctored real recordings."""
 
 
 def make_case(
-    which: int, cases: Path, truths: Path, seed: int, number: int, count: int
+    which: int,
+    cases: Path,
+    truths: Path,
+    seed: int,
+    number: int,
+    count: int,
+    data: Path | None = None,
 ) -> None:
     """Make a test case of set number `which`, and write its truth and its folder.
 
     `cases` and `truths` are the folders of all cases and truths; `seed` and `count` are
-    seed and number of cases of the set.
+    seed and number of cases of the set; `data` is the folder of real recordings, for
+    doctored cases instead.
     """
-    made = SETS[which](seed, number, count)
+    make = SETS[which] if data is None else partial(doctored_case, data)
+    made = make(seed, number, count)
     write_case(cases, truths, case_name(number), made)

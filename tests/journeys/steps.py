@@ -159,6 +159,11 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             writes=("set/score.json", "set/score.md", "set/score.png")
         ),
         "make results-concealed": make("results-concealed", "two hours"),
+        "groundwalk concealed make set --real data": NotRun(
+            "recordings of real robots are needed",
+            "groundwalk concealed make --help",
+            says="--real",
+        ),
     },
     "concealed_answers.md": {
         "groundwalk concealed score set --answers data": NotRun(

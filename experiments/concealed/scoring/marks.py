@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from diagnosis.effects import all_effects
 from experiments.concealed.scoring.answers import Answer, Named
 from experiments.concealed.scoring.oracle import Oracle
-from experiments.concealed.scoring.truth import TrueCase
+from experiments.concealed.scoring.truth import REAL, TrueCase, TrueEffect
 from experiments.concealed.size_by_information import level_of
-from worlds.hidden.effects import Hidden
 
 NAMED_KINDS = ("single", "pair", "triple")
 """Kinds of test cases whose hidden effects are known to the diagnosis and excited by
@@ -48,6 +47,7 @@ class Mark:
         too hard (levels L3, L4). `wrong_place` and
         `wrong_effect` are the shares for the answer's controls.
       probability: stated probability of the first named effect; None without one.
+      tells_why: whether the recordings are refused with the right words.
     """
 
     case: TrueCase
@@ -67,6 +67,7 @@ class Mark:
     wrong_place: float | None
     wrong_effect: float | None
     probability: float | None
+    tells_why: bool = False
 
     @property
     def right(self) -> bool:
@@ -74,14 +75,18 @@ class Mark:
 
         Where nothing is hidden, nothing may be named, and the answer must say so. An
         effect that the diagnosis does not know makes "unknown" right, and "none" where
-        it hardly shows. If the joint never moves, "none" and "not_identifiable" are
-        right, too.
+        it hardly shows; in real recordings "not_identifiable", or a refusal that tells
+        why, instead. If the joint never moves, "none" and "not_identifiable" are right,
+        too.
         """
         exact = self.kind == "effects" and not self.extra and not self.missed
         nothing = self.kind in ("none", "effects") and not self.names_something
         match self.case.kind:
             case "none":
                 return nothing
+            case "outside" if self.case.engine == REAL:
+                said = self.kind in ("unknown", "not_identifiable")
+                return said or self.tells_why
             case "outside":
                 faint = self.level not in _CLEAR
                 return self.kind == "unknown" or (faint and nothing)
@@ -125,6 +130,7 @@ def mark(
         wrong_place=place,
         wrong_effect=wrong,
         probability=found[0].probability if found else None,
+        tells_why=bool(answer and _tells_why(answer, case)),
     )
 
 
@@ -136,10 +142,22 @@ def case_level(case: TrueCase, oracle: Oracle | None) -> str | None:
 
 
 def _named(answer: Answer, case: TrueCase) -> list[Named]:
-    """The effects that an answer names, without small mismatch that is there."""
+    """The effects that an answer names, without small mismatch that is there.
+
+    Where more is missing than is known, the true ones alone if any of them is named.
+    """
     if answer.kind != "effects":
         return []
-    return [each for each in answer.effects if not _is_small_mismatch(each, case)]
+    found = [each for each in answer.effects if not _is_small_mismatch(each, case)]
+    true = [each for each in found if _at(each) in set(map(_at, case.effects))]
+    return true if case.else_missing and true else found
+
+
+def _tells_why(answer: Answer, case: TrueCase) -> bool:
+    """Whether an answer refuses recordings in words that the truth asks for."""
+    if answer.kind != "refused" or not case.refusal:
+        return False
+    return any(all(word in text for word in case.refusal) for text in answer.limits)
 
 
 def _is_small_mismatch(found: Named, case: TrueCase) -> bool:
@@ -161,7 +179,7 @@ def _is_small_mismatch(found: Named, case: TrueCase) -> bool:
     return False
 
 
-def _at(effect: Named | Hidden) -> tuple[str, str]:
+def _at(effect: Named | TrueEffect) -> tuple[str, str]:
     return effect.name, effect.place
 
 
@@ -173,13 +191,13 @@ def _considered(answer: Answer) -> set[str]:
     return found | others | sets
 
 
-def _main(true: Hidden) -> list[str]:
+def _main(true: TrueEffect) -> list[str]:
     known = all_effects().get(true.name)
     names = (known and known.main_parameters) or tuple(true.parameters)
     return [name for name in names if name in true.parameters]
 
 
-def _error(found: Named, true: Hidden, oracle: Oracle | None) -> float:
+def _error(found: Named, true: TrueEffect, oracle: Oracle | None) -> float:
     """Error of the main parameters, relative to the size of the true effect.
 
     The error is the distance from the estimate to the truth, the size is that from the
@@ -197,7 +215,7 @@ def _error(found: Named, true: Hidden, oracle: Oracle | None) -> float:
     return math.hypot(*wrong) / max(math.hypot(*size), 1e-12)
 
 
-def _covered(found: Named, true: Hidden) -> list[bool]:
+def _covered(found: Named, true: TrueEffect) -> list[bool]:
     stated = [(found.parameters.get(n), true.parameters[n]) for n in _main(true)]
     return [one is not None and one.holds(value) for one, value in stated]
 

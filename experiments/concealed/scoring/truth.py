@@ -9,19 +9,23 @@ from experiments.concealed.reading import BASELINE_ANSWERS, FORMAT, HASH, SEALED
 from experiments.concealed.scoring.answers import Answer, read_answer
 from groundwalk.errors import BadValueError, RunFolderError
 from groundwalk.json_data import from_plain, parse_object
-from worlds.hidden.effects import Hidden
+
+REAL = "real"
+"""The `engine` of cases made of real recordings."""
 
 
 @dataclass(frozen=True)
-class SmallMismatch:
-    """A small error of the nominal model that is there, but is not asked for.
-
-    Name, place and parameters are in an answer's words, such as "payload_mass".
-    """
+class TrueEffect:
+    """What is missing in a case: name, place and parameters in an answer's words."""
 
     name: str
     place: str
     parameters: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class SmallMismatch(TrueEffect):
+    """A small error of the nominal model that is there, but is not asked for."""
 
 
 @dataclass(frozen=True)
@@ -30,9 +34,11 @@ class TrueCase:
 
     Attributes:
       plant: name of the robot model, such as "so101".
-      engine: "mujoco" or "bullet", which made the recordings.
+      engine: "mujoco" or "bullet", which made the recordings, or "real" for those of
+        a real robot.
       kind: a key of `draw.CASE_KINDS` or `second.plan.KINDS_2`, such as "single".
-      effects: the hidden effects with their parameters.
+      effects: the hidden effects with their parameters; of a doctored recording what
+        would undo the doctoring.
       size: how easy the effects are to see: 1 easiest, 0 hard, below 0 even harder;
         None if nothing is hidden.
       held: names of the joints that never move.
@@ -43,13 +49,17 @@ class TrueCase:
       rate_hz: ticks per second; None if not told.
       gains: number of different servo gains in the recordings; None if not told.
       reference: whether there are recordings of the healthy robot; None if not told.
+      else_missing: whether more is missing than `effects`, nobody knows what: where
+        these are named, other named effects count nowhere.
+      refusal: words that the refusal of a recording must hold to be right; () where
+        none is.
       name: name of the case, such as "case_000"; not part of the file.
     """
 
     plant: str
     engine: str
     kind: str
-    effects: tuple[Hidden, ...]
+    effects: tuple[TrueEffect, ...]
     size: float | None = None
     held: tuple[str, ...] = ()
     nats: tuple[float, ...] = ()
@@ -58,6 +68,8 @@ class TrueCase:
     rate_hz: float | None = None
     gains: int | None = None
     reference: bool | None = None
+    else_missing: bool = False
+    refusal: tuple[str, ...] = ()
     name: str = ""
 
 

@@ -1,0 +1,190 @@
+"""Whole doctored cases: what is true of them, and that undoing it undoes it."""
+
+import json
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from made_up_data import write_arm, write_data
+
+from diagnosis.audit.audit import audit
+from diagnosis.effects import PlacedEffect, all_effects, effect
+from diagnosis.residuals.channels import shared_channels
+from diagnosis.residuals.predictor import Predictor
+from experiments.concealed.doctored import case as doctored
+from experiments.concealed.doctored.case import doctored_case
+from experiments.concealed.doctored.plan import planned_real
+from experiments.concealed.doctored.robots import IN_MODEL, OUTSIDE, REAL_SETS
+from experiments.concealed.make import ConcealedMake, main
+from experiments.concealed.reading import read_case
+from experiments.concealed.scoring.truth import read_truth
+from experiments.concealed.written import write_case
+from experiments.runs import processes
+from groundwalk.errors import BadRecordingError, BadValueError
+
+REAL = Path(__file__).parents[4] / ".." / "shared" / "data"
+COUNT, SEED = 120, 4
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory):
+    """Data of one robot, the simulated arm."""
+    folder = tmp_path_factory.mktemp("arm")
+    write_arm(folder)
+    return folder
+
+
+def first_with(data, what, name=None):
+    """Number of the first case of a set in which something is doctored."""
+    for number in range(COUNT):
+        robot, done = planned_real(data, SEED, COUNT, number)
+        if done == what and name in (None, robot):
+            return number
+    pytest.skip(f"no recordings for {what}")
+
+
+def before_and_after(data, number):
+    """The case as it would be without the doctoring, and the case."""
+    kept = {}
+
+    def noting(real, what, model, parts, rng):
+        kept["was"] = model.text, parts.recordings
+        return original(real, what, model, parts, rng)
+
+    original = doctored._doctored
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(doctored, "_doctored", noting)
+        made = doctored_case(data, SEED, number, COUNT)
+    text, recordings = kept["was"]
+    return replace(made, model=(made.model[0], text), recordings=recordings), made
+
+
+def read_one(folder, made):
+    """Plant and up to 3 s of the first recording of a case."""
+    write_case(folder / "cases", folder / "truths", "one", made)
+    plant, traces, reference = read_case(folder / "cases" / "one")
+    one = traces[0]
+    return plant, one.part(0, min(one.ticks, int(3 / one.tick_s))), reference
+
+
+def errors(plant, trace, models, channels):
+    """Rms error [noise] of one recording, for each model."""
+    predictor = Predictor(plant, [trace], channels)
+    predictor.calibrate(models[-1])
+    residuals = predictor.residuals(models)[:, predictor.scored]
+    return np.sqrt(np.mean(residuals**2, axis=1)).tolist()
+
+
+def undone(tmp_path, data, what, name=None):
+    """Errors without the doctoring, with it, and with it undone by the true effect."""
+    was, made = before_and_after(data, first_with(data, what, name))
+    (true,) = made.truth["effects"]
+    plant0, trace0, _ = read_one(tmp_path / "was", was)
+    plant, trace, _ = read_one(tmp_path / "is", made)
+    kind = effect(true["name"])
+    assert true["place"] in kind.places(plant, [trace])
+    (known,) = kind.parameters(plant, true["place"])
+    value = true["parameters"][known.name]
+    assert known.low <= value <= known.high
+    rows = min(trace.ticks, trace0.ticks)
+    trace, trace0 = trace.part(0, rows), trace0.part(0, rows)
+    channels = shared_channels(plant0, [trace0])
+    (nominal,) = errors(plant0, trace0, [()], channels)
+    placed = PlacedEffect(true["name"], true["place"], (value,))
+    wrong, right = errors(plant, trace, [(), (placed,)], channels)
+    return nominal, wrong, right
+
+
+@pytest.mark.parametrize(
+    "what", ["servo_gain", "command_latency", "encoder_offset", "payload_mass"]
+)
+def test_the_true_effect_undoes_a_doctoring_of_a_simulated_arm(tmp_path, arm, what):
+    nominal, wrong, right = undone(tmp_path, arm, what)
+    assert right == pytest.approx(nominal, rel=0.1, abs=0.5)
+    assert wrong > 1.5 * right
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not REAL.is_dir(), reason="no real recordings in ../shared/data")
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [
+        (name, what)
+        for name, real in REAL_SETS.items()
+        for what in real.doctorings
+        if what not in OUTSIDE
+    ],
+)
+def test_the_true_effect_undoes_a_doctoring_of_real_recordings(tmp_path, name, what):
+    if what not in all_effects():
+        pytest.skip(f"the diagnosis has no {what}")
+    nominal, _, right = undone(tmp_path, REAL, what, name)
+    assert right == pytest.approx(nominal, rel=0.02)
+
+
+def test_swapped_joints_are_refused_in_the_words_of_the_truth(tmp_path, arm):
+    was, made = before_and_after(arm, first_with(arm, "joints_swapped"))
+    plant, trace, _ = read_one(tmp_path, made)
+    refused = audit([trace], plant).refused
+    assert any(all(word in text for word in made.truth["refusal"]) for text in refused)
+    plant, trace, _ = read_one(tmp_path / "was", was)
+    assert audit([trace], plant).refused == ()
+
+
+def test_a_model_that_is_wrong_has_no_reference_and_labels_that_are_wrong_do(arm):
+    for number in range(COUNT):
+        was, made = before_and_after(arm, number)
+        truth = made.truth
+        in_model = any(one["name"] in IN_MODEL for one in truth["effects"])
+        assert bool(made.reference) == truth["reference"] == (not in_model)
+        assert truth["else_missing"] == in_model
+        assert (was.model != made.model) == in_model
+        assert not set(made.reference) & set(made.recordings)
+        if truth["kind"] == "none":
+            assert was.recordings == made.recordings
+        kinds = {"none": 0, "single": 1, "outside": 1}
+        assert len(truth["effects"]) == kinds[truth["kind"]]
+
+
+def make(folder, data, cases=8):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            processes, "ProcessPoolExecutor", lambda *_, **__: ThreadPoolExecutor(1)
+        )
+        main(ConcealedMake(folder, cases=cases, seed=SEED, real=data, threads=1))
+    return (folder / "sealed.sha256").read_text()
+
+
+def test_a_set_is_sealed_and_tells_nothing(tmp_path):
+    data = tmp_path / "data"
+    write_data(data)
+    digest = make(tmp_path / "set", data)
+    assert make(tmp_path / "again", data) == digest
+    truth = read_truth(tmp_path / "set")
+    assert (truth.set, len(truth.cases)) == (3, 8)
+    for name, case in truth.cases.items():
+        folder = tmp_path / "set" / "cases" / name
+        assert case.engine == "real"
+        told = json.loads((folder / "plant.json").read_text())
+        assert (folder / told["robot"]).is_file()
+        _, traces, reference = read_case(folder)
+        assert bool(reference) == case.reference
+        assert len(traces) >= 2
+        assert all(trace.servo.kp_nm_rad.any() for trace in traces)
+        files = [path.name for path in folder.rglob("*") if path.is_file()]
+        assert not any("doctor" in file or "truth" in file for file in files)
+
+
+def test_data_without_recordings_are_told(tmp_path):
+    with pytest.raises(BadRecordingError, match="no recordings"):
+        make(tmp_path / "set", tmp_path)
+    with pytest.raises(BadValueError, match="no folder of real recordings"):
+        ConcealedMake(tmp_path / "set", real=tmp_path / "nothing")
+
+
+def test_recordings_without_motion_are_told(tmp_path, arm, monkeypatch):
+    monkeypatch.setattr("experiments.concealed.doctored.parts.MOVES", 100.0)
+    with pytest.raises(BadRecordingError, match="no joint moves at which servo_gain"):
+        doctored_case(arm, SEED, first_with(arm, "servo_gain"), COUNT)
