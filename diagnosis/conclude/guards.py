@@ -18,7 +18,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.verdict import Fit
+from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
 """Share of what could be explained that an answer must explain, and of what it explains
@@ -146,11 +146,14 @@ def _on_bound(both: Predictor, placed: PlacedEffect) -> bool:
     return False
 
 
-def objections(fit: Fit, timed: bool) -> tuple[str, ...]:
+def objections(every: Fit, timed: bool) -> tuple[str, ...]:
     """Sentences on why effects are not established, from errors on held-out data.
 
     `timed` says that they acted for a while only, perhaps not in the held-out data.
+    Only channels in which the nominal sim is off count, if there are any: in many
+    others an effect at one joint would be lost.
     """
+    fit = _telling(every)
     gained = fit.nominal**2 - fit.corrected**2
     if timed and gained >= -(fit.floor**2):
         return ()
@@ -183,7 +186,25 @@ def objections(fit: Fit, timed: bool) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _does_as_well(fit: Fit, control: float) -> bool:
+def _telling(fit: Fit) -> Errors:
+    """The errors, by noise floors, over channels in which the nominal sim is off."""
+    own = [
+        one
+        for one in fit.channels.values()
+        if one.nominal**2 > (1 + MOST_LEFT) * one.floor**2
+    ]
+    if not own:
+        return fit
+    together = {}
+    for name in Errors.__dataclass_fields__:
+        errors = [getattr(one, name) for one in own]
+        if None not in errors:
+            shares = [error / one.floor for error, one in zip(errors, own, strict=True)]
+            together[name] = float(np.sqrt(np.mean(np.square(shares))))
+    return Errors(**together)
+
+
+def _does_as_well(fit: Errors, control: float) -> bool:
     """Whether a control takes away half of the main effect's share, and leaves little.
 
     Similar effects explain much of each other; but the right one leaves far less.

@@ -10,7 +10,7 @@ from made_up_traces import arm, recorded
 from diagnosis.conclude.guards import established, objections
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.verdict import Fit
+from diagnosis.verdict import ChannelFit, Fit
 
 GOOD = Fit(
     nominal=10.0,
@@ -60,6 +60,21 @@ def test_of_several_effects_the_main_one_is_compared():
     """Others explain all but 8 of 99; of these a wrong answer explains 5, or none."""
     assert "another effect" in said(without=3.0, wrong_effect=1.7)
     assert said(without=3.0, wrong_effect=2.9) == ""
+
+
+def test_an_effect_at_one_of_many_joints_is_judged_by_its_own():
+    """Of 20 channels one is off, so that over all of them hardly anything is."""
+    quiet = ChannelFit(
+        nominal=2.0, corrected=2.0, floor=2.0, wrong_effect=2.0, unit="rad"
+    )
+    loud = ChannelFit(
+        nominal=6.0, corrected=2.2, floor=2.0, wrong_effect=5.8, unit="rad"
+    )
+    channels = {f"position.{k}": quiet for k in range(19)} | {"position.own": loud}
+    diluted = {"nominal": 1.18, "corrected": 1.01, "wrong_effect": 1.17}
+    assert said(wrong_place=None, ceiling=None, channels=channels, **diluted) == ""
+    as_good = channels | {"position.own": replace(loud, wrong_effect=2.3)}
+    assert "another effect" in said(wrong_place=None, channels=as_good, **diluted)
 
 
 def test_what_acted_for_a_while_need_not_be_in_the_held_out_data():
