@@ -189,7 +189,7 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
         "groundwalk record --robot nao --motion multisine --duration 20 --hidden "
         "speed_limit@LKneePitch:speed=2.5 --out knee.parquet": Run(
-            "--duration 3", writes=("knee.parquet",)
+            "--duration 9", writes=("knee.parquet",)
         ),
         "groundwalk diagnose knee.parquet --robot nao --out runs/knee": Run(
             writes=below("runs/knee", (*DIAGNOSED, "corrected.json")), says="LKneePitch"
