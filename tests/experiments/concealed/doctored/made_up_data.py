@@ -37,6 +37,7 @@ GAINS = ServoGains(60.0, 1.5, 30.0)
 SWINGS = {"joint2": (0.4, 0.7), "joint3": (0.5, 1.6)}
 """Amplitude [rad] and frequency [Hz] of each joint's command."""
 TICK_S, STEPS = 0.005, 5
+NOISE_RAD = 5e-5
 SO101_JOINTS = (
     "shoulder_pan",
     "shoulder_lift",
@@ -52,7 +53,7 @@ CARRIAGE = """<mujoco model="emps"><option gravity="0 0 0"/><worldbody>
 
 
 def arm_recording(duration_s, begin_s):
-    """The arm of `ARM`, driven by servos with `GAINS` on perfect encoders."""
+    """The arm of `ARM`, driven by servos with `GAINS`, as noisy encoders see it."""
     spec = mujoco.MjSpec.from_string(ARM)
     for joint in spec.joints:  # damping of the servos, implicit as in a real one
         joint.damping = [GAINS.kd, 0, 0]
@@ -64,6 +65,7 @@ def arm_recording(duration_s, begin_s):
         [a * np.sin(2 * np.pi * f * (time_s + begin_s)) for a, f in SWINGS.values()], 1
     )
     data.qpos[:] = commands[0]
+    encoder = np.random.default_rng(round(begin_s))
     positions = np.empty_like(commands)
     for k, command in enumerate(commands):
         positions[k] = data.qpos
@@ -72,7 +74,9 @@ def arm_recording(duration_s, begin_s):
             mujoco.mj_step(model, data)
     columns = {"time": time_s}
     for j, joint in enumerate(SWINGS):
-        columns[f"position.{joint}"] = positions[:, j]
+        columns[f"position.{joint}"] = positions[:, j] + encoder.normal(
+            0, NOISE_RAD, rows
+        )
         columns[f"command.{joint}"] = commands[:, j]
     servo = dict.fromkeys(SWINGS, GAINS)
     return Recording(columns, RecordingMetadata("m.xml", "fixed", "made up", servo))
