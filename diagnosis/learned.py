@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.audit.result import Audit
-from diagnosis.conclude.answer import verdict_kind
+from diagnosis.conclude.answer import much_is_left, verdict_kind
 from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
@@ -33,6 +33,10 @@ the linear estimates unreliable by which it chooses models to fit."""
 MORE_THAN_NOISE = 2.0
 """If the best model leaves this multiple of the noise in a channel, the recordings are
 searched again, with what it leaves as noise: no model of this robot is better."""
+
+ALL_CLOSED = 0.95
+"""Share of the energy above the noise that few effects must remove; otherwise one
+effect at all joints is tried."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
@@ -86,7 +90,9 @@ class Learned:
             material = replace(material, plant=plant, limits=limits)
         found = _best_of_each_size(first.search, first.result)
         wide = channels.widened(wider)
-        return cls._of(material, wide, given.again, threads, hooks, found)
+        # beside wider noise nothing seems unknown any more
+        much = much_is_left(first.result, ALL_CLOSED)
+        return cls._of(material, wide, given.again, threads, hooks, found, much)
 
     def _creeps(self) -> bool:
         """Whether dry friction that lets joints creep fits better."""
@@ -105,12 +111,16 @@ class Learned:
         threads: int,
         hooks: Hooks,
         promising: Sequence[Model] = (),
+        again: bool = False,
     ) -> "Learned":
-        """One search, which also tries the models `promising`."""
+        """One search, which also tries the models `promising`.
+
+        `again` says that few effects left much before.
+        """
         data, noise, search = _divided(
             material, channels, rules, threads, hooks, promising
         )
-        found = _searched(search, material.audited)
+        found = _searched(search, material.audited, again)
         return cls(material, data, noise, search, *found)
 
 
@@ -180,10 +190,13 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
     )
 
 
-def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind]:
+def _searched(
+    search: Search, audited: Audit, again: bool
+) -> tuple[SearchResult, VerdictKind]:
     """Search for effects that the sim lacks, and decide the kind of the verdict.
 
-    Where it would be `unknown`, the search goes on with one effect at all joints.
+    Where few effects leave much, now or before (`again`), the search goes on with one
+    effect at all joints.
     """
     judge, plant = search.judge, search.judge.fit.plant
     result = accepted(judge, search.run())
@@ -192,7 +205,7 @@ def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind
     if more_is_missing(judge.fit, result):
         result = everywhere(judge, result)
         kind = verdict_kind(result, plant, audited)
-    elif plant.base == "fixed" and kind == "unknown":
+    elif plant.base == "fixed" and (again or much_is_left(result, ALL_CLOSED)):
         result = all_joints(judge, result)
         kind = verdict_kind(result, plant, audited)
     return result, kind

@@ -98,8 +98,8 @@ MOST_LEFT = 0.5
 it, hardly more than noise remains, and the verdict is not `unknown`."""
 
 
-def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
-    """The kind of verdict: "effects", "none", "unknown" or "not_identifiable"."""
+def much_is_left(searched: SearchResult, least_closed: float) -> bool:
+    """Whether a search leaves more than noise, and less than a share is removed."""
     selected, fitted, closed = searched.nothing, searched.nothing_fit, 0.0
     winner = searched.winner
     if winner:
@@ -107,7 +107,13 @@ def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> Verdic
         closed = searched.closed(winner)
     much = selected > (1 + MOST_LEFT) * searched.floor
     much |= fitted > (1 + MOST_LEFT) * searched.floor_fit
-    if much and closed < LEAST_CLOSED:
+    return bool(much and closed < least_closed)
+
+
+def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
+    """The kind of verdict: "effects", "none", "unknown" or "not_identifiable"."""
+    winner = searched.winner
+    if much_is_left(searched, LEAST_CLOSED):
         return "unknown"
     still = set(plant.joints) - audited.moving
     at_rest = still | plant.at_rest(still)
