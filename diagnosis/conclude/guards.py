@@ -17,7 +17,12 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.search.fitting import (
+    SECONDARY,
+    FittedModel,
+    fit_all,
+    ran_into_bound,
+)
 from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
@@ -28,10 +33,6 @@ MOST_OF_IT = 0.75
 """Share of the squared error above the noise that an answer must take away: the error
 falls to half. What is left is otherwise as large as what was found."""
 
-ON_BOUND = 1e-3
-"""Distance from a bound, as a share of the way between both, within which a value
-counts as on the bound."""
-
 SHIFTS, FITTED = (-10, 3), 3
 """First and last shift, in bins of 50 ms, of the start of an effect that does not last,
 and number of the best starts that are fitted: an event shows late, and a fit does not
@@ -39,9 +40,6 @@ find a moment from far away."""
 
 ROUNDS = 2
 """How often values and the width of tolerances are estimated in turn."""
-
-SECONDARY = ("start", "duration", "side", "rest")
-"""Names of parameters that do not say how large an effect is."""
 
 
 def established(
@@ -60,7 +58,7 @@ def established(
         fitted = fit_all(both, [model])[0]
         model = fitted.model
         doubtful = _may_be_nothing(both, fitted)
-        bound = [one for one in model if _on_bound(both, one)]
+        bound = [one for one in model if ran_into_bound(fitted, one)]
         if doubtful is None and not bound:
             return both, fitted, tuple(said)
         gone = doubtful if doubtful is not None else bound[0]
@@ -130,20 +128,6 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
         if ratios and max(ratios) < least:
             worst, least = placed, max(ratios)
     return worst
-
-
-def _on_bound(both: Predictor, placed: PlacedEffect) -> bool:
-    """Whether a value has run into a bound that is not that of no effect."""
-    kind = effect(placed.name)
-    parameters = kind.parameters(both.plant, placed.place)
-    for parameter, value in zip(parameters, placed.values, strict=True):
-        if parameter.name in SECONDARY:
-            continue
-        margin = ON_BOUND * (parameter.high - parameter.low)
-        ends = [parameter.low] if parameter.full else [parameter.low, parameter.high]
-        if any(abs(value - end) < margin and end != parameter.neutral for end in ends):
-            return True
-    return False
 
 
 def objections(every: Fit, timed: bool) -> tuple[str, ...]:

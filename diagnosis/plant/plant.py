@@ -64,7 +64,7 @@ class Plant:
     creeps: bool = False
 
     def without_ranges(self, joints: Collection[str]) -> "Plant":
-        """The same robot model, in which these joints have no end stops."""
+        """A copy of the robot model in which these joints have no end stops."""
         if not joints:
             return self
         spec = self.spec.copy()

@@ -103,6 +103,10 @@ class Predictor:
         ]
         blocks = np.repeat(np.concatenate(numbers), c)
         self.block = np.unique(blocks, return_inverse=True)[1]
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Prepare what another kind of predictor needs beside windows and channels."""
 
     def part(self, first: int, last: int) -> "Predictor":
         """A predictor of traces `first` to `last - 1`, with the same calibration."""
@@ -130,13 +134,13 @@ class Predictor:
         return 0.5 * float(self.scored.sum() - sum(taken))
 
     def without_tolerances(self) -> "Predictor":
-        """The same predictor, whose residuals are not whitened with tolerances."""
+        """A copy whose residuals are not whitened with tolerances."""
         some = copy(self)
         some._tolerance = None
         return some
 
     def with_likely_tolerances(self, model: Model) -> "Predictor":
-        """The same predictor; its tolerances are as wide as the model's errors are."""
+        """A copy whose tolerances are as wide as the errors that a model leaves."""
         some = copy(self)
         if self._tolerance is not None:
             (left,) = self.without_tolerances().residuals([model])

@@ -36,7 +36,7 @@ class Tolerance:
         self._axes = np.sqrt(share)[:, None] * self._unit
 
     def part(self, entries: BoolArray) -> "Tolerance":
-        """The same tolerances for those of the N entries of a residual that count."""
+        """Tolerances for some of a residual's entries, those where (N,) is true."""
         return Tolerance(self._signatures[:, entries])
 
     @property

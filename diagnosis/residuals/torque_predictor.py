@@ -35,24 +35,12 @@ class TorquePredictor(Predictor):
     tolerances, beside those of the model.
     """
 
-    def __init__(
-        self,
-        plant: Plant,
-        traces: Sequence[Trace],
-        channels: Channels | None = None,
-        step_s: float | None = None,
-        threads: int = 1,
-        noise: ReferenceNoise | None = None,
-        on_replay: Callable[[int], None] | None = None,
-        window_s: float = 0.0,
-    ) -> None:
-        """Find the rows that count; arguments are those of `Predictor`.
+    def _prepare(self) -> None:
+        """Find the rows that count; all traces have a `motion`.
 
-        All traces have a `motion`. Steps, threads and windows are those of replays;
-        they change nothing.
+        Steps, threads and windows are those of replays: they change nothing.
         """
-        every = channels, step_s, threads, noise, on_replay, window_s
-        super().__init__(plant, traces, *every)
+        plant, traces = self.plant, self.traces
         self._needed = NeededTorques(plant, traces)
         motions = [trace.motion for trace in traces if trace.motion is not None]
         known = np.isfinite(self._measured)
@@ -75,7 +63,7 @@ class TorquePredictor(Predictor):
 
     @property
     def by_torque(self) -> bool:
-        """True."""
+        """Whether torques are compared: they are."""
         return True
 
     def correct(self, model: Model = ()) -> FloatArray:
@@ -99,11 +87,11 @@ class TorquePredictor(Predictor):
         return torque
 
     def exact(self, models: Sequence[Model]) -> FloatArray:
-        """The same as `predict`, since nothing is integrated."""
+        """(n, rows, c) torques as of `predict`: there is no integration error."""
         return self.predict(models)
 
     def with_likely_tolerances(self, model: Model) -> Predictor:
-        """The same predictor; its tolerances are narrower if the model's errors are.
+        """A copy whose tolerances are narrower if the model's errors are.
 
         They are never wider: a robot whose masses are far from the model's does not
         have wrong scales of its torques for that.

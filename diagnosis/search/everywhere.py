@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.effects.library import all_effects, effect
-from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import signatures
 from diagnosis.search.all_joints import (
@@ -25,7 +24,13 @@ from diagnosis.search.all_joints import (
 )
 from diagnosis.search.candidates import Candidates
 from diagnosis.search.chance import by_chance
-from diagnosis.search.fitting import Coordinates, FittedModel, Nudges, fit_all
+from diagnosis.search.fitting import (
+    Coordinates,
+    FittedModel,
+    Nudges,
+    fit_all,
+    ran_into_bound,
+)
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import VALUE_NATS, Judged, SearchResult, without_each
 from diagnosis.search.screening import Screen
@@ -43,7 +48,7 @@ effects at all joints are tried."""
 
 def more_is_missing(fit: Predictor, result: SearchResult) -> bool:
     """Whether torques are compared, and some effects leave more than noise of them."""
-    if any(trace.motion is None for trace in fit.traces):
+    if not fit.by_torque:
         return False
     model = result.winner.model if result.winner else ()
     (left,) = fit.without_tolerances().residuals([model])
@@ -79,9 +84,6 @@ FEWEST_ALIKE = 2
 FINISHED = 3
 """Number of models with one more single effect that are fitted to the end, until one
 has no value on a bound: with such a value something else is behind the error."""
-
-ON_BOUND = 1e-3
-"""Distance from a bound, in scaled coordinates, within which a value is on it."""
 
 
 class Everywhere:
@@ -257,24 +259,6 @@ def gains_of_each(fit: FittedModel) -> FloatArray:
         part = spread[np.ix_(own[:size], own[:size])]
         gains.append(0.5 * float(away @ np.linalg.pinv(part, hermitian=True) @ away))
     return np.array(gains)
-
-
-def ran_into_bound(fit: FittedModel, placed: PlacedEffect) -> bool:
-    """Whether one of an effect's values is on a bound that is not neutral."""
-    coordinates, first = fit.coordinates, 0
-    low, high = coordinates.bounds()
-    x = coordinates.of(fit.model)
-    for one in fit.model:
-        for i in range(first, first + len(one.values)):
-            parameter = coordinates.parameters[i]
-            ends = (low[i], parameter.low), (high[i], parameter.high)
-            if one is placed and any(
-                abs(x[i] - at) < ON_BOUND and value != parameter.neutral
-                for at, value in ends
-            ):
-                return True
-        first += len(one.values)
-    return False
 
 
 def apart(predictor: Predictor, model: Model) -> Nudges:

@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.effects.parts import Parameter
+from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep
@@ -255,3 +255,37 @@ def _fit(course: _Course, steps: int, jacobian: FloatArray | None) -> FittedMode
     model = coordinates.model_at(found.x)
     at_end = course.residual(found.x), course.jacobian(found.x)
     return FittedModel(model, *at_end, coordinates)
+
+
+ON_BOUND = 1e-3
+"""Distance from a bound, in scaled coordinates, within which a value is on it."""
+
+SECONDARY = ("start", "duration", "side", "rest")
+"""Names of parameters that do not say how large an effect is."""
+
+
+def ran_into_bound(fit: FittedModel, placed: PlacedEffect) -> bool:
+    """Whether a value that says how large one of a fit's effects is lies on a bound.
+
+    The bound of no effect does not count, nor does that of all there is (such as a
+    motor that lost all of its torque).
+    """
+    low, high = fit.coordinates.bounds()
+    x, first = fit.coordinates.of(fit.model), 0
+    for one in fit.model:
+        for i in range(first, first + len(one.values)):
+            parameter = fit.coordinates.parameters[i]
+            ends = [(low[i], parameter.low)]
+            if not parameter.full:
+                ends.append((high[i], parameter.high))
+            if (
+                one is placed
+                and parameter.name not in SECONDARY
+                and any(
+                    abs(x[i] - at) < ON_BOUND and value != parameter.neutral
+                    for at, value in ends
+                )
+            ):
+                return True
+        first += len(one.values)
+    return False

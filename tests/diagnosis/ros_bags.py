@@ -10,7 +10,8 @@ from diagnosis.traces.trace import Trace
 
 NANOSECOND = 1e-9
 HEADER_BYTES = 4
-"""Of every message: which encoding it has. All else is aligned from there."""
+"""Bytes at the start of a message that name its encoding; alignment counts from their
+end."""
 
 
 class _Message:

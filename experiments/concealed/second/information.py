@@ -62,7 +62,7 @@ class Teller:
     mismatch: tuple[FloatArray, ...] = ()
 
     def beside(self, exact: Sequence[Run], real: Sequence[Run]) -> "Teller":
-        """The same, with the mismatch of `real` runs beside those of an exact model."""
+        """A copy that knows how `real` runs differ from those of an exact model."""
         spread = []
         for was, run in zip(exact, real, strict=True):
             first = run.clock.first
@@ -119,7 +119,7 @@ class Teller:
     def _by_torque(
         self, was: Run, run: Run, read: FloatArray, mismatch: FloatArray
     ) -> float:
-        """The same for the torque that the nominal robot would not have needed.
+        """Information [nats] in the torque that the nominal robot would not need.
 
         In the spectrum at angular frequency w (Whittle 1953) its noise is that of the
         torques plus (inertia w^2)^2 times that of the angles.

@@ -28,7 +28,7 @@ def noise(seed, memory=0.0):
 
 
 def screen(count):
-    """Of effects whose changes have nothing in common."""
+    """A screen of effects whose changes have nothing in common."""
     random = np.random.default_rng(99)
     return Screen(
         PREDICTOR,

@@ -13,9 +13,8 @@ from diagnosis.search.everywhere import (
     gains_of_each,
     kind_by_chance,
     more_is_missing,
-    ran_into_bound,
 )
-from diagnosis.search.fitting import fit_all
+from diagnosis.search.fitting import fit_all, ran_into_bound
 from diagnosis.search.result import SearchResult
 from diagnosis.search.screening import Screen
 from diagnosis.traces.usage import Usage
