@@ -55,6 +55,9 @@ class Effect(ABC):
     place_kind: ClassVar[PlaceKind]
     """Kind of thing that the effect is attached to, such as "joint"."""
 
+    replayed: ClassVar[bool] = True
+    """Whether replays show the effect; False if only compared torques do."""
+
     native: ClassVar[bool]
     """Whether MuJoCo can simulate the effect, so that an MJCF file can contain it."""
 

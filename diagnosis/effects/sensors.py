@@ -22,6 +22,7 @@ class TorqueScale(NumberEffect, JointEffect):
 
     name = "torque_scale"
     native = False
+    replayed = False
     on_every_servo = False
     rarity_nats = 1.0
     quantity = "torque_factor"

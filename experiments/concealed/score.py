@@ -38,8 +38,6 @@ VERB = "concealed-score"
 FORMAT = 1
 DIAGNOSIS = "diagnosis"
 ORACLE, SCORE, PAGE, FIGURE = "oracle", "score.json", "score.md", "score.png"
-_UNSEEN_IN_REPLAYS = ("torque_scale",)
-"""Effects that show only where measured torques are compared, which oracles do not."""
 Answers = Mapping[str, Mapping[str, Answer]]
 """Answers by method and name of the test case; methods are "diagnosis", the names of
 baselines, and those of folders of other tools' answers."""
@@ -148,7 +146,7 @@ def consult_all(
     Each is stored in the set's folder, and only computed again if an answer changed.
     The effects of all `answers` are replayed on the held-out recordings.
     """
-    known = set(all_effects()) - set(_UNSEEN_IN_REPLAYS)
+    known = {name for name, kind in all_effects().items() if kind.replayed}
     named = {
         name: case
         for name, case in cases.items()

@@ -12,6 +12,10 @@ ROOMS = (
 HOMES = ("diagnosis/effects/", "worlds/hidden/effects/")
 DATA = {
     "experiments/concealed/draw.py": "pairs that are drawn together",
+    "experiments/concealed/doctored/case.py": "what undoes a doctored label",
+    "experiments/concealed/doctored/models.py": "what is taken from a model",
+    "experiments/concealed/doctored/robots.py": "what each real set allows",
+    "experiments/concealed/doctored/sizes.py": "how large each is drawn",
     "experiments/concealed/second/motion.py": "servos of two gains",
     "experiments/concealed/second/nuisance.py": "small mismatch in every case",
     "experiments/real_robot_study/cases.py": "what others published",
