@@ -166,6 +166,11 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
     },
     "concealed_answers.md": {
+        "groundwalk concealed run set": NotRun(
+            "docs/concealed.md takes it, where a set is made first",
+            "groundwalk concealed run --help",
+            says="--by",
+        ),
         "groundwalk concealed score set --answers data": NotRun(
             "another tool's answers are needed",
             "groundwalk concealed score --help",
