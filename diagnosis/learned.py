@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.audit.result import Audit
-from diagnosis.conclude.answer import much_is_left, verdict_kind
+from diagnosis.conclude.answer import verdict_kind
 from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
@@ -15,7 +15,6 @@ from diagnosis.residuals.data_sets import DataSets, precise
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.search.accept import accepted
-from diagnosis.search.all_joints import all_joints
 from diagnosis.search.everywhere import everywhere, more_is_missing
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
@@ -33,10 +32,6 @@ the linear estimates unreliable by which it chooses models to fit."""
 MORE_THAN_NOISE = 2.0
 """If the best model leaves this multiple of the noise in a channel, the recordings are
 searched again, with what it leaves as noise: no model of this robot is better."""
-
-ALL_CLOSED = 0.95
-"""Share of the energy above the noise that few effects must remove; otherwise one
-effect at all joints is tried."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
@@ -91,7 +86,7 @@ class Learned:
         found = _best_of_each_size(first.search, first.result)
         wide = channels.widened(wider)
         # beside wider noise nothing seems unknown any more
-        much = much_is_left(first.result, ALL_CLOSED)
+        much = more_is_missing(first.data.fit, first.result)
         return cls._of(material, wide, given.again, threads, hooks, found, much)
 
     def _creeps(self) -> bool:
@@ -201,11 +196,7 @@ def _searched(
     judge, plant = search.judge, search.judge.fit.plant
     result = accepted(judge, search.run())
     kind = verdict_kind(result, plant, audited)
-    # with a floating base, models with effects at all joints would take an hour
-    if more_is_missing(judge.fit, result):
+    if again or more_is_missing(judge.fit, result):
         result = everywhere(judge, result)
-        kind = verdict_kind(result, plant, audited)
-    elif plant.base == "fixed" and (again or much_is_left(result, ALL_CLOSED)):
-        result = all_joints(judge, result)
         kind = verdict_kind(result, plant, audited)
     return result, kind

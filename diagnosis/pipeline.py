@@ -13,7 +13,6 @@ import numpy as np
 
 from diagnosis.audit.result import Audit
 from diagnosis.conclude.answer import (
-    MOST_LEFT,
     alternatives,
     believed_effects,
 )
@@ -39,7 +38,7 @@ from diagnosis.search.hooks import Hooks
 from diagnosis.search.reference import (
     reference_limit,
 )
-from diagnosis.search.result import SearchResult
+from diagnosis.search.result import MOST_LEFT, SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.traces.trace import DriveBy, Trace

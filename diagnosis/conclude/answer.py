@@ -93,27 +93,11 @@ LEAST_CLOSED = 0.5
 """Share of the nominal sim's energy (half the sum of squared residuals) above the noise
 that a model must remove; with less, more is missing and the verdict is `unknown`."""
 
-MOST_LEFT = 0.5
-"""If the error energy that remains exceeds that of the noise by at most this share of
-it, hardly more than noise remains, and the verdict is not `unknown`."""
-
-
-def much_is_left(searched: SearchResult, least_closed: float) -> bool:
-    """Whether a search leaves more than noise, and less than a share is removed."""
-    selected, fitted, closed = searched.nothing, searched.nothing_fit, 0.0
-    winner = searched.winner
-    if winner:
-        selected, fitted = winner.selected, winner.fit.energy
-        closed = searched.closed(winner)
-    much = selected > (1 + MOST_LEFT) * searched.floor
-    much |= fitted > (1 + MOST_LEFT) * searched.floor_fit
-    return bool(much and closed < least_closed)
-
 
 def verdict_kind(searched: SearchResult, plant: Plant, audited: Audit) -> VerdictKind:
     """The kind of verdict: "effects", "none", "unknown" or "not_identifiable"."""
     winner = searched.winner
-    if much_is_left(searched, LEAST_CLOSED):
+    if searched.leaves_much(LEAST_CLOSED):
         return "unknown"
     still = set(plant.joints) - audited.moving
     at_rest = still | plant.at_rest(still)

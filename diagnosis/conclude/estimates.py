@@ -1,14 +1,14 @@
 """Intervals for fitted values, and the smallest sizes of effects that would show."""
 
 from collections.abc import Mapping, Sequence
-from itertools import islice
 
 import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
-from diagnosis.search.fitting import Coordinates, FittedModel
+from diagnosis.search.coordinates import Coordinates
+from diagnosis.search.fitting import FittedModel
 from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
@@ -35,13 +35,14 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
     """
     deviation = standard_errors(predictor, fit)
     x = fit.coordinates.of(fit.model)
-    ends = np.array([_values(fit, x + side * Z_80 * deviation) for side in (-1, 1)])
-    each = zip(fit.coordinates.parameters, ends.T.tolist(), strict=True)
+    ends = np.array(
+        [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
+    )
     every: list[Mapping[str, Estimate]] = []
-    for placed in fit.model:
+    for placed, columns in zip(fit.model, fit.coordinates.columns, strict=True):
         own = {}
-        of_effect = islice(each, len(placed.values))
-        for value, (parameter, pair) in zip(placed.values, of_effect, strict=True):
+        for value, i in zip(placed.values, columns, strict=True):
+            parameter, pair = fit.coordinates.parameters[i], ends[:, i].tolist()
             unit = predictor.plant.unit(parameter.unit, placed.place)
             low, high = min(*pair, value), max(*pair, value)
             own[parameter.name] = Estimate(value, low, high, unit)
@@ -113,11 +114,6 @@ def _variance(sums: FloatArray) -> float:
         return variance
     padded = np.append(sums, 0.0) if len(sums) % 2 else sums
     return _variance(padded.reshape(-1, 2).sum(axis=1))
-
-
-def _values(fit: FittedModel, x: FloatArray) -> list[float]:
-    """The p values of all effects at the (p,) scaled coordinates `x`."""
-    return [value for placed in fit.coordinates.model_at(x) for value in placed.values]
 
 
 def smallest_detectable(

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.conclude.answer import MOST_LEFT
 from diagnosis.conclude.estimates import Z_80, standard_errors
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
@@ -23,6 +22,8 @@ from diagnosis.search.fitting import (
     fit_all,
     ran_into_bound,
 )
+from diagnosis.search.result import MOST_LEFT
+from diagnosis.search.ties import units
 from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
@@ -68,7 +69,8 @@ def established(
                 f"{name} at {gone.place} would fit best at the end of its possible "
                 "range, so something else is behind it: it is not stated"
             )
-        model = tuple(one for one in model if one is not gone)
+        unit = next(unit for unit in units(model) if gone in unit)
+        model = tuple(one for one in model if one not in unit)
     return both, None, tuple(said)
 
 
@@ -116,15 +118,14 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
     """
     errors = standard_errors(both, fitted)
     x = fitted.coordinates.of(fitted.model)
-    first, worst, least = 0, None, 1.0
-    for placed in fitted.model:
+    worst, least = None, 1.0
+    for placed, own in zip(fitted.model, fitted.coordinates.columns, strict=True):
         ratios = []
-        for i in range(first, first + len(placed.values)):
+        for i in own:
             parameter = fitted.coordinates.parameters[i]
             if np.isfinite(parameter.neutral) and parameter.name not in SECONDARY:
                 neutral = fitted.coordinates.scaled(i, parameter.neutral)
                 ratios.append(abs(x[i] - neutral) / (Z_80 * errors[i]))
-        first += len(placed.values)
         if ratios and max(ratios) < least:
             worst, least = placed, max(ratios)
     return worst

@@ -15,7 +15,8 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.result import SearchResult, without_each
+from diagnosis.search.result import SearchResult
+from diagnosis.search.ties import without_each
 from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
 
@@ -161,9 +162,11 @@ def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
     """The effect whose removal increases the error most, and the others refitted."""
     if len(model) == 1:
         return model[0], ()
-    fits = _fitted(predictor, without_each(model))
-    worst = max(range(len(model)), key=lambda i: fits[i].energy)
-    return model[worst], fits[worst].model
+    smaller = without_each(model)
+    fits = _fitted(predictor, smaller)
+    worst = max(range(len(smaller)), key=lambda i: fits[i].energy)
+    main = next(one for one in model if one not in smaller[worst])
+    return main, fits[worst].model
 
 
 def _by_lot(

@@ -94,6 +94,10 @@ class Effect(ABC):
     """Whether a simple robot model may lack the effect at all joints; False for faults
     of single joints. Only used where the place is a joint or its signals."""
 
+    of_motor: ClassVar[bool] = True
+    """Whether joints with the same motor have about the same values; False for what
+    differs from joint to joint. Only used where `on_every_servo` is True."""
+
     rarity_nats: ClassVar[float] = 0.0
     """Prior: extra log-likelihood [nats] that a rare effect needs to be accepted."""
 

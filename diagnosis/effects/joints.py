@@ -4,7 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, NumberEffect, ServoEffect
+from diagnosis.effects.effect import (
+    JointEffect,
+    NumberEffect,
+    ServoEffect,
+    TorqueEffect,
+)
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
 from diagnosis.effects.variants import Variants
@@ -66,6 +71,7 @@ class EncoderOffset(NumberEffect, JointEffect):
     name = "encoder_offset"
     native = False
     joint_by_joint = False
+    of_motor = False
     by_inverse_dynamics = True
     quantity = "offset_rad"
     usual = (Parameter("offset", "rad", -0.3, 0.3, 0.0, 0.03),)
@@ -182,6 +188,7 @@ class JointSpring(JointEffect):
 
     name = "joint_spring"
     native = True
+    of_motor = False
     main_parameters = ("stiffness",)
     words = EffectWords(
         "spring at a joint",
@@ -226,6 +233,38 @@ class JointSpring(JointEffect):
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) joint angle; the rest angle adds a constant torque of its own."""
         return motion.position_rad
+
+
+class TorqueOffset(TorqueEffect):
+    """Constant torque at a joint, in the direction of growing angles if positive.
+
+    Source: the offset in the usual model of a drive's losses, Swevers, Verdonck and De
+    Schutter 2007, "Dynamic model identification for industrial robots".
+    """
+
+    name = "torque_offset"
+    of_motor = False
+    words = EffectWords(
+        "constant torque",
+        "a constant torque of {torque} acts on {joint}, {lacking}",
+        "Friction that differs between the directions, a cable that pulls, or a weight "
+        "that is not balanced as in the model.",
+    )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """Torque [N m], at most that of the joint's servo."""
+        scale = torque_nm(plant, place)
+        return (Parameter("torque", "N m", -scale, scale, 0.0, 0.05 * scale),)
+
+    def torque_nm(
+        self,
+        values: FloatArray,
+        position_rad: FloatArray,
+        velocity_rad_s: FloatArray,
+        time_s: FloatArray,
+    ) -> FloatArray:
+        """(rows, j) the torques themselves; see `TorqueEffect`."""
+        return np.broadcast_to(values[..., 0], np.shape(position_rad))
 
 
 class EndStop(JointEffect):

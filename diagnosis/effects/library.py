@@ -32,6 +32,7 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             bodies.PayloadMass(),
             bodies.ComOffset(),
             joints.JointSpring(),
+            joints.TorqueOffset(),
             joints.EndStop(),
             servos.ServoFade(),
             servos.ServoOff(),

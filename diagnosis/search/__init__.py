@@ -2,6 +2,6 @@
 
 `screening` estimates what effects would explain, `candidates` proposes models,
 `fitting` fits them, `judging` decides which to believe, `search` adds effects, `accept`
-tests the result, and `all_joints` adds an effect at all joints at once.
+tests the result, and `everywhere` adds an effect at all joints at once.
 `reference` learns from recordings of the healthy robot.
 """

@@ -16,7 +16,8 @@ from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
-from diagnosis.search.result import Judged, SearchResult, keys_of, without_each
+from diagnosis.search.result import Judged, SearchResult, keys_of
+from diagnosis.search.ties import without_each
 from groundwalk.arrays import FloatArray
 
 CLOSE_NATS = 100.0

@@ -1,17 +1,17 @@
 """Fits the parameters of models by nonlinear least squares, several at a time."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from itertools import islice
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from diagnosis.effects.library import effect
-from diagnosis.effects.parts import Parameter, PlacedEffect
-from diagnosis.plant.plant import Plant
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep
-from groundwalk.arrays import BoolArray, FloatArray
+from diagnosis.search.coordinates import Coordinates
+from diagnosis.search.nudges import Nudges, nudges_of
+from groundwalk.arrays import FloatArray
 
 STEP = 0.02
 """Step of finite differences, in coordinates that are scaled to be of order one."""
@@ -40,7 +40,7 @@ class FittedModel:
     model: Model
     residual: FloatArray
     jacobian: FloatArray
-    coordinates: "Coordinates"
+    coordinates: Coordinates
 
     @property
     def energy(self) -> float:
@@ -49,90 +49,13 @@ class FittedModel:
 
     def jacobian_of(self, effects: Model) -> FloatArray:
         """(N, p) the columns of the Jacobian that belong to some of the effects."""
-        kept = [
-            any(placed is one for one in effects)
-            for placed in self.model
-            for _ in placed.values
-        ]
-        return self.jacobian[:, kept]
-
-
-class Coordinates:
-    """Converts a model's values to scaled coordinates of order one, and back."""
-
-    def __init__(self, plant: Plant, model: Model) -> None:
-        """Take effects, places and scales from a model, whatever its values are."""
-        self.model = model
-        self.parameters: list[Parameter] = [
-            parameter
-            for placed in model
-            for parameter in effect(placed.name).parameters(plant, placed.place)
-        ]
-
-    def of(self, model: Model) -> FloatArray:
-        """(p,) scaled coordinates of a model's p values, clipped to their bounds."""
-        values = [value for placed in model for value in placed.values]
-        each = enumerate(zip(self.parameters, values, strict=True))
-        inside = [self.scaled(i, min(max(v, p.low), p.high)) for i, (p, v) in each]
-        return np.array(inside)
-
-    def model_at(self, x: FloatArray) -> Model:
-        """The model whose values have the (p,) scaled coordinates `x`."""
-        values = iter(map(_value, self.parameters, x))
-        return tuple(
-            replace(old, values=tuple(islice(values, len(old.values))))
-            for old in self.model
-        )
-
-    def bounds(self) -> tuple[FloatArray, FloatArray]:
-        """(p,) smallest and (p,) largest allowed scaled coordinates."""
-        low = [self.scaled(i, p.low) for i, p in enumerate(self.parameters)]
-        high = [self.scaled(i, p.high) for i, p in enumerate(self.parameters)]
-        return np.array(low), np.array(high)
-
-    def scaled(self, index: int, value: float) -> float:
-        """The scaled coordinate of a value of the parameter with this index."""
-        parameter = self.parameters[index]
-        if parameter.logarithmic:
-            return float(np.log(max(value, 1e-12)))
-        return value / _scale(parameter)
-
-
-def _scale(parameter: Parameter) -> float:
-    """The size of a parameter that is 1 in scaled coordinates: its typical one."""
-    size = abs(parameter.typical - parameter.neutral)
-    if not np.isfinite(size) or size == 0:
-        size = abs(parameter.typical) or parameter.high - parameter.low
-    return size
-
-
-def _value(parameter: Parameter, coordinate: float) -> float:
-    """The value at a scaled coordinate, within the parameter's bounds."""
-    size = (
-        np.exp(coordinate) if parameter.logarithmic else coordinate * _scale(parameter)
-    )
-    return min(max(float(size), parameter.low), parameter.high)
-
-
-@dataclass(frozen=True, eq=False)
-class Nudges:
-    """Which values of a model are changed together in finite differences (nudged).
-
-    Attributes:
-      groups: indices of the values that are changed together; each group takes one
-        simulation.
-      rows: for each value (N,) flags of the entries of the residual that it changes.
-    """
-
-    groups: Sequence[Sequence[int]]
-    rows: Sequence[BoolArray]
+        return self.jacobian[:, self.coordinates.columns_of(effects)]
 
 
 def fit_all(
     predictor: Predictor,
     starts: Sequence[Model],
     steps: int = MOST_STEPS,
-    nudges_of: Callable[[Predictor, Model], Nudges] | None = None,
     followed: bool = False,
     jacobians: Sequence[FloatArray | None] | None = None,
     exactly: bool = False,
@@ -143,7 +66,6 @@ def fit_all(
       predictor: predictor of the data to fit.
       starts: models with values to start from.
       steps: most steps of each fit.
-      nudges_of: which values are changed together in differences; None: each by itself.
       followed: take differences at the start only, and update the Jacobian from the
         residuals of each step (Broyden), which needs no simulations. Good enough to
         compare models, but not for intervals.
@@ -159,11 +81,10 @@ def fit_all(
         return np.split(predictor.residuals(every, exactly), ends[:-1])
 
     def task(start: Model, known: FloatArray | None) -> Callable[[Ask], FittedModel]:
-        nudges = nudges_of(predictor, start) if nudges_of else None
         coordinates = Coordinates(predictor.plant, start)
-        return lambda ask: _fit(
-            _Course(coordinates, nudges, followed, ask), steps, known
-        )
+        nudges = nudges_of(predictor, coordinates)
+        course = partial(_Course, coordinates, nudges, followed)
+        return lambda ask: _fit(course(ask), steps, known)
 
     every = zip(starts, jacobians or [None] * len(starts), strict=True)
     return lockstep([task(*one) for one in every], answer)
@@ -173,12 +94,10 @@ class _Course:
     """Residuals and Jacobians at the points that a fit visits, each computed once."""
 
     def __init__(
-        self, coordinates: Coordinates, nudges: Nudges | None, followed: bool, ask: Ask
+        self, coordinates: Coordinates, nudges: Nudges, followed: bool, ask: Ask
     ) -> None:
         self.coordinates, self._ask, self._followed = coordinates, ask, followed
-        count = len(coordinates.parameters)
-        alone = Nudges([[i] for i in range(count)], [np.array(True)] * count)
-        self._nudges = nudges or alone
+        self._nudges = nudges
         self._high = coordinates.bounds()[1]
         self._residuals: dict[bytes, FloatArray] = {}
         self._jacobians: dict[bytes, FloatArray] = {}
@@ -271,21 +190,15 @@ def ran_into_bound(fit: FittedModel, placed: PlacedEffect) -> bool:
     motor that lost all of its torque).
     """
     low, high = fit.coordinates.bounds()
-    x, first = fit.coordinates.of(fit.model), 0
-    for one in fit.model:
-        for i in range(first, first + len(one.values)):
-            parameter = fit.coordinates.parameters[i]
-            ends = [(low[i], parameter.low)]
-            if not parameter.full:
-                ends.append((high[i], parameter.high))
-            if (
-                one is placed
-                and parameter.name not in SECONDARY
-                and any(
-                    abs(x[i] - at) < ON_BOUND and value != parameter.neutral
-                    for at, value in ends
-                )
-            ):
-                return True
-        first += len(one.values)
+    x = fit.coordinates.of(fit.model)
+    for i in fit.coordinates.columns_of([placed]):
+        parameter = fit.coordinates.parameters[i]
+        ends = [(low[i], parameter.low)]
+        if not parameter.full:
+            ends.append((high[i], parameter.high))
+        if parameter.name not in SECONDARY and any(
+            abs(x[i] - at) < ON_BOUND and value != parameter.neutral
+            for at, value in ends
+        ):
+            return True
     return False

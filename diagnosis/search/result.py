@@ -9,8 +9,10 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.search.fitting import Coordinates, FittedModel
+from diagnosis.search.coordinates import Coordinates
+from diagnosis.search.fitting import FittedModel
 from diagnosis.search.hooks import Saved
+from diagnosis.search.ties import number_of_values
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,11 @@ class Judged:
     def keys(self) -> frozenset[str]:
         """The model's effects and places as "effect@place", without values."""
         return keys_of(self.model)
+
+
+MOST_LEFT = 0.5
+"""If the error energy that remains exceeds that of the noise by at most this share of
+it, hardly more than noise remains, and the verdict is not `unknown`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,15 +102,20 @@ class SearchResult:
         shares = (gained, excess), (gained + more[1], excess + more[0])
         return min(max((a / b for a, b in shares if b > 0), default=0.0), 1.0)
 
+    def leaves_much(self, least_closed: float) -> bool:
+        """Whether more than noise is left, and less than a share is removed."""
+        selected, fitted, closed = self.nothing, self.nothing_fit, 0.0
+        if self.winner:
+            selected, fitted = self.winner.selected, self.winner.fit.energy
+            closed = self.closed(self.winner)
+        much = selected > (1 + MOST_LEFT) * self.floor
+        much |= fitted > (1 + MOST_LEFT) * self.floor_fit
+        return bool(much and closed < least_closed)
+
 
 def keys_of(model: Model) -> frozenset[str]:
     """The effects and places of a model as "effect@place", without values."""
     return frozenset(placed.key for placed in model)
-
-
-def without_each(model: Model) -> list[Model]:
-    """The models that arise when each effect of a model is removed in turn."""
-    return [tuple(other for other in model if other is not one) for one in model]
 
 
 VALUE_NATS = 2.0
@@ -116,9 +128,9 @@ def plausibility(judged: Judged, scale: float) -> float:
     It is minus the log-likelihood, plus penalties for rare effects and for each value.
     `scale` divides the log-likelihood: if no model is exact, differences count less.
     """
-    return judged.evidence / scale + sum(
-        effect(placed.name).rarity_nats + VALUE_NATS * len(placed.values)
-        for placed in judged.model
+    rarity = sum(effect(placed.name).rarity_nats for placed in judged.model)
+    return (
+        judged.evidence / scale + rarity + VALUE_NATS * number_of_values(judged.model)
     )
 
 
@@ -174,13 +186,16 @@ def unpack_noise(saved: Saved) -> ReferenceNoise:
 
 
 def _plain(model: Model) -> list[list[Any]]:
-    """A model as lists [effect, place, values, recording], one for each effect."""
-    return [[one.name, one.place, list(one.values), one.recording] for one in model]
+    """A model as lists [effect, place, values, recording, tied], one for each."""
+    return [
+        [one.name, one.place, list(one.values), one.recording, one.tied]
+        for one in model
+    ]
 
 
 def _model(plain: list[list[Any]]) -> Model:
-    """A model from lists [effect, place, values, recording]."""
+    """A model from lists [effect, place, values, recording, tied]."""
     return tuple(
-        PlacedEffect(name, place, tuple(values), recording)
-        for name, place, values, recording in plain
+        PlacedEffect(name, place, tuple(values), recording, tied)
+        for name, place, values, recording, tied in plain
     )

@@ -9,7 +9,7 @@ of a residual is then a projection, and the sizes of two effects together follow
 linear least squares: thousands of guesses need no further simulation.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -108,6 +108,40 @@ class Screen:
                 best[keys] = guess
         return sorted(best.values(), key=lambda guess: -guess.gain)[:count]
 
+    def shared(
+        self, residual: FloatArray, jacobian: FloatArray, keys: Collection[str]
+    ) -> Guess | None:
+        """The best guess of effects of one kind whose first values are the same.
+
+        `keys` are their "effect@place". None if no common value explains anything, or
+        if their size cannot be extrapolated. Arguments as in `singles`.
+        """
+        view, best = self._view(residual, jacobian), None
+        rows = [i for i, one in enumerate(self._found) if one.placed.key in keys]
+        tries = dict[str, list[int]]()
+        for row in rows:
+            tries.setdefault(self._found[row].placed.key, []).append(row)
+        for together in zip(*tries.values(), strict=False):
+            guess = self._shared(view, together)
+            if guess and (best is None or guess.gain > best.gain):
+                best = guess
+        return best
+
+    def freed(
+        self, residual: FloatArray, jacobian: FloatArray, keys: Collection[str]
+    ) -> float:
+        """Linear estimate of what is gained [nats] by values that differ freely.
+
+        `keys` are "effect@place" of effects that the model of the Jacobian has.
+        """
+        view = self._view(residual, jacobian)
+        first = {
+            one.placed.key: row for row, one in reversed([*enumerate(self._found)])
+        }
+        rows = [first[key] for key in keys if key in first]
+        part = np.linalg.pinv(view.products[np.ix_(rows, rows)], SAME, hermitian=True)
+        return float(0.5 * view.wanted[rows] @ part @ view.wanted[rows])
+
     def gain_by_chance(self, residual: FloatArray) -> float:
         """The gain [nats] that the best candidate has by chance in 1 of 100 cases.
 
@@ -133,6 +167,32 @@ class Screen:
             gain = 0.5 * np.einsum("di,ij,dj->d", own, inverse, own)
             best[key] = np.maximum(best.get(key, 0.0), gain)
         return best
+
+    def _shared(self, view: _View, rows: Sequence[int]) -> Guess | None:
+        """The best allowed common first value of the effects of some signatures."""
+        every = [self._found[row].placed for row in rows]
+        kind, plant = effect(every[0].name), self._predictor.plant
+        neutral = kind.parameters(plant, every[0].place)[0].neutral
+        if kind.threshold or not np.isfinite(neutral):
+            return None
+        # changes for a value that is 1 above the neutral one, and how far each went
+        far = np.array([one.values[0] - neutral for one in every])
+        share = 1 / far
+        wanted = float(share @ view.wanted[list(rows)])
+        power = float(share @ view.products[np.ix_(rows, rows)] @ share)
+        change = wanted / max(power, TINY)
+        if not all(self._found[row].two_sided for row in rows):
+            change = max(change * np.sign(far[0]), 0.0) * np.sign(far[0])
+        most = LARGEST_STRETCH * float(np.abs(far).max())
+        change = min(max(change, -most), most)
+        gain = change * wanted - 0.5 * change**2 * power
+        if gain <= 0:
+            return None
+        model = [
+            kind.stretched(plant, one, change / (one.values[0] - neutral))
+            for one in every
+        ]
+        return Guess(tuple(model), gain)
 
     def _promising(self, view: _View) -> list[tuple[list[int], list[int]]]:
         """Pairs of effects, as groups of signature indices, whose gain to compute."""

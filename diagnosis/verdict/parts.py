@@ -77,12 +77,15 @@ class PlacedEffect:
       values: values of the effect's parameters, in the order of its class and in SI
         units; empty where only effect and place matter. Not written to JSON.
       recording: the only recording in which it acted; None for all.
+      tied: label of the effects of this name that share their values, since their
+        joints have the same motor; empty for none.
     """
 
     name: str
     place: str
     values: tuple[float, ...] = field(default=(), metadata=NOT_IN_JSON)
     recording: str | None = field(default=None, metadata=NOT_IN_JSON)
+    tied: str = field(default="", metadata=NOT_IN_JSON)
 
     @classmethod
     def parse(cls, key: str) -> "PlacedEffect":

@@ -129,9 +129,7 @@ its controller only says where the pulses are.""",
             Published(
                 "viscous_friction", "coefficient", 203.5, "viscous friction [N s/m]"
             ),
-            Published(
-                "external_force", "x", 3.16, "force offset, as an outer force [N]"
-            ),
+            Published("torque_offset", "torque", 3.16, "constant force [N]"),
         ),
         pulses=25,
     ),

@@ -32,6 +32,7 @@ PARAMETERS = {
     "payload_mass": "mass",
     "com_offset": "x y z",
     "joint_spring": "stiffness rest",
+    "torque_offset": "torque",
     "end_stop": "angle side",
     "servo_fade": "rate",
     "servo_off": "share start duration",
@@ -97,7 +98,8 @@ def contents(variants):
         for part in ("joints", "signals", "outside")
         for name, value in vars(getattr(variants, part)).items()
     }
-    return arrays | variants.fields
+    laws = {f"law.{law.name}": noted for law, noted in variants.torques.items()}
+    return arrays | variants.fields | laws
 
 
 def changed_rows(plant, variants):
@@ -108,7 +110,8 @@ def changed_rows(plant, variants):
     rows = set()
     before = contents(nominal)
     for name, value in contents(variants).items():
-        same = (value == before[name]).reshape(variants.n, -1).all(axis=1)
+        usual = before.get(name, np.zeros_like(value))
+        same = (value == usual).reshape(variants.n, -1).all(axis=1)
         rows |= set(np.flatnonzero(~same))
     return rows
 

@@ -86,6 +86,7 @@ def test_laws_of_one_joint():
         ("coulomb_friction", "hinge", 0.2): 0.2 * way,
         ("armature", "hinge", 0.1): 0.1 * a,
         ("joint_spring", "hinge", 2.0, 0.1): 2.0 * (q - 0.1),
+        ("torque_offset", "hinge", 0.4): -0.4 + 0 * q,
         ("stribeck_friction", "hinge", 0.2, 0.1, 0.5): way
         * (0.2 + 0.1 * np.exp(-((v / 0.5) ** 2))),
         ("torque_scale", "hinge", 1.5): 0.5 * INERTIA * a,

@@ -303,7 +303,7 @@ def test_where_much_is_left_two_more_are_tried_together(monkeypatch, left, chose
     models = []
     for size, energy in enumerate(energies, 1):
         one = judged(PLANT, energy, *effects[:size])
-        norm = np.sqrt(100.0 / size**3)
+        norm = np.sqrt(2 * left / size**3)
         residual = norm * judge.residual / np.linalg.norm(judge.residual)
         jacobian = np.zeros((len(residual), one.fit.jacobian.shape[1]))
         fit = replace(one.fit, residual=residual, jacobian=jacobian)

@@ -1,23 +1,21 @@
-"""Parts of the search for effects at all joints."""
+"""The search for effects at all joints, and its parts."""
 
 import numpy as np
 import pytest
+from known_arms import CHANNELS, SINGLE, measured
+from made_up_traces import arm as position_arm
 from torque_arm import arm, moved, rubbing
 
+from diagnosis.conclude.answer import probability
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.signatures import signatures
+from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.everywhere import (
-    apart,
-    gains_of_each,
-    kind_by_chance,
-    more_is_missing,
-)
+from diagnosis.search.everywhere import everywhere, gains_of_each, more_is_missing
 from diagnosis.search.fitting import fit_all, ran_into_bound
+from diagnosis.search.judging import Judge
 from diagnosis.search.result import SearchResult
-from diagnosis.search.screening import Screen
-from diagnosis.traces.usage import Usage
+from diagnosis.search.search import Search
 
 MODEL = (
     PlacedEffect("coulomb_friction", "yaw", (0.5,)),
@@ -36,25 +34,30 @@ def predictor():
 
 @pytest.fixture(scope="module")
 def fitted(predictor):
-    return fit_all(predictor, [MODEL], nudges_of=apart)[0]
-
-
-def test_differences_together_are_those_one_by_one(predictor):
-    together = fit_all(predictor, [MODEL], 1, nudges_of=apart)[0]
-    alone = fit_all(predictor, [MODEL], 1)[0]
-    np.testing.assert_allclose(together.energy, alone.energy, rtol=1e-3)
-    first = alone.jacobian[:, 0]
-    assert together.jacobian[:, 0] @ first > 0.95 * (first @ first)
+    return fit_all(predictor, [MODEL])[0]
 
 
 def test_gains_are_what_removal_and_another_fit_cost(predictor, fitted):
-    gains = gains_of_each(fitted)
+    gains = [gain for _, gain in gains_of_each(fitted)]
     for i in range(2):
         rest = tuple(one for k, one in enumerate(fitted.model) if k != i)
         lost = fit_all(predictor, [rest])[0].energy - fitted.energy
         assert gains[i] == pytest.approx(lost, rel=0.2)
     # there is no payload
     assert gains[2] < 0.02 * min(gains[:2])
+
+
+def test_what_shares_a_value_is_removed_together(predictor):
+    shared = tuple(
+        PlacedEffect("viscous_friction", joint, (1.0,), tied="shoulder")
+        for joint in ("shoulder", "elbow")
+    )
+    fit = fit_all(predictor, [(MODEL[0], *shared)])[0]
+    (first, _), (second, gain) = gains_of_each(fit)
+    assert [one.place for one in first] == ["yaw"]
+    assert [one.place for one in second] == ["shoulder", "elbow"]
+    lost = fit_all(predictor, [MODEL[:1]])[0].energy - fit.energy
+    assert gain == pytest.approx(lost, rel=0.2)
 
 
 def test_more_is_missing_until_friction_is_known(predictor, fitted):
@@ -73,13 +76,63 @@ def test_values_on_bounds_are_noticed(predictor, fitted):
     assert not ran_into_bound(stuck, far[0])
 
 
-def test_a_kind_gains_more_by_chance_than_one_effect(predictor):
-    usage = Usage.of(predictor.plant, predictor.traces)
-    found = signatures(predictor, (), usage, (), ("viscous_friction", "armature"))
-    screen = Screen(predictor, found)
-    noise = np.random.default_rng(0).standard_normal(len(predictor.scored))
-    noise = noise * predictor.scored
-    alone, kind = screen.gain_by_chance(noise), kind_by_chance(screen, noise)
-    assert alone < kind < 3 * alone
-    # three joints, of which a half gains nothing since friction has a sign
-    assert 3.0 < kind < 12.0
+def searched(**truth):
+    """A search for a single effect, and what it came to."""
+    fit, select = (
+        Predictor(position_arm(), [measured(seed, **truth)], CHANNELS)
+        for seed in (1, 2)
+    )
+    fit.calibrate()
+    select.calibrate()
+    judge = Judge(fit, select, SINGLE)
+    return judge, Search(judge).run()
+
+
+def gains(wide):
+    return {
+        placed.key: placed
+        for placed in wide.winner.model
+        if placed.name == "servo_gain"
+    }
+
+
+@pytest.mark.slow
+def test_what_joints_share_is_one_value():
+    judge, found = searched(gain=(0.85, 0.85), duration_s=2.5)
+    wide = everywhere(judge, found)
+    both = gains(wide)
+    assert set(both) == {"servo_gain@shoulder", "servo_gain@elbow"}
+    (values,) = {one.values for one in both.values()}
+    assert values == (pytest.approx(0.85, abs=0.01),)
+    assert {one.tied for one in both.values()} == {"elbow"}
+    assert wide.winner.fit.jacobian.shape[1] == 1
+
+
+@pytest.mark.slow
+def test_what_both_joints_lack_differently_is_untied():
+    judge, found = searched(gain=(0.9, 0.8), duration_s=2.5)
+    wide = everywhere(judge, found)
+    values = {key: placed.values[0] for key, placed in gains(wide).items()}
+    assert values == {
+        "servo_gain@shoulder": pytest.approx(0.9, abs=0.01),
+        "servo_gain@elbow": pytest.approx(0.8, abs=0.01),
+    }
+    assert len(wide.winner.model) == 2
+    assert wide.closed(wide.winner) > 0.99 > found.closed(found.winner)
+    # what the model would be without each of them says how sure each is
+    assert {judged.keys for judged in wide.best[1]} == {
+        frozenset({key}) for key in values
+    }
+    assert all(0.9 < probability(wide, one) < 1 for one in wide.winner.model)
+
+
+@pytest.mark.slow
+def test_a_single_effect_is_not_spread():
+    judge, found = searched(gain=(0.9, 1.0), duration_s=2.5)
+    assert everywhere(judge, found) is found
+
+
+def test_nothing_is_found_where_nothing_is_missing():
+    judge, found = searched(duration_s=2.5)
+    assert everywhere(judge, found) is found
+    assert not np.any(found.chosen)

@@ -49,6 +49,7 @@ PARAMETERS = {
     "payload_mass": ("mass",),
     "com_offset": ("x", "y", "z"),
     "joint_spring": ("stiffness", "rest"),
+    "torque_offset": ("torque",),
     "end_stop": ("angle", "side"),
     "servo_fade": ("rate",),
     "servo_off": ("share",),

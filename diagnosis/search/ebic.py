@@ -1,0 +1,84 @@
+"""Compares models of different size by the extended Bayesian information criterion.
+
+Chen and Chen 2008, "Extended Bayesian information criteria for model selection with
+large model spaces": each value costs half the logarithm of the sample size, each choice
+among candidates the logarithm of their number. The sample size is the number of
+independent blocks of time, since no robot model is exact and its errors last; and the
+noise is as large as the best model says, for the same reason.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.chance import independent_blocks
+from diagnosis.search.judging import places_of_effects
+from diagnosis.search.result import Judged
+from diagnosis.search.ties import number_of_values, units
+from groundwalk.arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Ebic:
+    """The criterion for models of the same recordings.
+
+    Attributes:
+      samples: number of independent samples in all recordings.
+      candidates: number of effects at their places that could be tried.
+      joints: number of the robot's joints.
+    """
+
+    samples: float
+    candidates: int
+    joints: int
+
+    @classmethod
+    def of(cls, fit: Predictor, select: Predictor, residual: FloatArray) -> "Ebic":
+        """The criterion where a model leaves an (N,) residual of the fitting data.
+
+        The selection data count as well, with as long blocks.
+        """
+        blocks = independent_blocks(fit, residual)
+        counted = len(np.unique(blocks[fit.scored]))
+        channels = len(np.unique(fit.channel[fit.scored]))
+        both = fit.scored.sum() + select.scored.sum()
+        samples = float(counted * channels * both / fit.scored.sum())
+        return cls(samples, places_of_effects(fit), len(fit.plant.joints))
+
+    def score(self, judged: Judged) -> float:
+        """The criterion [nats] of a model: the smaller, the better."""
+        fitted = 0.5 * self.samples * float(np.log(max(judged.energy, 1e-12)))
+        return fitted + self.price(judged.model)
+
+    def prefers(self, judged: Judged, other: Judged) -> bool:
+        """Whether a model is better than another one."""
+        return self.score(judged) < self.score(other)
+
+    def nats(self, gain: float, judged: Judged) -> float:
+        """A loss of energy [nats] from a model's, in nats of independent samples."""
+        more = max(judged.energy + gain, 1e-12) / max(judged.energy, 1e-12)
+        return 0.5 * self.samples * float(np.log(more))
+
+    def price(self, model: Model) -> float:
+        """What a model costs [nats]: its values, and its choices among candidates.
+
+        A kind of effect at half of all joints or more is one choice: that of the kind.
+        """
+        value = 0.5 * np.log(self.samples)
+        choices = 0
+        for name in {placed.name for placed in model}:
+            own = [placed for placed in model if placed.name == name]
+            choices += 1 if self._is_everywhere(len(own)) else len(units(tuple(own)))
+        return float(
+            value * number_of_values(model) + choices * np.log(self.candidates)
+        )
+
+    def price_within(self, model: Model, unit: Model) -> float:
+        """What some effects add to the price [nats] of the model that has them."""
+        keys = {placed.key for placed in unit}
+        rest = tuple(placed for placed in model if placed.key not in keys)
+        return self.price(model) - self.price(rest)
+
+    def _is_everywhere(self, places: int) -> bool:
+        return places >= max(self.joints / 2, 2)

@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+from torque_arm import arm
+
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.search.coordinates import Coordinates
+from diagnosis.search.ties import motors, number_of_values, tied, units, without_each
+
+EACH = tuple(
+    PlacedEffect("coulomb_friction", joint, (value,))
+    for joint, value in (("yaw", 1.0), ("shoulder", 2.0), ("elbow", 6.0))
+)
+SHARED = tied(arm(), EACH, "all")
+LATE = PlacedEffect("command_latency", "commands", (0.01,))
+
+
+def test_shared_values_count_once():
+    assert number_of_values((*EACH, LATE)) == 4
+    assert number_of_values((*SHARED, LATE)) == 2
+
+
+def test_shared_values_are_the_mean_at_first():
+    assert [one.values for one in SHARED] == [(3.0,)] * 3
+    assert tied(arm(), SHARED, "each") != SHARED
+    assert not any(one.tied for one in tied(arm(), SHARED, "each"))
+
+
+def test_effects_that_share_a_value_go_together():
+    assert units((*SHARED, LATE)) == [SHARED, (LATE,)]
+    assert without_each((*SHARED, LATE)) == [(LATE,), SHARED]
+    assert len(without_each(EACH)) == 3
+
+
+def test_one_value_of_a_tie_changes_all():
+    coordinates = Coordinates(arm(), (LATE, *SHARED))
+    assert coordinates.columns == [[0], [1], [1], [1]]
+    x = coordinates.of((LATE, *SHARED))
+    moved = coordinates.model_at(x + np.array([0.0, 1.0]))
+    assert len({one.values for one in moved[1:]}) == 1
+    assert moved[1].values > SHARED[0].values
+    assert moved[0] == LATE
+    assert coordinates.columns_of(SHARED[:1]) == [1]
+
+
+def test_what_the_motor_does_not_decide_is_not_shared():
+    springs = tuple(PlacedEffect("joint_spring", one.place, (1.0, 0.0)) for one in EACH)
+    assert tied(arm(), springs, "all") == springs
+
+
+def test_joints_with_the_same_limits_have_the_same_motor():
+    kinds = motors(arm())
+    assert set(kinds) == set(arm().joints)
+    spec = arm().spec.copy()
+    spec.joint("elbow").armature = 0.5
+    other = type(arm())("arm", spec, arm().joints, arm().servo)
+    apart = motors(other)
+    assert apart["elbow"] == "elbow"
+    assert apart["yaw"] == apart["shoulder"] == "yaw"
+    shared = tied(other, EACH, "motor")
+    assert [one.values[0] for one in shared] == pytest.approx([1.5, 1.5, 6.0])
+    assert [one.tied for one in shared] == ["shoulder", "shoulder", ""]
