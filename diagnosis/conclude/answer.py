@@ -12,6 +12,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.result import SearchResult
+from diagnosis.search.ties import units
 from diagnosis.verdict import Found, VerdictKind, When
 
 TIED_NATS = 10.0
@@ -128,10 +129,17 @@ def believed_effects(
             confusable_with=alike(searched, both.plant, placed),
             when=_when(placed, first_s, last_s),
             native=effect(placed.name).native,
+            shared_with=_sharing(placed, refitted),
         )
         for placed, own in zip(refitted.model, values, strict=True)
     ]
     return tuple(sorted(found, key=lambda one: -(one.probability or 0.0)))
+
+
+def _sharing(placed: PlacedEffect, fitted: FittedModel) -> tuple[str, ...]:
+    """Other places at which an effect of a fit has the same values, being tied."""
+    (unit,) = (unit for unit in units(fitted.model) if placed in unit)
+    return tuple(one.place for one in unit if one is not placed)
 
 
 def _when(placed: PlacedEffect, first_s: float, last_s: float) -> When:

@@ -141,6 +141,8 @@ class Found:
         the recordings about as well.
       when: whether it acts always, for a while, or growing.
       native: whether MuJoCo can simulate it, so that the corrected MJCF contains it.
+      shared_with: other places at which the same effect has the same fitted values,
+        since their joints have the same motor.
 
     Example:
       >>> Found("drag", "torso", {"coefficient": Estimate(2.0, 1.5, 2.5, "N s/m")}, 0.9)
@@ -153,6 +155,7 @@ class Found:
     confusable_with: tuple[PlacedEffect, ...] = ()
     when: When = When()
     native: bool = True
+    shared_with: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse probabilities outside of 0 to 1."""

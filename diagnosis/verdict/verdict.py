@@ -184,5 +184,9 @@ class Verdict:
             unknown, or a value is wrong.
         """
         plain = parse_object(text, "verdict", FORMAT)
-        plain.setdefault("pulses", [])  # the first verdicts had no such key
+        plain.setdefault("pulses", [])  # the first verdicts had no such keys
+        effects = plain.get("effects")
+        for one in effects if isinstance(effects, list) else []:
+            if isinstance(one, dict):
+                one.setdefault("shared_with", [])
         return from_plain(cls, plain, "verdict")

@@ -56,7 +56,7 @@ def told_together(effects: Sequence[Found]) -> list[list[Found]]:
 
 
 def at_many(alike: Sequence[Found]) -> str:
-    """A clause on the same effect at many places: range of its first parameter."""
+    """A clause on the same effect at many places: its first parameter, or the range."""
     name = next(iter(alike[0].parameters))
     order = sorted(alike, key=lambda one: one.parameters[name].value)
 
@@ -65,8 +65,12 @@ def at_many(alike: Sequence[Found]) -> str:
         alone = estimate_text(replace(one, low=one.value, high=one.value))
         return f"about {alone} at {place_words(effect.place)}"
 
+    label = f"{kind_of(alike[0].name).words.label} at {len(alike)} places"
+    if len(alike[0].shared_with) == len(alike) - 1:
+        same = estimate_text(alike[0].parameters[name])
+        return f"{label}, {name.replace('_', ' ')} about {same} at all of them"
     span = f"{name.replace('_', ' ')} from {value(order[0])} to {value(order[-1])}"
-    return f"{kind_of(alike[0].name).words.label} at {len(alike)} places, {span}"
+    return f"{label}, {span}"
 
 
 def finding(effect: Found, changed: bool = False) -> str:

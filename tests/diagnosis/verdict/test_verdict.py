@@ -193,3 +193,13 @@ def test_every_field_is_documented():
     assert {"kind", "low", "wrong_place", "spread", "bursts"} <= names
     assert [name for name in sorted(names) if not documented(text, name)] == []
     assert not documented(text, "wrong_plaice")
+
+
+def test_verdicts_of_before_values_were_shared_are_read():
+    verdict = Verdict("effects", effects=(PLAY,))
+    plain = json.loads(verdict.to_json())
+    del plain["effects"][0]["shared_with"]
+    assert Verdict.from_json(json.dumps(plain)) == verdict
+    for wrong in (3, [3], [None]):
+        with pytest.raises(BadValueError):
+            Verdict.from_json(json.dumps(plain | {"effects": wrong}))
