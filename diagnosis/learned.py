@@ -49,6 +49,7 @@ class Learned:
       search: the search, which has ended.
       result: what it found.
       kind: the kind of verdict that follows from that.
+      everywhere: whether the result has effects at all joints.
     """
 
     material: Material
@@ -57,6 +58,7 @@ class Learned:
     search: Search
     result: SearchResult
     kind: VerdictKind
+    everywhere: bool
 
     @classmethod
     def of(
@@ -65,7 +67,8 @@ class Learned:
         """Search, and search again if the best model leaves much more than noise.
 
         What it leaves is then the noise: no model of this robot is better, and only
-        what stands out from it is evidence. It also searches again if dry friction that
+        what stands out from it is evidence. A search for effects at all joints takes
+        what is left as noise by itself. It also searches again if dry friction that
         lets joints creep fits better than such that stops them.
         """
         traces = (*material.traces, *material.reference)
@@ -74,7 +77,7 @@ class Learned:
         first = cls._of(material, channels, given, threads, hooks)
         soft = first._creeps()
         wider = np.ones(len(channels.names))
-        if not (first.noise or soft):
+        if not (first.noise or soft or first.everywhere):
             left = _left(first.data.learned, first.result)
             wider = np.maximum(left, channels.floor / channels.noise)
         if not soft and max(wider.max(), 1 / wider.min()) <= MORE_THAN_NOISE:
@@ -85,9 +88,7 @@ class Learned:
             material = replace(material, plant=plant, limits=limits)
         found = _best_of_each_size(first.search, first.result)
         wide = channels.widened(wider)
-        # beside wider noise nothing seems unknown any more
-        much = more_is_missing(first.data.fit, first.result)
-        return cls._of(material, wide, given.again, threads, hooks, found, much)
+        return cls._of(material, wide, given.again, threads, hooks, found)
 
     def _creeps(self) -> bool:
         """Whether dry friction that lets joints creep fits better."""
@@ -106,17 +107,12 @@ class Learned:
         threads: int,
         hooks: Hooks,
         promising: Sequence[Model] = (),
-        again: bool = False,
     ) -> "Learned":
-        """One search, which also tries the models `promising`.
-
-        `again` says that few effects left much before.
-        """
+        """One search, which also tries the models `promising`."""
         data, noise, search = _divided(
             material, channels, rules, threads, hooks, promising
         )
-        found = _searched(search, material.audited, again)
-        return cls(material, data, noise, search, *found)
+        return cls(material, data, noise, search, *_searched(search, material.audited))
 
 
 def _left(learned: Predictor, result: SearchResult) -> FloatArray:
@@ -185,18 +181,14 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
     )
 
 
-def _searched(
-    search: Search, audited: Audit, again: bool
-) -> tuple[SearchResult, VerdictKind]:
+def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind, bool]:
     """Search for effects that the sim lacks, and decide the kind of the verdict.
 
-    Where few effects leave much, now or before (`again`), the search goes on with one
-    effect at all joints.
+    Where few effects leave much, the search goes on with effects at all joints. Also
+    returns whether these explain it.
     """
     judge, plant = search.judge, search.judge.fit.plant
-    result = accepted(judge, search.run())
-    kind = verdict_kind(result, plant, audited)
-    if again or more_is_missing(judge.fit, result):
-        result = everywhere(judge, result)
-        kind = verdict_kind(result, plant, audited)
-    return result, kind
+    few = result = accepted(judge, search.run())
+    if more_is_missing(judge.fit, few):
+        result = everywhere(judge, few)
+    return result, verdict_kind(result, plant, audited), result is not few

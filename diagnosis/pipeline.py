@@ -42,7 +42,7 @@ from diagnosis.search.result import MOST_LEFT, SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict import Amount, Fit, Verdict, VerdictKind
+from diagnosis.verdict import Amount, Fit, Unexplained, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 
 TEST_REPLAYS = 150
@@ -201,16 +201,17 @@ def _verdict(
     judge = search.judge
     nominal = data.learned.residuals([()])[0]
     left = tested.refitted.residual if tested.refitted else nominal
+    bare = data.learned.without_tolerances()
     unmodelled = data.test.residuals([()])[0]
     modelled = tested.test.residuals([tested.model])[0]
     before, after = ((data.learned, left), (data.test, modelled))
     larger = larger_than_learned(before, after)
     refuted = model_refuted(unmodelled, modelled, judge.least_gain)
     share = _share_left(tested.fit) if tested.model else 1.0
-    shape = both, left, share
+    shape = both, tested.model, share
     above = rms_above_floor(data.test, unmodelled)
     if kind == "none" and (larger or above**2 > 1 + MOST_LEFT):
-        kind, shape = "unknown", (data.test, unmodelled, 1.0)
+        kind, shape = "unknown", (data.test, (), 1.0)
     nothing = tested.objections or (result.winner and not tested.model)
     if kind == "effects" and (refuted or nothing):
         kind = "unknown" if above**2 > 1 + MOST_LEFT else "none"
@@ -225,7 +226,7 @@ def _verdict(
         kind=kind,
         effects=effects if kind != "none" else (),
         smallest_detectable=smallest,
-        unexplained=unexplained(*shape) if kind == "unknown" else None,
+        unexplained=_shape(*shape) if kind == "unknown" else None,
         limits=(
             *larger,
             *refuted,
@@ -233,12 +234,18 @@ def _verdict(
             *material.audited.limits,
             *material.limits,
         ),
-        mismatch=mismatch_map(data.learned, nominal),
+        mismatch=mismatch_map(bare, bare.residuals([()])[0]),
         pulses=material.pulses,
         fit=tested.fit,
         next_experiment=next_experiment(material.plant, result, material.traces),
         recordings=data.recordings(),
     )
+
+
+def _shape(predictor: Predictor, model: Model, share: float) -> Unexplained | None:
+    """The shape of the error that a model leaves, as a replay shows it."""
+    bare = predictor.without_tolerances()
+    return unexplained(bare, bare.residuals([model])[0], share)
 
 
 def _share_left(fit: Fit) -> float:

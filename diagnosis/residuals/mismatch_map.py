@@ -28,8 +28,11 @@ def mismatch_map(
 ) -> tuple[MismatchCell, ...]:
     """The nominal sim's error, one cell for each channel, the largest share first.
 
-    `residual` (N,) is that of the nominal sim, in units of noise.
+    `residual` (N,) is that of the nominal sim, in units of noise. Errors are compared
+    with the noise floors.
     """
+    channels = predictor.channels
+    residual = residual * (channels.noise / channels.floor)[predictor.channel]
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
     energy = np.maximum(energy, 0.0)
@@ -42,9 +45,12 @@ def mismatch_map(
 def _cell(
     predictor: Predictor, residual: FloatArray, index: int, share: float
 ) -> MismatchCell:
-    """The error of the channel with this index; `share` is its share of all error."""
+    """The error of the channel with this index; `share` is its share of all error.
+
+    `residual` (N,) is in units of the noise floor.
+    """
     channels = predictor.channels
-    name, noise = channels.names[index], float(channels.noise[index])
+    name, noise = channels.names[index], float(channels.floor[index])
     rows = predictor.channel == index
     own, scored = residual[rows], predictor.scored[rows]
     rms = float(np.sqrt(np.mean(own[scored] ** 2))) if scored.any() else 0.0
@@ -116,21 +122,24 @@ def unexplained(
     The quantity is the one of the joint's position, velocity and command and of time
     over which the mean error is most significant. `residual` (N,) is that of the best
     model, in units of noise; it leaves `share` of the squared error above the noise.
+    The worst joint is that which is off by most noise floors.
     """
+    channels = predictor.channels
+    residual = residual * (channels.noise / channels.floor)[predictor.channel]
     energy = np.zeros(len(predictor.channels.names))
     np.add.at(energy, predictor.channel, residual**2 - predictor.scored)
     joint = int(np.argmax(energy[: len(predictor.plant.joints)]))
     rows = (predictor.channel == joint) & predictor.scored
     if not rows.any():
         return None
-    wrong = residual[rows] * float(predictor.channels.noise[joint])
+    wrong = residual[rows] * float(channels.floor[joint])
     kept = rows[predictor.channel == joint]
     curves = [
         (name, unit, *_curve(values[kept], wrong))
         for name, unit, values in _orders(predictor, joint)
     ]
     name, unit, at, mean, spread = max(curves, key=_explained)
-    channel = predictor.channels.names[joint]
+    channel = channels.names[joint]
     plant, part = predictor.plant, float(np.clip(share, 0.0, 1.0))
     own = channel_unit(plant, channel)
     unit = plant.unit(unit, plant.joints[joint])

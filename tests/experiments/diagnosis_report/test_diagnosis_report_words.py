@@ -208,10 +208,8 @@ def test_a_value_that_all_places_share_is_told_once():
         for joint in joints
     ]
     (told,) = findings(found)
-    assert (
-        told
-        == "servo stiffness at 3 places, factor about 1.50 (1.40 to 1.60) at all of them"
-    )
+    many = "servo stiffness at 3 places"
+    assert told == f"{many}, factor about 1.50 (1.40 to 1.60) at all of them"
 
 
 def test_one_effect_at_many_places_is_told_once():
