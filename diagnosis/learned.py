@@ -67,9 +67,9 @@ class Learned:
         """Search, and search again if the best model leaves much more than noise.
 
         What it leaves is then the noise: no model of this robot is better, and only
-        what stands out from it is evidence. A search for effects at all joints takes
-        what is left as noise by itself. It also searches again if dry friction that
-        lets joints creep fits better than such that stops them.
+        what stands out from it is evidence. (A search for effects at all joints has
+        taken it as noise by itself, so that only tests follow.) It also searches again
+        if dry friction that lets joints creep fits better than such that stops them.
         """
         traces = (*material.traces, *material.reference)
         channels = precise(material.plant, traces, material.channels, threads)
@@ -77,7 +77,7 @@ class Learned:
         first = cls._of(material, channels, given, threads, hooks)
         soft = first._creeps()
         wider = np.ones(len(channels.names))
-        if not (first.noise or soft or first.everywhere):
+        if not (first.noise or soft):
             left = _left(first.data.learned, first.result)
             wider = np.maximum(left, channels.floor / channels.noise)
         if not soft and max(wider.max(), 1 / wider.min()) <= MORE_THAN_NOISE:
@@ -86,8 +86,11 @@ class Learned:
             limits = (*material.limits, CREEPS)
             plant = softly(material.plant)
             material = replace(material, plant=plant, limits=limits)
-        found = _best_of_each_size(first.search, first.result)
         wide = channels.widened(wider)
+        if first.everywhere and not soft:
+            data, *_ = _divided(material, wide, given, threads, hooks)
+            return replace(first, data=data)
+        found = _best_of_each_size(first.search, first.result)
         return cls._of(material, wide, given.again, threads, hooks, found)
 
     def _creeps(self) -> bool:

@@ -163,7 +163,9 @@ def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
     if len(model) == 1:
         return model[0], ()
     smaller = without_each(model)
-    fits = _fitted(predictor, smaller)
+    (whole,) = fit_all(predictor, [model], 1)
+    known = [whole.jacobian_of(one) for one in smaller]
+    fits = fit_all(predictor, smaller, STEPS, followed=True, jacobians=known)
     worst = max(range(len(smaller)), key=lambda i: fits[i].energy)
     main = next(one for one in model if one not in smaller[worst])
     return main, fits[worst].model

@@ -161,7 +161,8 @@ class Everywhere:
         """Models fitted in a few steps and judged, the most plausible first."""
 
         def work() -> list[Judged]:
-            fits = fit_all(self._fit, starts, self.judge.rules.first_steps)
+            steps = self.judge.rules.first_steps
+            fits = fit_all(self._fit, starts, steps, followed=True)
             judged = self.judge.judge(fits)
             best = min(judged, key=lambda one: one.energy)
             return sorted(judged, key=self._ebic(best).score)
