@@ -122,17 +122,12 @@ def diagnose(
         hooks.progress.cost(seconds)
     learned = Learned.of(material, rules, threads, hooks)
     material = learned.material
-    data, search, result, kind = (
-        learned.data,
-        learned.search,
-        learned.result,
-        learned.kind,
-    )
+    data, search = learned.data, learned.search
     hooks.stage("test", TEST_REPLAYS)
-    tested = _tested(data, result, kind, seed)
+    tested = _tested(learned, seed)
     verdict = replace(
         _verdict(material, data, search, tested),
-        alternatives=alternatives(result, kind),
+        alternatives=alternatives(learned.result, learned.kind),
         seconds=time.monotonic() - begun_s,
     )
     given: Model = ()
@@ -170,17 +165,18 @@ class _Tested:
         return self.refitted.model if self.refitted else ()
 
 
-def _tested(
-    data: DataSets,
-    result: SearchResult,
-    kind: VerdictKind,
-    seed: np.random.SeedSequence,
-) -> _Tested:
-    """Fit the effects found to all data but the held-out ones; test them on these."""
+def _tested(learned: Learned, seed: np.random.SeedSequence) -> _Tested:
+    """Fit the effects found to all data but the held-out ones; test them on these.
+
+    Without tolerances where effects are at all joints, as in the search for these.
+    """
+    data, result, kind = learned.data, learned.result, learned.kind
     if kind == "not_identifiable":  # then no effect is believed
         result = replace(result, chosen=0)
     winner = result.winner
     both, test = data.calibrated(winner.model if winner else ())
+    if learned.everywhere:
+        both = both.without_tolerances()
     both, refitted, said = established(both, winner.model if winner else ())
     model = refitted.model if refitted else ()
     if not model:
