@@ -62,11 +62,11 @@ def before_and_after(data, number):
 
 
 def read_one(folder, made):
-    """Plant and up to 3 s (12 s of 50 Hz) of the first recording of a case."""
+    """Plant and up to 2 s (12 s of 50 Hz) of the first recording of a case."""
     write_case(folder / "cases", folder / "truths", "one", made)
     plant, traces, _ = read_case(folder / "cases" / "one")
     one = traces[0]
-    return plant, one.part(0, min(one.ticks, max(600, int(3 / one.tick_s))))
+    return plant, one.part(0, min(one.ticks, max(600, int(2 / one.tick_s))))
 
 
 def errors(plant, trace, *models):
