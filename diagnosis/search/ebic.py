@@ -4,7 +4,7 @@ Chen and Chen 2008, "Extended Bayesian information criteria for model selection 
 large model spaces": each value costs half the logarithm of the sample size, each choice
 among candidates the logarithm of their number. The sample size is the number of
 independent blocks of time, since no robot model is exact and its errors last; and the
-noise is as large as the best model says, for the same reason.
+noise is as large as a model leaves it, for the same reason.
 """
 
 from dataclasses import dataclass
@@ -56,9 +56,9 @@ class Ebic:
         return self.score(judged) < self.score(other)
 
     def nats(self, gain: float, judged: Judged) -> float:
-        """A loss of energy [nats] from a model's, in nats of independent samples."""
-        more = max(judged.energy + gain, 1e-12) / max(judged.energy, 1e-12)
-        return 0.5 * self.samples * float(np.log(more))
+        """A loss of energy of the fitting data, in nats of independent samples."""
+        energy = max(judged.fit.energy, 1e-12)
+        return 0.5 * self.samples * float(np.log1p(gain / energy))
 
     def price(self, model: Model) -> float:
         """What a model costs [nats]: its values, and its choices among candidates.

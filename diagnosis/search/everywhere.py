@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.signatures import signatures
+from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates
 from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.ebic import Ebic
@@ -40,7 +40,6 @@ display."""
 MUCH_BETTER = 0.25
 """A model with effects at all joints is preferred to one of up to three effects if it
 removes this share of the energy above the noise that the latter leaves."""
-
 
 CLEARLY = 20.0
 """Effects whose linear estimates exceed their price by more nats than this are not
@@ -188,7 +187,7 @@ class Everywhere:
         screen = Screen(self._fit, found)
         shared, apart = kinds_to_add(self._fit, screen, best)
         larger = self._best_of(shared, best)
-        return larger or self._best_of([*apart, *self._with_one_more(best)], best)
+        return larger or self._best_of([*apart, *self._singles(best, found)], best)
 
     def _best_of(self, models: Sequence[Model], best: Judged) -> Judged | None:
         """The most plausible of some models; None if all are worse than the best one.
@@ -210,13 +209,21 @@ class Everywhere:
         prefers = self._ebic(larger).prefers(larger, best)
         return prefers and larger.selected < best.selected
 
-    def _with_one_more(self, best: Judged) -> list[Model]:
-        """Models with one more single effect; none where no kind explains anything."""
+    def _singles(self, best: Judged, found: Sequence[Signature]) -> list[Model]:
+        """Models with one more single effect; none where no kind explains anything.
+
+        Signatures of effects that any servo may have are known (`found`).
+        """
         if not best.model:
             return []
-        others = [name for name, kind in all_effects().items() if not kind.timed]
-        found = signatures(self._fit, best.model, self._usage, (), others)
-        candidates = Candidates(self._fit, found, self.judge.rules)
+        known = servo_effects()
+        others = [
+            name
+            for name, kind in all_effects().items()
+            if not (kind.timed or name in known)
+        ]
+        more = signatures(self._fit, best.model, self._usage, (), others)
+        candidates = Candidates(self._fit, [*found, *more], self.judge.rules)
         self.judge.least_gain = candidates.gain_by_chance(best.fit.residual)
         return candidates.larger([best], near=False, residual=None)
 
