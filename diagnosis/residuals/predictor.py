@@ -214,15 +214,9 @@ class Predictor:
 
     def _tolerated(self, model: Model) -> FloatArray:
         """(k, N) changes of the residual that lie within the model's tolerances."""
-        together = tolerated(self.plant, self.traces)
-        residuals = self.residuals([model, *((*model, *some) for some in together)])
-        changes = []
-        for some, row in zip(together, residuals[1:] - residuals[0], strict=True):
-            for placed in some:
-                own = self.channels.of_joint(placed.place)
-                mine = len(some) == 1 or np.isin(self.channel, own)
-                changes.append(np.where(mine, row, 0.0))
-        return np.array(changes).reshape(len(changes), residuals.shape[1])
+        changed = [(*model, one) for one in tolerated(self.plant, self.traces)]
+        residuals = self.residuals([model, *changed])
+        return np.asarray(residuals[1:] - residuals[0])
 
     def _given(self, model: Model) -> Model:
         """The model, and the effects that recordings of the healthy robot show."""

@@ -141,14 +141,9 @@ class Replays:
         return np.concatenate(parts)
 
 
-def tolerated(plant: Plant, traces: Sequence[Trace]) -> list[Model]:
-    """Effects of the size of a robot model's tolerances, each component by itself.
-
-    Where servos hold all joints, those of one kind at all joints are together: see
-    `signatures.py`.
-    """
-    held = not any(trace.loose for trace in traces)
-    found = dict[str, list[PlacedEffect]]()
+def tolerated(plant: Plant, traces: Sequence[Trace]) -> list[PlacedEffect]:
+    """Effects of the size of a robot model's tolerances, each component by itself."""
+    found = []
     for name, kind in all_effects().items():
         for place in kind.places(plant, traces):
             size = kind.tolerance(plant, place)
@@ -157,11 +152,8 @@ def tolerated(plant: Plant, traces: Sequence[Trace]) -> list[Model]:
                 values = [one.neutral for one in parameters]
                 is_factor = parameters[i].logarithmic
                 values[i] = values[i] * np.exp(size) if is_factor else values[i] + size
-                one = PlacedEffect(name, place, tuple(values))
-                at_joints = kind.place_kind == "joint" and kind.joint_by_joint
-                label = name if at_joints and held else f"{one.key} {i}"
-                found.setdefault(label, []).append(one)
-    return [tuple(together) for together in found.values()]
+                found.append(PlacedEffect(name, place, tuple(values)))
+    return found
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:
