@@ -110,12 +110,12 @@ def test_the_true_effect_undoes_a_doctoring_of_a_simulated_arm(tmp_path, arm, wh
 @pytest.mark.skipif(not REAL.is_dir(), reason="no real recordings in ../shared/data")
 @pytest.mark.parametrize(
     ("name", "what"),
-    [
-        (name, what)
+    {  # one robot for each
+        what: (name, what)
         for name, real in REAL_SETS.items()
         for what in real.doctorings
         if what not in OUTSIDE
-    ],
+    }.values(),
 )
 def test_the_true_effect_undoes_a_doctoring_of_real_recordings(tmp_path, name, what):
     if what not in all_effects():
