@@ -116,8 +116,8 @@ class Everywhere:
     def __init__(self, judge: Judge) -> None:
         """Prepare a search; the predictors of `judge` must be calibrated already."""
         parts = judge.fit.without_tolerances(), judge.select.without_tolerances()
-        for part in parts:
-            part.correct()
+        for part in parts:  # at the nominal model, whatever was found before
+            part.calibrate(tolerances=False)
         self.judge = Judge(*parts, judge.rules, judge.healthy, judge.hooks)
         self._fit = parts[0]
         self._usage = Usage.of(self._fit.plant, self._fit.traces)
@@ -231,7 +231,9 @@ class Everywhere:
         """The model with simpler forms of its effects where these explain as much."""
         for unit in units(best.model):
             simpler = {one.key: effect(one.name).simpler(one) for one in unit}
-            if all(simpler[one.key] == one for one in unit):
+            keys = {one.key for one in simpler.values()}
+            known = {one.key for one in best.model} - set(simpler)
+            if all(simpler[one.key] == one for one in unit) or keys & known:
                 continue
             other = tuple(simpler.get(one.key, one) for one in best.model)
             tried = self.fitted(other)
