@@ -12,7 +12,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.result import SearchResult
-from diagnosis.search.ties import units
+from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Found, VerdictKind, When
 
 TIED_NATS = 10.0
@@ -138,8 +138,8 @@ def believed_effects(
 
 def _sharing(placed: PlacedEffect, fitted: FittedModel) -> tuple[str, ...]:
     """Other places at which an effect of a fit has the same values, being tied."""
-    (unit,) = (unit for unit in units(fitted.model) if placed in unit)
-    return tuple(one.place for one in unit if one is not placed)
+    (group,) = (group for group in groups_of(fitted.model) if placed in group)
+    return tuple(one.place for one in group if one is not placed)
 
 
 def _when(placed: PlacedEffect, first_s: float, last_s: float) -> When:

@@ -9,6 +9,7 @@ from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
 from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.fitting import FittedModel
+from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
@@ -31,9 +32,12 @@ multiple of the standard deviation that chance gives it."""
 def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estimate]]:
     """For each effect its values with 80 % intervals and units, by parameter name.
 
-    The `fit` to the predictor's data has a Jacobian by finite differences.
+    Where joints share a value, the interval is that of the value at one of them: it is
+    as wide as joints differ. The `fit` to the predictor's data has a Jacobian by finite
+    differences.
     """
-    deviation = standard_errors(predictor, fit)
+    apart = spread_of_joints(predictor, fit)
+    deviation = np.hypot(standard_errors(predictor, fit), apart)
     x = fit.coordinates.of(fit.model)
     ends = np.array(
         [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
@@ -67,6 +71,27 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
     white = np.diag(bread)
     spread = spread_of_recordings(predictor, fit)
     return np.asarray(np.sqrt(np.maximum(np.maximum(variance, white), spread**2)))
+
+
+def spread_of_joints(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) rms differences, in scaled coordinates, of joints that share a value.
+
+    Each joint's own value follows to first order from its channels, the other values
+    staying as they are. 0 for values that are not shared.
+    """
+    apart = np.zeros(fit.jacobian.shape[1])
+    for group in groups_of(fit.model):
+        if len(group) == 1:
+            continue
+        for i in fit.coordinates.columns_of(group):
+            shifts = []
+            for one in group:
+                own = np.isin(predictor.channel, predictor.channels.of_joint(one.place))
+                column = fit.jacobian[own, i]
+                known = column @ column + 1 / PRIOR_SPREAD**2
+                shifts.append(column @ fit.residual[own] / known)
+            apart[i] = np.sqrt(np.mean(np.square(shifts)))
+    return apart
 
 
 def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:

@@ -23,7 +23,7 @@ from diagnosis.search.fitting import (
     ran_into_bound,
 )
 from diagnosis.search.result import MOST_LEFT
-from diagnosis.search.ties import units
+from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
@@ -69,8 +69,8 @@ def established(
                 f"{name} at {gone.place} would fit best at the end of its possible "
                 "range, so something else is behind it: it is not stated"
             )
-        unit = next(unit for unit in units(model) if gone in unit)
-        model = tuple(one for one in model if one not in unit)
+        group = next(group for group in groups_of(model) if gone in group)
+        model = tuple(one for one in model if one not in group)
     return both, None, tuple(said)
 
 

@@ -16,7 +16,7 @@ from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.result import SearchResult
-from diagnosis.search.ties import units, without_each
+from diagnosis.search.ties import groups_of, without_each
 from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
 
@@ -149,7 +149,7 @@ def controls_of(
     """
     main, rest = _main(predictor, model)
     places = effect(main.name).places(predictor.plant, predictor.traces)
-    own = {one.place for one in next(unit for unit in units(model) if main in unit)}
+    own = {one.place for one in next(one for one in groups_of(model) if main in one)}
     moved = [replace(main, place=place) for place in places if place not in own]
     other = _by_lot(predictor, main, rest, alike, rng)
     return {

@@ -238,8 +238,8 @@ class JointSpring(JointEffect):
 class TorqueOffset(TorqueEffect):
     """Constant torque at a joint, in the direction of growing angles if positive.
 
-    Source: the offset in the usual model of a drive's losses, Swevers, Verdonck and De
-    Schutter 2007, "Dynamic model identification for industrial robots".
+    Source: the offset in the friction of EMPS, Janot, Gautier and Brunot 2019, "Data
+    set and reference models of EMPS".
     """
 
     name = "torque_offset"

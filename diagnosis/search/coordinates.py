@@ -9,6 +9,7 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model
+from diagnosis.search.ties import group_of
 from groundwalk.arrays import FloatArray
 
 
@@ -30,13 +31,13 @@ class Coordinates:
         self.columns: list[list[int]] = []
         first: dict[tuple[str, str], list[int]] = {}
         for placed in model:
-            tied = (placed.name, placed.tied or placed.place)
-            if tied not in first or not placed.tied:
+            group = group_of(placed)
+            if group not in first or not placed.tied:
                 own = effect(placed.name).parameters(plant, placed.place)
                 start = len(self.parameters)
-                first[tied] = list(range(start, start + len(own)))
+                first[group] = list(range(start, start + len(own)))
                 self.parameters += own
-            self.columns.append(first[tied])
+            self.columns.append(first[group])
 
     def of(self, model: Model) -> FloatArray:
         """(p,) scaled coordinates of a model's values, clipped to their bounds."""

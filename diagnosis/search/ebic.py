@@ -15,7 +15,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.chance import independent_blocks
 from diagnosis.search.judging import places_of_effects
 from diagnosis.search.result import Judged
-from diagnosis.search.ties import number_of_values, units
+from diagnosis.search.ties import groups_of, number_of_values
 from groundwalk.arrays import FloatArray
 
 
@@ -68,15 +68,15 @@ class Ebic:
         value = 0.5 * np.log(self.samples)
         choices = 0
         for name in {placed.name for placed in model}:
-            own = [placed for placed in model if placed.name == name]
-            choices += 1 if self._is_everywhere(len(own)) else len(units(tuple(own)))
+            own = tuple(placed for placed in model if placed.name == name)
+            choices += 1 if self._is_everywhere(len(own)) else len(groups_of(own))
         return float(
             value * number_of_values(model) + choices * np.log(self.candidates)
         )
 
-    def price_within(self, model: Model, unit: Model) -> float:
+    def price_within(self, model: Model, group: Model) -> float:
         """What some effects add to the price [nats] of the model that has them."""
-        keys = {placed.key for placed in unit}
+        keys = {placed.key for placed in group}
         rest = tuple(placed for placed in model if placed.key not in keys)
         return self.price(model) - self.price(rest)
 

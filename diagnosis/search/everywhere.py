@@ -23,7 +23,7 @@ from diagnosis.search.judging import Judge
 from diagnosis.search.kinds import kinds_to_add
 from diagnosis.search.result import Judged, SearchResult
 from diagnosis.search.screening import Screen
-from diagnosis.search.ties import units, without_each
+from diagnosis.search.ties import groups_of, without_each
 from diagnosis.traces.usage import Usage
 
 MOST_ROUNDS = 12
@@ -76,7 +76,7 @@ def everywhere(judge: Judge, result: SearchResult) -> SearchResult:
     """
     search = Everywhere(judge)
     best = search.run()
-    (nothing,) = search.compared([()])
+    nothing = search.nominal()
     winner = search.fitted(result.winner.model) if result.winner else nothing
     left = winner.energy - best.energy
     floor = search.judge.floor + search.judge.floor_fit
@@ -124,7 +124,7 @@ class Everywhere:
 
     def run(self) -> Judged:
         """The best model; without effects if none explains much at all joints."""
-        best = self.compared([()])[0]
+        best = self.nominal()
         for number in range(MOST_ROUNDS):
             self.judge.hooks.stage(f"all joints, round {number + 1}", REPLAYS)
             larger = self._larger(best)
@@ -142,16 +142,11 @@ class Everywhere:
             part.correct(best.model)
         return self.fitted(best.model)
 
-    def compared(self, models: Sequence[Model]) -> list[Judged]:
-        """Models judged with the values that they have."""
-        residuals = self._fit.residuals(models)
-        plant = self._fit.plant
-        unknown = np.zeros((len(residuals[0]), 0)), Coordinates(plant, ())
-        fits = [
-            FittedModel(model, residual, *unknown)
-            for model, residual in zip(models, residuals, strict=True)
-        ]
-        return self.judge.judge(fits)
+    def nominal(self) -> Judged:
+        """The nominal model, as if it had been fitted."""
+        (residual,) = self._fit.residuals([()])
+        none = np.zeros((len(residual), 0)), Coordinates(self._fit.plant, ())
+        return self.judge.judge([FittedModel((), residual, *none)])[0]
 
     def _ebic(self, judged: Judged) -> Ebic:
         return Ebic.of(self._fit, self.judge.select, judged.fit.residual)
@@ -229,11 +224,11 @@ class Everywhere:
 
     def _simplified(self, best: Judged) -> Judged:
         """The model with simpler forms of its effects where these explain as much."""
-        for unit in units(best.model):
-            simpler = {one.key: effect(one.name).simpler(one) for one in unit}
+        for group in groups_of(best.model):
+            simpler = {one.key: effect(one.name).simpler(one) for one in group}
             keys = {one.key for one in simpler.values()}
             known = {one.key for one in best.model} - set(simpler)
-            if all(simpler[one.key] == one for one in unit) or keys & known:
+            if all(simpler[one.key] == one for one in group) or keys & known:
                 continue
             other = tuple(simpler.get(one.key, one) for one in best.model)
             tried = self.fitted(other)
@@ -250,21 +245,21 @@ class Everywhere:
         while True:
             ebic = self._ebic(best)
             worth = {
-                unit: ebic.nats(gain, best) - ebic.price_within(best.model, unit)
-                for unit, gain in gains_of_each(best.fit)
-                if unit[0].key not in needed
+                group: ebic.nats(gain, best) - ebic.price_within(best.model, group)
+                for group, gain in gains_of_each(best.fit)
+                if group[0].key not in needed
             }
             if not worth:
                 return best
-            unit = min(worth, key=lambda one: worth[one])
-            if worth[unit] > CLEARLY:
+            group = min(worth, key=lambda one: worth[one])
+            if worth[group] > CLEARLY:
                 return best
-            kept = tuple(one for one in best.model if one not in unit)
-            tried = self.fitted(kept) if kept else self.compared([()])[0]
+            kept = tuple(one for one in best.model if one not in group)
+            tried = self.fitted(kept) if kept else self.nominal()
             if ebic.prefers(tried, best):
                 best = tried
             else:
-                needed.add(unit[0].key)
+                needed.add(group[0].key)
 
 
 def servo_effects() -> tuple[str, ...]:
@@ -286,17 +281,17 @@ def gains_of_each(fit: FittedModel) -> list[tuple[Model, float]]:
     jacobian = fit.jacobian
     spread = np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
     x = coordinates.of(fit.model)
-    for unit in units(fit.model):
-        own = coordinates.columns_of(unit)
-        own = own[: max(effect(unit[0].name).components, 1)]
+    for group in groups_of(fit.model):
+        own = coordinates.columns_of(group)
+        own = own[: max(effect(group[0].name).components, 1)]
         neutral = [coordinates.parameters[i].neutral for i in own]
         if not np.isfinite(neutral).all():
-            gains.append((unit, np.inf))
+            gains.append((group, np.inf))
             continue
         away = [
             x[i] - coordinates.scaled(i, value)
             for i, value in zip(own, neutral, strict=True)
         ]
         part = np.linalg.pinv(spread[np.ix_(own, own)], hermitian=True)
-        gains.append((unit, 0.5 * float(np.array(away) @ part @ np.array(away))))
+        gains.append((group, 0.5 * float(np.array(away) @ part @ np.array(away))))
     return gains

@@ -11,7 +11,7 @@ from diagnosis.search.fitting import MOST_STEPS, FittedModel, fit_all
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.result import VALUE_NATS, Judged, pack, ranked, unpack
 from diagnosis.search.rules import Rules
-from diagnosis.search.ties import number_of_values, units
+from diagnosis.search.ties import groups_of, number_of_values
 from groundwalk.arrays import FloatArray
 
 CONTRADICTED = 3.0
@@ -117,7 +117,7 @@ class Judge:
         rows = sum(trace.ticks for trace in self.fit.traces)
         timed = [one for one in model if effect(one.name).timed]
         rarity = sum(effect(one.name).rarity_nats for one in model)
-        more = number_of_values(model) - len(units(model))
+        more = number_of_values(model) - len(groups_of(model))
         return float(len(timed) * np.log(rows)) + VALUE_NATS * more + rarity
 
     def _matters(self, gain: float) -> bool:

@@ -13,7 +13,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Guess, Screen
-from diagnosis.search.ties import motors, number_of_values, tied
+from diagnosis.search.ties import Level, labels, motors, number_of_values, tied
 
 TRIED = 3
 """Number of models that are fitted in each round since they are estimated to gain most,
@@ -77,15 +77,11 @@ def _added(plant: Plant, screen: Screen, best: Judged) -> Iterator[_Option]:
 
 def _shared(plant: Plant, screen: Screen, best: Judged, name: str) -> Iterator[_Option]:
     """The model with a kind of effect at all joints, with values that they share."""
-    kinds = motors(plant)
-    levels = {
-        "all": {joint: "slides" if joint in plant.slides else "" for joint in kinds},
-        "motor": kinds,
-    }
     seen = set[frozenset[PlacedEffect]]()
-    for level in ("all", "motor"):
+    levels: tuple[Level, ...] = ("all", "motor")
+    for level in levels:
         joints = dict[str, list[str]]()
-        for joint, label in levels[level].items():
+        for joint, label in labels(plant, level).items():
             joints.setdefault(label, []).append(f"{name}@{joint}")
         found = [
             screen.shared(best.fit.residual, best.fit.jacobian, keys)
@@ -110,12 +106,13 @@ def _grown(model: Model) -> Iterator[Model]:
 
 def _untied(plant: Plant, screen: Screen, best: Judged) -> Iterator[_Option]:
     """The model with the values of each kind of effect shared less widely."""
+    levels: tuple[Level, ...] = ("motor", "each")
     for name in sorted({placed.name for placed in best.model if placed.tied}):
         own = [placed for placed in best.model if placed.name == name]
         rest = tuple(placed for placed in best.model if placed.name != name)
         left = best.fit.residual, best.fit.jacobian
         gain = screen.freed(*left, [placed.key for placed in own])
-        for level in ("motor", "each"):
+        for level in levels:
             freed = tied(plant, own, level)
             more = number_of_values(freed) - number_of_values(tuple(own))
             if more > 0:

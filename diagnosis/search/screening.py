@@ -147,26 +147,22 @@ class Screen:
 
         `residual` (N,) is that which a model leaves [noise]: see `chance.py`.
         """
-        return by_chance(np.max([*self.gains_by_chance(residual).values()], axis=0))
-
-    def gains_by_chance(self, residual: FloatArray) -> dict[str, FloatArray]:
-        """(draws,) gains [nats] of each effect and place in draws of signs, by key."""
         block = independent_blocks(self._predictor, residual)
         count = int(block.max()) + 1
         parts = np.stack(
             [np.bincount(block, one * residual, count) for one in self._columns]
         )
         wanted = signs(count) @ parts.T
-        best: dict[str, FloatArray] = {}
+        best = np.zeros(len(wanted))
         for group in self._groups:
-            own, key = wanted[:, group], self._found[group[0]].placed.key
+            own = wanted[:, group]
             if len(group) == 1 and not self._found[group[0]].two_sided:
                 own = np.maximum(own, 0.0)
             products = self._products[np.ix_(group, group)]
             inverse = np.linalg.pinv(products, rcond=SAME, hermitian=True)
             gain = 0.5 * np.einsum("di,ij,dj->d", own, inverse, own)
-            best[key] = np.maximum(best.get(key, 0.0), gain)
-        return best
+            best = np.maximum(best, gain)
+        return by_chance(best)
 
     def _shared(self, view: _View, rows: Sequence[int]) -> Guess | None:
         """The best allowed common first value of the effects of some signatures."""

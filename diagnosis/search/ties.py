@@ -13,24 +13,28 @@ Level = Literal["all", "motor", "each"]
 """How widely joints share values: all of them, those with the same motor, or none."""
 
 
-def units(model: Model) -> list[Model]:
+def group_of(placed: PlacedEffect) -> tuple[str, str]:
+    """What effects that share their values have in common, and no others have."""
+    return (placed.name, placed.tied) if placed.tied else (placed.key, "")
+
+
+def groups_of(model: Model) -> list[Model]:
     """The effects of a model; those that share their values are together."""
     found: dict[tuple[str, str], list[PlacedEffect]] = {}
     for placed in model:
-        shared = (placed.name, placed.tied) if placed.tied else (placed.key, "")
-        found.setdefault(shared, []).append(placed)
+        found.setdefault(group_of(placed), []).append(placed)
     return [tuple(one) for one in found.values()]
 
 
 def without_each(model: Model) -> list[Model]:
     """The models that arise when each effect is removed in turn, tied ones together."""
-    gone = [{placed.key for placed in unit} for unit in units(model)]
+    gone = [{placed.key for placed in group} for group in groups_of(model)]
     return [tuple(one for one in model if one.key not in keys) for keys in gone]
 
 
 def number_of_values(model: Model) -> int:
     """Number of values of a model that are fitted; what is shared counts once."""
-    return sum(len(unit[0].values) for unit in units(model))
+    return sum(len(group[0].values) for group in groups_of(model))
 
 
 def motors(plant: Plant) -> dict[str, str]:
@@ -53,6 +57,16 @@ def motors(plant: Plant) -> dict[str, str]:
     return kinds
 
 
+def labels(plant: Plant, level: Level) -> dict[str, str]:
+    """For each joint a name of the joints that share their values with it."""
+    if level == "motor":
+        return motors(plant)
+    turns_or_slides = {
+        joint: "slides" if joint in plant.slides else "turns" for joint in plant.joints
+    }
+    return turns_or_slides if level == "all" else {one: one for one in plant.joints}
+
+
 def tied(plant: Plant, effects: Sequence[PlacedEffect], level: Level) -> Model:
     """Effects of one kind at several joints, tied as widely as `level` says.
 
@@ -60,12 +74,10 @@ def tied(plant: Plant, effects: Sequence[PlacedEffect], level: Level) -> Model:
     joints that turn. Tied effects get the mean of their values, and the first of their
     places as the label.
     """
-    kinds, groups = motors(plant), dict[str, list[PlacedEffect]]()
+    names, groups = labels(plant, level), dict[str, list[PlacedEffect]]()
     for placed in effects:
-        group = placed.key
-        if level != "each" and effect(placed.name).of_motor:
-            slides = "slides" if placed.place in plant.slides else "turns"
-            group = slides if level == "all" else kinds[placed.place]
+        shares = effect(placed.name).of_motor
+        group = names[placed.place] if shares else placed.place
         groups.setdefault(group, []).append(placed)
     found = []
     for own in groups.values():

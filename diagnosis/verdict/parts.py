@@ -142,7 +142,7 @@ class Found:
       when: whether it acts always, for a while, or growing.
       native: whether MuJoCo can simulate it, so that the corrected MJCF contains it.
       shared_with: other places at which the same effect has the same fitted values,
-        since their joints have the same motor.
+        as the recordings do not tell how they differ.
 
     Example:
       >>> Found("drag", "torso", {"coefficient": Estimate(2.0, 1.5, 2.5, "N s/m")}, 0.9)

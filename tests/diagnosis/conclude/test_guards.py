@@ -63,7 +63,7 @@ def test_of_several_effects_the_main_one_is_compared():
 
 
 def test_an_effect_at_one_of_many_joints_is_judged_by_its_own():
-    """Of 20 channels one is off, so that over all of them hardly anything is."""
+    """Only one of 20 channels is off, so that hardly anything is over all of them."""
     quiet = ChannelFit(
         nominal=2.0, corrected=2.0, floor=2.0, wrong_effect=2.0, unit="rad"
     )

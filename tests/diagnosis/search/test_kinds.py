@@ -18,14 +18,24 @@ from diagnosis.traces.usage import Usage
 
 JOINTS = "yaw", "shoulder", "elbow"
 KEYS = [f"coulomb_friction@{joint}" for joint in JOINTS]
+SHARED = tied(
+    arm(),
+    [PlacedEffect("coulomb_friction", joint, (0.5,)) for joint in JOINTS],
+    "all",
+)
+
+
+def predictor_with(*coulomb_nm):
+    """The torques of an arm whose joints rub."""
+    rubs = rubbing(coulomb_nm, (0.0, 0.0, 0.0))
+    found = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
+    found.calibrate()
+    return found.without_tolerances()
 
 
 @pytest.fixture(scope="module")
 def predictor():
-    rubs = rubbing((0.8, 0.8, 0.8), (0.0, 0.0, 0.0))
-    found = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
-    found.calibrate()
-    return found.without_tolerances()
+    return predictor_with(0.8, 0.8, 0.8)
 
 
 def screen_of(predictor, model):
@@ -54,19 +64,11 @@ def test_a_shared_value_is_guessed(predictor):
 
 
 def test_values_that_are_the_same_gain_nothing_by_being_freed(predictor):
-    model = tied(
-        predictor.plant,
-        [PlacedEffect("coulomb_friction", joint, (0.5,)) for joint in JOINTS],
-        "all",
-    )
-    right = fitted(predictor, model)
+    right = fitted(predictor, SHARED)
     screen = screen_of(predictor, right.model)
     few = screen.freed(right.fit.residual, right.fit.jacobian, KEYS)
-    rubs = rubbing((0.2, 0.8, 1.4), (0.0, 0.0, 0.0))
-    uneven = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
-    uneven.calibrate()
-    uneven = uneven.without_tolerances()
-    wrong = fitted(uneven, model)
+    uneven = predictor_with(0.2, 0.8, 1.4)
+    wrong = fitted(uneven, SHARED)
     much = screen_of(uneven, wrong.model).freed(
         wrong.fit.residual, wrong.fit.jacobian, KEYS
     )
@@ -74,12 +76,7 @@ def test_values_that_are_the_same_gain_nothing_by_being_freed(predictor):
 
 
 def test_what_joints_share_comes_first_and_what_is_tied_is_freed_later(predictor):
-    model = tied(
-        predictor.plant,
-        [PlacedEffect("coulomb_friction", joint, (0.5,)) for joint in JOINTS],
-        "all",
-    )
-    best = fitted(predictor, model)
+    best = fitted(predictor, SHARED)
     shared, apart = kinds_to_add(predictor, screen_of(predictor, best.model), best)
     assert shared
     assert all(number_of_values(one) <= 2 for one in shared)

@@ -69,11 +69,6 @@ def test_each_joint_keeps_to_its_own_channels(predictor):
 
 
 def test_a_shared_value_is_the_best_one_for_all(predictor):
-    """As if each joint's friction had been fitted, and the mean been taken.
-
-    Every joint rubs in all rows, so that least squares weights them by rows and noise,
-    which are alike.
-    """
     (fit,) = fit_all(predictor, [friction(*JOINTS, tied="all")])
     values = {one.values for one in fit.model}
     assert len(values) == 1

@@ -42,8 +42,8 @@ def test_what_is_shared_costs_one_value():
     assert CRITERION.price_within(shared, shared) == CRITERION.price(shared)
 
 
-def test_a_larger_model_must_halve_the_error_for_its_price():
-    """Of n samples a value is worth its price if energies fall by exp(-2 price / n)."""
+def test_a_larger_model_must_lower_the_error_by_its_price():
+    """A price is worth it where n samples leave exp(-2 price / n) of the energy."""
     plant = arm()
     one = judged(plant, 1000.0, "coulomb_friction@elbow")
     price = CRITERION.price(one.model)

@@ -1,10 +1,18 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from torque_arm import arm
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.search.coordinates import Coordinates
-from diagnosis.search.ties import motors, number_of_values, tied, units, without_each
+from diagnosis.search.ties import (
+    groups_of,
+    motors,
+    number_of_values,
+    tied,
+    without_each,
+)
 
 EACH = tuple(
     PlacedEffect("coulomb_friction", joint, (value,))
@@ -26,7 +34,7 @@ def test_shared_values_are_the_mean_at_first():
 
 
 def test_effects_that_share_a_value_go_together():
-    assert units((*SHARED, LATE)) == [SHARED, (LATE,)]
+    assert groups_of((*SHARED, LATE)) == [SHARED, (LATE,)]
     assert without_each((*SHARED, LATE)) == [(LATE,), SHARED]
     assert len(without_each(EACH)) == 3
 
@@ -59,3 +67,13 @@ def test_joints_with_the_same_limits_have_the_same_motor():
     shared = tied(other, EACH, "motor")
     assert [one.values[0] for one in shared] == pytest.approx([1.5, 1.5, 6.0])
     assert [one.tied for one in shared] == ["shoulder", "shoulder", ""]
+
+
+def test_a_tie_named_after_a_joint_leaves_that_joint_alone():
+    """The first of the joints that share may since have a value of its own."""
+    own = EACH[2]
+    others = tuple(replace(one, tied="elbow") for one in SHARED[:2])
+    for model in ((own, *others), (*others, own)):
+        coordinates = Coordinates(arm(), model)
+        assert len(coordinates.parameters) == 2
+        assert len(groups_of(model)) == 2
