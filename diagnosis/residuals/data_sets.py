@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.library import all_effects
+from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
@@ -15,6 +15,7 @@ from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import LEAST_FLOATING_S, LEAST_S, Split, shortened, split
 from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Recordings
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
@@ -48,6 +49,11 @@ of its usual error in the others: more than by other motions."""
 NEAR = 0.02
 """Largest distance of a replay from the recorded motion, as a share of each joint's
 range in the recording, in 95 % of the rows."""
+
+DISTORTED = 0.1
+"""Largest error, relative to it, of what effects change in simulations whose steps are
+long. Fits are repeated with the integration error of the model that they found, so that
+the values that they end with do not have this error."""
 
 PRECISE_S = 20.0
 """Most seconds of the recordings on which the error of the simulation is measured."""
@@ -92,7 +98,8 @@ class DataSets:
         parts = affordable(plant, split(traces, errors))
         every = [*parts.fit, *parts.select, *parts.test]
         options = None, threads, noise, on_replay, window_s
-        whole = exact_steps(predictor_of(plant, every, channels, *options))
+        whole = predictor_of(plant, every, channels, *options)
+        whole = exact_steps(shows_changes(whole))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         fit, select = whole.part(0, first), whole.part(first, last)
         learned, test = whole.part(0, last), whole.part(last, len(every))
@@ -113,14 +120,49 @@ class DataSets:
 
 
 def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
-    """The predictor, calibrated at a model, with the longest accurate time step."""
+    """The predictor, calibrated at a model, with steps as long as they may be.
+
+    Those with which the integration error is measured are as long as they are exact;
+    those of simulations may be longer, as long as they show what effects change.
+    """
     for step_s in STEPS_S[whole.plant.base]:
-        if step_s < whole.step_s:
-            whole = whole.stepped(step_s)
-        if step_s == whole.step_s and whole.correct(model).max() < MOST_WRONG:
+        finest_s = step_s / 4
+        if finest_s < whole.finest_s:
+            whole = whole.stepped(whole.step_s, finest_s)
+        if finest_s == whole.finest_s and whole.correct(model).max() < MOST_WRONG:
             break
     whole.doubt(model)
     return whole
+
+
+def shows_changes(whole: Predictor) -> Predictor:
+    """The predictor with the longest step with which effects change what they should.
+
+    Dry friction at all joints is taken for the others: no effect suffers more from long
+    steps. The shortest step says what it should change.
+    """
+    plant, (*longer_s, shortest_s) = whole.plant, STEPS_S[whole.plant.base]
+    if whole.by_torque:
+        return whole
+    kind = effect("coulomb_friction")
+    rubbing = tuple(
+        PlacedEffect(kind.name, place, values)
+        for place in kind.places(plant, whole.traces)
+        for values in kind.first_tries(plant, place, Usage.of(plant, whole.traces))[:1]
+    )
+    right = change(whole.stepped(shortest_s), rubbing)
+    for step_s in longer_s:
+        some = whole.stepped(step_s)
+        wrong = change(some, rubbing) - right
+        if np.linalg.norm(wrong) < DISTORTED * np.linalg.norm(right):
+            return some
+    return whole.stepped(shortest_s)
+
+
+def change(some: Predictor, model: Model) -> FloatArray:
+    """(N,) what a model changes in the residual of a predictor."""
+    nominal, changed = some.residuals([(), model])
+    return np.asarray(changed - nominal)
 
 
 def precise(

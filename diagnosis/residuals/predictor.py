@@ -18,8 +18,7 @@ from diagnosis.traces.windows import is_left_over, window_s
 from groundwalk.arrays import BoolArray, FloatArray
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
-"""Time steps of simulations [s] by the kind of base, tried in this order until the
-integration error is small enough."""
+"""Time steps of simulations [s] by the kind of base, the longest first."""
 
 WARM_UP_S = 0.4
 """Time [s] at the start of a recording in which errors do not count, because the start
@@ -38,9 +37,10 @@ class Predictor:
     """Simulates models on recordings, and corrects the integration error.
 
     The integration error of a coarse time step is smooth and hardly depends on the
-    model. `calibrate` measures it once with finer steps and Richardson extrapolation
-    (first order: twice the finer result minus the coarser one); it is then added to
-    every simulation.
+    model. `calibrate` measures it once for one model, with finer steps and Richardson
+    extrapolation (first order: twice the finer result minus the coarser one); it is
+    then taken out of every simulation. So steps may be long: of the model at which
+    it was measured nothing is wrong, and of others only what they change.
 
     Attributes:
       blocks: rows of all traces in blocks of 0.3 s, in which model errors that the
@@ -61,6 +61,7 @@ class Predictor:
         noise: ReferenceNoise | None = None,
         on_replay: Callable[[int], None] | None = None,
         window_s: float = 0.0,
+        finest_s: float | None = None,
     ) -> None:
         """Estimate the states from which the simulations of the traces start.
 
@@ -75,9 +76,12 @@ class Predictor:
             simulations of all traces at the step `step_s`.
           window_s: least length of windows in which joints without servos are
             simulated.
+          finest_s: shortest of the time steps with which the integration error is
+            measured; None for a quarter of `step_s`, which is the longest.
         """
         self.plant, self.traces = plant, list(traces)
         self.step_s, self._threads = step_s or STEPS_S[plant.base][0], threads
+        self.finest_s = finest_s or self.step_s / 4
         self.channels = channels or shared_channels(plant, traces)
         self._window_s = window_s
         self._replays = Replays(plant, traces, self.channels, threads, window_s)
@@ -88,7 +92,7 @@ class Predictor:
         )
         self._scored = np.isfinite(self._measured) & ~self._warming()[:, None]
         self._correction = np.zeros((sum(rows), c))
-        self._fine_correction = self._correction
+        self._fine_correction = self._exact_correction = self._correction
         self._ends = np.cumsum(rows).tolist()
         self._doubt: StartUncertainty | None = None
         self._tolerance: Tolerance | None = None
@@ -110,11 +114,12 @@ class Predictor:
 
     def part(self, first: int, last: int) -> "Predictor":
         """A predictor of traces `first` to `last - 1`, with the same calibration."""
-        some = self.stepped(self.step_s, self.traces[first:last])
+        some = self.stepped(self.step_s, self.finest_s, self.traces[first:last])
         ends = [0, *self._ends]
         own = slice(ends[first], ends[last])
         some._correction = self._correction[own]
         some._fine_correction = self._fine_correction[own]
+        some._exact_correction = self._exact_correction[own]
         if self._doubt is not None:
             runs = self._replays.first_run
             some._doubt = self._doubt.part(runs[first], runs[last])
@@ -155,15 +160,21 @@ class Predictor:
     def on(self, plant: Plant) -> "Predictor":
         """An uncalibrated predictor of the same traces with another robot model."""
         own = self.channels, self.step_s, self._threads, self._noise, self._on_replay
-        return type(self)(plant, self.traces, *own, self._window_s)
+        return type(self)(plant, self.traces, *own, self._window_s, self.finest_s)
 
     def stepped(
-        self, step_s: float, traces: Sequence[Trace] | None = None
+        self,
+        step_s: float,
+        finest_s: float | None = None,
+        traces: Sequence[Trace] | None = None,
     ) -> "Predictor":
-        """An uncalibrated predictor with a time step [s] of given or its own traces."""
+        """An uncalibrated predictor with other time steps, see the constructor.
+
+        It is of given or its own traces.
+        """
         own = self.channels, step_s, self._threads, self._noise, self._on_replay
         some = self.traces if traces is None else traces
-        return type(self)(self.plant, some, *own, self._window_s)
+        return type(self)(self.plant, some, *own, self._window_s, finest_s)
 
     def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.
@@ -192,11 +203,17 @@ class Predictor:
         Returns (c,) the rms, in units of noise, of that which remains in each channel;
         large if the simulation of `model` diverges.
         """
-        coarse, fine, finer = (
-            self._replayed([model], self.step_s / part)[0] for part in (1, 2, 4)
-        )
-        self._correction = 2 * finer - fine - coarse
-        self._fine_correction = 2 * (finer - fine)
+        own = [self.step_s / part for part in (1, 2, 4)]
+        finest = [self.finest_s * part for part in (4, 2, 1)]
+        found = {
+            step_s: self._replayed([model], step_s)[0]
+            for step_s in dict.fromkeys([*own, *finest])
+        }
+        coarse, fine, finer = (found[step_s] for step_s in finest)
+        right = 2 * finer - fine
+        self._correction = right - found[own[0]]
+        self._fine_correction = right - found[own[1]]
+        self._exact_correction = right - (2 * found[own[2]] - found[own[1]])
         # the extrapolation leaves the error of second order
         left = (finer - fine) - (fine - coarse) / 2
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
@@ -259,7 +276,7 @@ class Predictor:
         implicitly and an equal force that it treats explicitly.
         """
         fine, finer = (self._replayed(models, self.step_s / part) for part in (2, 4))
-        return 2 * finer - fine
+        return np.asarray(2 * finer - fine + self._exact_correction)
 
     def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
         """(n, N) measured less predicted values of n models, in units of noise.

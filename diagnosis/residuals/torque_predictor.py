@@ -135,6 +135,7 @@ def predictor_of(
     noise: ReferenceNoise | None = None,
     on_replay: Callable[[int], None] | None = None,
     window_s: float = 0.0,
+    finest_s: float | None = None,
 ) -> Predictor:
     """A predictor of torques for traces with a `motion`, else one that replays them.
 
@@ -142,7 +143,8 @@ def predictor_of(
     """
     by_torque = all(trace.motion is not None for trace in traces)
     kind = TorquePredictor if by_torque else Predictor
-    return kind(plant, traces, channels, step_s, threads, noise, on_replay, window_s)
+    options = step_s, threads, noise, on_replay, window_s, finest_s
+    return kind(plant, traces, channels, *options)
 
 
 def _blocks(starts: IntArray, scored: BoolArray, rows: int) -> list[Block]:
