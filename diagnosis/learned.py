@@ -14,12 +14,11 @@ from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import DataSets, precise
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.search.accept import accepted
-from diagnosis.search.everywhere import everywhere, more_is_missing
+from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.reference import learn_reference, reference_checks
-from diagnosis.search.result import SearchResult
+from diagnosis.search.result import MORE_THAN_NOISE, SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.verdict import VerdictKind
@@ -28,10 +27,6 @@ from groundwalk.arrays import FloatArray
 MORE_FLOATING = 4
 """Number of models that the search fits in addition if the base floats. Contacts make
 the linear estimates unreliable by which it chooses models to fit."""
-
-MORE_THAN_NOISE = 2.0
-"""If the best model leaves this multiple of the noise in a channel, the recordings are
-searched again, with what it leaves as noise: no model of this robot is better."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
@@ -187,11 +182,7 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
 def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind, bool]:
     """Search for effects that the sim lacks, and decide the kind of the verdict.
 
-    Where few effects leave much, the search goes on with effects at all joints. Also
-    returns whether these explain it.
+    Also returns whether effects at all joints explain what is missing.
     """
-    judge, plant = search.judge, search.judge.fit.plant
-    few = result = accepted(judge, search.run())
-    if more_is_missing(judge.fit, few):
-        result = everywhere(judge, few)
-    return result, verdict_kind(result, plant, audited), result is not few
+    result, at_all = found_by(search)
+    return result, verdict_kind(result, search.judge.fit.plant, audited), at_all

@@ -41,7 +41,8 @@ def creeps(learned: Predictor, model: Model, least: float) -> bool:
     soft, stiff = learned.on(softly(learned.plant)), learned.on(learned.plant)
     energies = []
     for one in (soft, stiff):
-        one.calibrate(model)
+        one.correct(model)
+        one.doubt_as(learned)
         energies.append(fit_all(one, [model])[0].energy if model else _energy(one))
     return energies[1] - energies[0] > least
 

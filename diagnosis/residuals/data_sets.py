@@ -227,7 +227,9 @@ def errors_of_event(
     """
     if len(traces) < 2 or plant.base == "floating":
         return None
-    predictor = Predictor(plant, traces, channels, threads=threads, window_s=window_s)
+    predictor = predictor_of(
+        plant, traces, channels, threads=threads, window_s=window_s
+    )
     (left,) = predictor.residuals([()])
     left = left * (channels.noise / channels.floor)[predictor.channel]
     rms = [

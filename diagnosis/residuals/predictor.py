@@ -197,6 +197,10 @@ class Predictor:
         elif self.plant.base == "fixed":  # contacts outdo tolerances by far
             self._tolerance = Tolerance(self._tolerated(model))
 
+    def doubt_as(self, other: "Predictor") -> None:
+        """Take what wrong start states change, and tolerances, of the same traces."""
+        self._doubt, self._tolerance = other._doubt, other._tolerance
+
     def correct(self, model: Model = ()) -> FloatArray:
         """Measure the integration error of a model, to be taken out of all residuals.
 

@@ -57,8 +57,13 @@ class Ebic:
 
     def nats(self, gain: float, judged: Judged) -> float:
         """A loss of energy of the fitting data, in nats of independent samples."""
-        energy = max(judged.fit.energy, 1e-12)
-        return 0.5 * self.samples * float(np.log1p(gain / energy))
+        energy = judged.fit.energy
+        return self.nats_between(energy + gain, energy)
+
+    def nats_between(self, before: float, after: float) -> float:
+        """A fall of the energy of some data, in nats of independent samples."""
+        ratio = max(before, 1e-12) / max(after, 1e-12)
+        return 0.5 * self.samples * float(np.log(ratio))
 
     def price(self, model: Model) -> float:
         """What a model costs [nats]: its values, and its choices among candidates.

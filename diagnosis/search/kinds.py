@@ -60,18 +60,21 @@ def _likely(options: Sequence[_Option]) -> list[Model]:
 
 
 def _added(plant: Plant, screen: Screen, best: Judged) -> Iterator[_Option]:
-    """The model with each kind of effect that it lacks, shared or not."""
+    """The model with each kind of effect at the joints that lack it.
+
+    Shared or not, if none has it.
+    """
     left = best.fit.residual, best.fit.jacobian
     known = {placed.name for placed in best.model}
     kinds = dict[str, list[Guess]]()
     for guess in screen.singles(*left):
-        if guess.model[0].name not in known:
+        if guess.model[0].key not in best.keys:
             kinds.setdefault(guess.model[0].name, []).append(guess)
     for name, guesses in kinds.items():
         each = tuple(guess.model[0] for guess in guesses)
         gain = sum(guess.gain for guess in guesses)
         yield _Option((*best.model, *each), gain, number_of_values(each))
-        if effect(name).of_motor and len(each) > 1:
+        if effect(name).of_motor and len(each) > 1 and name not in known:
             yield from _shared(plant, screen, best, name)
 
 

@@ -9,7 +9,7 @@ from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.everywhere import everywhere, more_is_missing
+from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import pack_noise, unpack_noise
@@ -163,9 +163,7 @@ def _explained(
     whole = sims.predictor([*fit, *select])
     parted = whole.part(0, len(fit)), whole.part(len(fit), len(whole.traces))
     judge = Judge(*parted, rules, hooks=sims.hooks)
-    result = Search(judge).run()
-    if more_is_missing(judge.fit, result):
-        result = everywhere(judge, result)
+    result, _ = found_by(Search(judge), tested=False)
     return result.winner.model if result.winner else ()
 
 

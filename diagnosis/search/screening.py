@@ -37,11 +37,13 @@ combinations of others or of the model's Jacobian."""
 class Guess:
     """Effects that explain a part of a residual, by a linear estimate.
 
-    `gain` is the reduction of half the sum of squared residuals [nats].
+    `gain` is the reduction of half the sum of squared residuals [nats]; `rows` are the
+    indices of the signatures from which it was estimated.
     """
 
     model: Model
     gain: float
+    rows: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +92,39 @@ class Screen:
             guess = self._guess(view, [group])
             key = self._found[group[0]].placed.key
             if guess and (key not in best or guess.gain > best[key].gain):
-                best[key] = guess
+                best[key] = replace(guess, rows=tuple(group))
         return sorted(best.values(), key=lambda guess: -guess.gain)
+
+    def together(
+        self, residual: FloatArray, jacobian: FloatArray, guesses: Sequence[Guess]
+    ) -> Guess | None:
+        """The best guess of several single effects at once; None if it is useless.
+
+        `guesses` are those of `singles` for the same residual and Jacobian.
+        """
+        view = self._view(residual, jacobian)
+        guess = self._guess(view, [list(one.rows) for one in guesses])
+        rows = tuple(row for one in guesses for row in one.rows)
+        return replace(guess, rows=rows) if guess else None
+
+    def changes(self, rows: Sequence[int]) -> FloatArray:
+        """(N, k) changes of the residual by the effects of some signatures."""
+        return self._columns[list(rows)].T.astype(float)
+
+    def bounds(self, rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:
+        """(k,) smallest and largest factors of the sizes that were tried."""
+        sided = np.array([self._found[row].two_sided for row in rows], bool)
+        high = np.full(len(rows), LARGEST_STRETCH)
+        return np.where(sided, -high, 0.0), high
+
+    def sized(self, rows: Sequence[int], stretch: FloatArray) -> Model:
+        """The effects of k signatures with (k,) multiples of the sizes tried."""
+        sizes = dict(zip(rows, stretch, strict=True))
+        return tuple(
+            self._placed(group, np.array([sizes[row] for row in group]))
+            for group in self._groups
+            if set(group) <= set(rows)
+        )
 
     def pairs(self, residual: FloatArray, count: int) -> list[Guess]:
         """The pairs of effects that explain most together, largest gain first.

@@ -16,6 +16,7 @@ from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates, grown
 from diagnosis.search.judging import Judge, distinct, gain_of_noise
 from diagnosis.search.result import Judged, SearchResult, keys_of
+from diagnosis.search.spread import is_widespread
 from diagnosis.traces.usage import Usage
 
 
@@ -25,20 +26,28 @@ class Search:
     Attributes:
       judge: fits and judges the models.
       signatures: changes of the residual by each effect at each place; filled by `run`.
+      widespread: whether `run` ended early, since most joints are off beside what the
+        best single effect explains.
     """
 
     def __init__(self, judge: Judge, promising: Sequence[Model] = ()) -> None:
         """Prepare a search; the predictors of `judge` must be calibrated already."""
         self.judge, self._promising = judge, promising
         self.signatures: list[Signature] = []
+        self.widespread = False
         self._rules, self._fit = judge.rules, judge.fit
         # whitened with tolerances a short error is no longer short
         self._bare = judge.fit.without_tolerances()
         self._usage = Usage.of(judge.fit.plant, judge.fit.traces)
 
-    def run(self) -> SearchResult:
-        """Add effects to models until another one does not improve them enough."""
+    def run(self, anyway: bool = False) -> SearchResult:
+        """Add effects to models until another one does not improve them enough.
+
+        It ends after a single effect if most joints are off beside it, unless it is
+        to go on `anyway`.
+        """
         judge, residual = self.judge, self.judge.residual
+        self.widespread = False
         intervals = push_intervals(self._bare, self._bare.residuals([()])[0])
         self.signatures = signatures(self._fit, (), self._usage, intervals)
         starts = Candidates(self._fit, self.signatures, self._rules)
@@ -48,6 +57,9 @@ class Search:
         while best.get(size):
             left = best[size][0].fit.residual
             judge.least_gain = max(starts.gain_by_chance(left), gain_of_noise(1))
+            if size == 1 and not anyway and self._most_joints_are_off(best[1][0]):
+                self.widespread, chosen = True, int(judge.believes(best[1][0]))
+                break
             if judge.believes(best[size][0], before):
                 chosen = size
                 best[size] = self._refined(best[size])
@@ -60,13 +72,18 @@ class Search:
             larger = self._larger(starts, best[size])
             size += 1
             best[size] = self._round(size, self._with_promising(size, larger))
-        if chosen:
+        if chosen and not self.widespread:
             replaced = starts.swapped(best[chosen][0])
             swapped = self._round(chosen, replaced, "replacements of ")
             best[chosen] = distinct(judge.ranked(best[chosen] + swapped))
         return SearchResult(
             judge.nothing, judge.floor, best, chosen, judge.nothing_fit, judge.floor_fit
         )
+
+    def _most_joints_are_off(self, best: Judged) -> bool:
+        """Whether most joints are off beside the best single effect, if it is one."""
+        believed = self.judge.believes(best)
+        return is_widespread(self._fit, best.model if believed else ())
 
     def _with_promising(self, size: int, starts: list[Model]) -> list[Model]:
         """The models to start from, if any, and the promising ones of their size."""

@@ -11,7 +11,8 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.everywhere import everywhere, gains_of_each, more_is_missing
+from diagnosis.search.everywhere import everywhere, gains_of_each
+from diagnosis.search.few_or_many import more_is_missing
 from diagnosis.search.fitting import fit_all, ran_into_bound
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import SearchResult

@@ -1,0 +1,53 @@
+"""Searches for few effects, or for effects at all joints where few do not suffice."""
+
+import numpy as np
+
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.accept import accepted
+from diagnosis.search.everywhere import everywhere
+from diagnosis.search.result import SearchResult
+from diagnosis.search.search import Search
+
+ALL_CLOSED = 0.95
+"""Share of the energy above the noise that few effects must remove; otherwise effects
+at all joints are tried."""
+
+TORQUES_LEFT = 1.5
+"""Multiple of the sensors' squared noise from which on so much is left of torques that
+effects at all joints are tried."""
+
+
+def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
+    """What a search finds, and whether these are effects at all joints.
+
+    Where most joints are off beside the best single effect, effects at all joints are
+    searched for at once, elsewhere where few effects leave much. Unless `tested` is
+    false, few effects also have to pass closer tests.
+    """
+    judge, result = search.judge, search.run()
+    if search.widespread:
+        wide = everywhere(judge, result)
+        if wide is not result:
+            return wide, True
+        for part in (judge.fit, judge.select):
+            part.calibrate()
+        result = search.run(anyway=True)
+        return (accepted(judge, result) if tested else result), False
+    few = accepted(judge, result) if tested else result
+    wide = everywhere(judge, few) if more_is_missing(judge.fit, few) else few
+    return wide, wide is not few
+
+
+def more_is_missing(fit: Predictor, result: SearchResult) -> bool:
+    """Whether few effects leave so much that effects at all joints are tried.
+
+    Never on a floating base, where that would take an hour.
+    """
+    if fit.plant.base == "floating":
+        return False
+    if not fit.by_torque:
+        return result.leaves_much(ALL_CLOSED)
+    model = result.winner.model if result.winner else ()
+    (left,) = fit.without_tolerances().residuals([model])
+    wide = (fit.channels.noise / fit.channels.floor)[fit.channel]
+    return bool(np.sum((wide * left) ** 2) > TORQUES_LEFT * fit.scored.sum())

@@ -1,0 +1,38 @@
+"""At how many joints a model leaves more than noise."""
+
+import numpy as np
+
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.result import MOST_LEFT
+
+FEWEST = 2
+"""A single joint is never most of them."""
+
+
+def joints_off(fit: Predictor, model: Model) -> list[str]:
+    """Joints in one of whose channels a model leaves much more than noise.
+
+    What lies within the robot model's tolerances counts as well; the integration error
+    of the model does not.
+    """
+    (left,) = fit.without_tolerances().residuals([model], exactly=True)
+    squares, own = left**2, fit.channel[fit.scored]
+    count = len(fit.channels.names)
+    sums = np.bincount(own, squares[fit.scored], count)
+    off = sums > (1 + MOST_LEFT) * np.bincount(own, minlength=count)
+    return [
+        joint
+        for joint in fit.plant.joints
+        if any(off[i] for i in fit.channels.of_joint(joint))
+    ]
+
+
+def is_widespread(fit: Predictor, model: Model) -> bool:
+    """Whether most joints are off, so that no few effects explain what is missing.
+
+    Never on a floating base, whose contacts carry an error at one joint to all others.
+    """
+    if fit.plant.base == "floating":
+        return False
+    least = max(len(fit.plant.joints) / 2, FEWEST)
+    return len(joints_off(fit, model)) >= least
