@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.chance import independent_blocks
 from diagnosis.search.judging import places_of_effects
@@ -27,11 +28,13 @@ class Ebic:
       samples: number of independent samples in all recordings.
       candidates: number of effects at their places that could be tried.
       joints: number of the robot's joints.
+      rows: number of rows of the fitting data, at any of which something may begin.
     """
 
     samples: float
     candidates: int
     joints: int
+    rows: int = 1
 
     @classmethod
     def of(cls, fit: Predictor, select: Predictor, residual: FloatArray) -> "Ebic":
@@ -44,7 +47,8 @@ class Ebic:
         channels = len(np.unique(fit.channel[fit.scored]))
         both = fit.scored.sum() + select.scored.sum()
         samples = float(counted * channels * both / fit.scored.sum())
-        return cls(samples, places_of_effects(fit), len(fit.plant.joints))
+        rows = sum(trace.ticks for trace in fit.traces)
+        return cls(samples, places_of_effects(fit), len(fit.plant.joints), rows)
 
     def score(self, judged: Judged) -> float:
         """The criterion [nats] of a model: the smaller, the better."""
@@ -69,14 +73,19 @@ class Ebic:
         """What a model costs [nats]: its values, and its choices among candidates.
 
         A kind of effect at half of all joints or more is one choice: that of the kind.
+        What does not last was chosen among all times as well, and rare effects need
+        more evidence.
         """
         value = 0.5 * np.log(self.samples)
-        choices = 0
+        choices, rare = 0, 0.0
         for name in {placed.name for placed in model}:
             own = tuple(placed for placed in model if placed.name == name)
-            choices += 1 if self._is_everywhere(len(own)) else len(groups_of(own))
+            count = 1 if self._is_everywhere(len(own)) else len(groups_of(own))
+            choices += count
+            rare += count * effect(name).rarity_nats
+            rare += count * np.log(self.rows) if effect(name).timed else 0.0
         return float(
-            value * number_of_values(model) + choices * np.log(self.candidates)
+            value * number_of_values(model) + choices * np.log(self.candidates) + rare
         )
 
     def price_within(self, model: Model, group: Model) -> float:

@@ -37,6 +37,23 @@ EXCHANGES = 3
 
 
 @dataclass(frozen=True, eq=False)
+class _Start:
+    """What is left, by linear estimates, where effects are to be chosen beside others.
+
+    Attributes:
+      model: the effects that are there.
+      jacobian: (N, p) its Jacobian.
+      residual: (N,) what it leaves [noise].
+      without: names and "effect@place" of effects that are not to be chosen.
+    """
+
+    model: Model
+    jacobian: FloatArray
+    residual: FloatArray
+    without: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, eq=False)
 class Stepwise:
     """A linear choice of effects beside those of a fitted model.
 
@@ -54,31 +71,23 @@ class Stepwise:
 
     def model(self) -> Model:
         """The effects to add, with values to start a fit from; none if none helps."""
-        taken = list[Guess]()
-        begun = self.best.fit.energy - self.floor
-        while len(taken) < MOST_AT_ONCE:
-            more = self._next(taken)
-            if more is None:
-                break
-            taken.append(more)
-            if self._left(taken) - self.floor < TRUSTED * begun:
-                break
+        start = _Start(self.best.model, self.best.fit.jacobian, self.best.fit.residual)
+        taken = self._chosen(start)
         for _ in range(EXCHANGES):
-            before = [guess.rows for guess in taken]
+            before = {guess.rows for guess in taken}
             for guess in list(taken):
                 rest = [one for one in taken if one is not guess]
-                other = self._next(rest)
+                other = self._next(start, rest)
                 taken = [*rest, other] if other else rest
-            if {*before} == {guess.rows for guess in taken}:
+            if before == {guess.rows for guess in taken}:
                 break
-        return self._sized(taken)
+        return self._sized(start, taken)
 
     def exchanged(self) -> list[Model]:
         """Models with other effects in place of some, the most promising first.
 
-        Effects are exchanged one by one, and a kind at all of its joints. What they
-        explain is known from the Jacobian; where an effect is left out its value goes
-        back to that of no effect.
+        Effects are left out one by one, and a kind at all of its joints: their values
+        go back to that of no effect. What they explained is known from the Jacobian.
         """
         model, found = self.best.model, list[tuple[float, Model]]()
         kinds = {
@@ -86,72 +95,87 @@ class Stepwise:
             for one in model
             if effect(one.name).of_motor
         }
+        now = self._criterion(self.best.fit.residual, model)
         for own in sorted({*groups_of(model), *kinds}, key=lambda some: some[0].key):
-            far = self._away(own)
-            if far is None:
+            start = self._without(own)
+            taken = self._chosen(start) if start else []
+            if start is None or not taken:
                 continue
-            rest = tuple(placed for placed in model if placed not in own)
-            jacobian = self.best.fit.jacobian_of(rest)
-            residual = self._residual(jacobian, self.best.fit.residual - far)
-            energy = 0.5 * float(residual @ residual)
-            lost = self.ebic.nats_between(energy, self.best.fit.energy)
-            least = lost - self.ebic.price_within(model, own)
-            keys = {placed.key for placed in rest}
-            for guess in self._options(residual, jacobian, keys):
-                gained = self._gained(energy, guess, rest)
-                if gained > least - UNSURE and {p.key for p in guess.model} != {
-                    p.key for p in own
-                }:
-                    found.append((gained - least, (*rest, *guess.model)))
-        found.sort(key=lambda one: -one[0])
+            left = self._residual(self._columns(start, taken), start.residual)
+            added = tuple(placed for guess in taken for placed in guess.model)
+            other = self._criterion(left, (*start.model, *added))
+            if other < now + UNSURE:
+                sized = self._sized(start, taken)
+                found.append((other, (*start.model, *sized)))
+        found.sort(key=lambda one: one[0])
         return [one for _, one in found]
 
-    def _away(self, own: Model) -> FloatArray | None:
-        """(N,) what effects change by linear estimate; None if no value is nothing."""
-        coordinates = self.best.fit.coordinates
-        x, change = (
-            coordinates.of(self.best.model),
-            np.zeros_like(self.best.fit.residual),
-        )
+    def _criterion(self, residual: FloatArray, model: Model) -> float:
+        """The criterion of a model that leaves an (N,) residual of the fitting data."""
+        energy = 0.5 * float(residual @ residual)
+        return self.ebic.nats_between(energy, 1.0) + self.ebic.price(model)
+
+    def _without(self, own: Model) -> _Start | None:
+        """The model without some effects; None if no value stands for no effect.
+
+        Neither these are to be chosen again nor, if they are several, others of their
+        kind.
+        """
+        fit = self.best.fit
+        coordinates, residual = fit.coordinates, fit.residual
+        x = coordinates.of(self.best.model)
         for i in coordinates.columns_of(own):
             neutral = coordinates.parameters[i].neutral
             if not np.isfinite(neutral):
                 return None
-            far = x[i] - coordinates.scaled(i, neutral)
-            change += far * self.best.fit.jacobian[:, i]
-        return change
+            residual = residual - fit.jacobian[:, i] * (
+                x[i] - coordinates.scaled(i, neutral)
+            )
+        rest = tuple(placed for placed in self.best.model if placed not in own)
+        gone = {own[0].name} if len(own) > 1 else {own[0].key}
+        return _Start(rest, fit.jacobian_of(rest), residual, frozenset(gone))
 
-    def _next(self, taken: Sequence[Guess]) -> Guess | None:
+    def _chosen(self, start: _Start) -> list[Guess]:
+        """Effects that are added one by one as long as the criterion falls."""
+        taken = list[Guess]()
+        begun = 0.5 * float(start.residual @ start.residual) - self.floor
+        while len(taken) < MOST_AT_ONCE:
+            more = self._next(start, taken)
+            if more is None:
+                break
+            taken.append(more)
+            left = self._residual(self._columns(start, taken), start.residual)
+            if 0.5 * float(left @ left) - self.floor < TRUSTED * begun:
+                break
+        return taken
+
+    def _next(self, start: _Start, taken: Sequence[Guess]) -> Guess | None:
         """The effect that lowers the criterion most beside some; None if none does."""
-        jacobian = self._columns(taken)
-        residual = self._residual(jacobian, self.best.fit.residual)
+        jacobian = self._columns(start, taken)
+        residual = self._residual(jacobian, start.residual)
         energy = 0.5 * float(residual @ residual)
         added = tuple(placed for guess in taken for placed in guess.model)
-        model = (*self.best.model, *added)
-        keys = {placed.key for placed in model}
+        model = (*start.model, *added)
+        known = start.without | {placed.key for placed in model}
         best, least = None, 0.0
-        for guess in self._options(residual, jacobian, keys):
-            gained = self._gained(energy, guess, model)
-            if gained > least:
-                best, least = guess, gained
+        for guess in self._options(residual, jacobian, known):
+            nats = self.ebic.nats_between(energy, energy - guess.gain)
+            price = self.ebic.price_within((*model, *guess.model), guess.model)
+            if nats - price > least:
+                best, least = guess, nats - price
         return best
 
-    def _gained(self, energy: float, guess: Guess, beside: Model) -> float:
-        """How much the criterion falls [nats] by effects beside those of a model."""
-        nats = self.ebic.nats_between(energy, energy - guess.gain)
-        return nats - self.ebic.price_within((*beside, *guess.model), guess.model)
-
     def _options(
-        self, residual: FloatArray, jacobian: FloatArray, known: Collection[str]
+        self, residual: FloatArray, jacobian: FloatArray, without: Collection[str]
     ) -> list[Guess]:
         """Single effects, and kinds of effects at all joints that lack them.
 
-        None of the effects `known`, as "effect@place".
+        None of the names and "effect@place" in `without`.
         """
         singles = [
             guess
             for guess in self.screen.singles(residual, jacobian)
-            if guess.model[0].key not in known
+            if not {guess.model[0].key, guess.model[0].name} & set(without)
         ]
         kinds = dict[str, list[Guess]]()
         for guess in singles:
@@ -164,10 +188,10 @@ class Stepwise:
         ]
         return [*singles, *(guess for guess in every if guess)]
 
-    def _columns(self, taken: Sequence[Guess]) -> FloatArray:
+    def _columns(self, start: _Start, taken: Sequence[Guess]) -> FloatArray:
         """(N, p) Jacobian of the model and of some effects beside it."""
         own = [self.screen.changes(guess.rows) for guess in taken]
-        return np.concatenate([self.best.fit.jacobian, *own], axis=1)
+        return np.concatenate([start.jacobian, *own], axis=1)
 
     def _residual(self, jacobian: FloatArray, residual: FloatArray) -> FloatArray:
         """(N,) what a linear model leaves of a residual."""
@@ -176,16 +200,11 @@ class Stepwise:
         size = np.linalg.lstsq(jacobian, residual, rcond=None)[0]
         return np.asarray(residual - jacobian @ size)
 
-    def _left(self, taken: Sequence[Guess]) -> float:
-        """Energy that some effects leave by linear estimates [nats]."""
-        residual = self._residual(self._columns(taken), self.best.fit.residual)
-        return 0.5 * float(residual @ residual)
-
-    def _sized(self, taken: Sequence[Guess]) -> Model:
+    def _sized(self, start: _Start, taken: Sequence[Guess]) -> Model:
         """The effects with the sizes that are best together."""
         if not taken:
             return ()
-        jacobian, known = self._columns(taken), self.best.fit.jacobian.shape[1]
+        jacobian, known = self._columns(start, taken), start.jacobian.shape[1]
         rows = [row for guess in taken for row in guess.rows]
         low = np.full(jacobian.shape[1], -np.inf)
         high = -low
@@ -193,7 +212,7 @@ class Stepwise:
         length = np.linalg.norm(jacobian, axis=0)
         length = np.where(length > 0, length, 1.0)
         found = lsq_linear(
-            jacobian / length, -self.best.fit.residual, (low * length, high * length)
+            jacobian / length, -start.residual, (low * length, high * length)
         )
         ends = np.cumsum([len(guess.rows) for guess in taken])[:-1]
         sizes = np.split((found.x / length)[known:], ends)
