@@ -8,11 +8,11 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.signatures import signatures
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.everywhere import servo_effects
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.kinds import kinds_to_add
 from diagnosis.search.screening import Screen
+from diagnosis.search.shared_first import servo_effects
 from diagnosis.search.ties import number_of_values, tied
 from diagnosis.traces.usage import Usage
 

@@ -7,8 +7,8 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.signatures import signatures
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.search.each_joint import EXCHANGED, lasting_effects
 from diagnosis.search.ebic import Ebic
-from diagnosis.search.everywhere import EXCHANGED, lasting_effects
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen

@@ -1,0 +1,85 @@
+"""Fits models with effects at many joints and compares them by the extended BIC."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.residuals.predictor import Model
+from diagnosis.search.coordinates import Coordinates
+from diagnosis.search.ebic import Ebic
+from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.search.judging import Judge
+from diagnosis.search.result import Judged
+from diagnosis.traces.usage import Usage
+from groundwalk.arrays import FloatArray
+
+
+class Fits:
+    """Fits, and their comparison, in a search for effects at many joints.
+
+    Residuals are not whitened with the model's tolerances: what lies within these at
+    single joints may be much at all of them.
+
+    Attributes:
+      judge: fits and judges the models.
+      fit: predictor of the fitting data.
+      usage: what the joints did in them.
+    """
+
+    def __init__(self, judge: Judge) -> None:
+        """Prepare the fits; the predictors of `judge` must be calibrated already."""
+        parts = judge.fit.without_tolerances(), judge.select.without_tolerances()
+        for part in parts:  # at the nominal model, whatever was found before
+            part.calibrate(tolerances=False)
+        self.judge = Judge(*parts, judge.rules, judge.healthy, judge.hooks)
+        self.fit = parts[0]
+        self.usage = Usage.of(self.fit.plant, self.fit.traces)
+
+    def nominal(self) -> Judged:
+        """The nominal model, as if it had been fitted."""
+        (residual,) = self.fit.residuals([()])
+        none = np.zeros((len(residual), 0)), Coordinates(self.fit.plant, ())
+        return self.judge.judge([FittedModel((), residual, *none)])[0]
+
+    def fitted(self, model: Model) -> Judged:
+        """A model fitted to the end and judged."""
+
+        def work() -> list[Judged]:
+            return self.judge.judge(fit_all(self.fit, [model]))
+
+        return self.judge.saved(work)[0]
+
+    def tried(
+        self, starts: Sequence[Model], jacobians: Sequence[FloatArray | None]
+    ) -> list[Judged]:
+        """Models fitted in a few steps and judged, the most plausible first.
+
+        `jacobians` (N, p) are those at the start values, None if unknown.
+        """
+
+        def work() -> list[Judged]:
+            steps = self.judge.rules.first_steps
+            fits = fit_all(self.fit, starts, steps, followed=True, jacobians=jacobians)
+            judged = self.judge.judge(fits)
+            best = min(judged, key=lambda one: one.energy)
+            return sorted(judged, key=self.ebic(best).score)
+
+        return self.judge.saved(work) if starts else []
+
+    def exact(self, best: Judged) -> Judged:
+        """The model fitted again, with its own integration error taken out.
+
+        That of the nominal model would be explained by further effects.
+        """
+        for part in (self.fit, self.judge.select):
+            part.correct(best.model)
+        return self.fitted(best.model)
+
+    def ebic(self, judged: Judged) -> Ebic:
+        """The criterion where a model leaves what this one leaves."""
+        return Ebic.of(self.fit, self.judge.select, judged.fit.residual)
+
+    def is_better(self, larger: Judged, best: Judged) -> bool:
+        """Whether all data speak for the larger model, and the selection data do."""
+        prefers = self.ebic(larger).prefers(larger, best)
+        return prefers and larger.selected < best.selected
