@@ -15,6 +15,7 @@ from diagnosis.audit.result import Audit
 from diagnosis.conclude.answer import (
     alternatives,
     believed_effects,
+    is_small,
 )
 from diagnosis.conclude.estimates import smallest_detectable
 from diagnosis.conclude.guards import established, objections
@@ -168,7 +169,8 @@ class _Tested:
 def _tested(learned: Learned, seed: np.random.SeedSequence) -> _Tested:
     """Fit the effects found to all data but the held-out ones; test them on these.
 
-    Without tolerances where effects are at all joints, as in the search for these.
+    Where effects are at many joints only what is not among them is uncertain within
+    tolerances: the search for these knows none.
     """
     data, result, kind = learned.data, learned.result, learned.kind
     if kind == "not_identifiable":  # then no effect is believed
@@ -176,7 +178,7 @@ def _tested(learned: Learned, seed: np.random.SeedSequence) -> _Tested:
     winner = result.winner
     both, test = data.calibrated(winner.model if winner else ())
     if learned.everywhere:
-        both = both.without_tolerances()
+        both = both.with_tolerances_beside(winner.model if winner else ())
     both, refitted, said = established(both, winner.model if winner else ())
     model = refitted.model if refitted else ()
     if not model:
@@ -216,11 +218,17 @@ def _verdict(
         gain = judge.least_fitted
         smallest = smallest_detectable(judge.fit, search.signatures, gain)
     effects = believed_effects(both, result, tested.refitted)
+    usual = {one.key for one in tested.model if is_small(material.plant, one)}
+    small = tuple(one for one in effects if f"{one.name}@{one.place}" in usual)
+    effects = tuple(one for one in effects if one not in small)
+    if kind == "effects" and not effects:
+        kind = "none"
     if kind == "unknown":  # then none of them is established
         effects = tuple(replace(one, probability=None) for one in effects)
     return Verdict(
         kind=kind,
         effects=effects if kind != "none" else (),
+        small=small if kind in ("effects", "none") else (),
         smallest_detectable=smallest,
         unexplained=_shape(*shape) if kind == "unknown" else None,
         limits=(

@@ -90,6 +90,23 @@ def probability(found: SearchResult, placed: PlacedEffect) -> float:
     return float(MOST / (1 + np.exp(-odds)))
 
 
+WITHIN = 2.0
+"""Multiple of a model's tolerance, one standard deviation, up to which an effect may
+well be its usual error: 95 % of all robots lie within."""
+
+
+def is_small(plant: Plant, placed: PlacedEffect) -> bool:
+    """Whether an effect may be what robots usually differ by from their models."""
+    kind = effect(placed.name)
+    size = WITHIN * kind.tolerance(plant, placed.place)
+    parameters = kind.parameters(plant, placed.place)
+    differences = [
+        np.log(value / one.neutral) if one.logarithmic else value - one.neutral
+        for one, value in zip(parameters, placed.values, strict=True)
+    ]
+    return size > 0 and bool(np.all(np.abs(differences[: kind.components]) <= size))
+
+
 LEAST_CLOSED = 0.5
 """Share of the nominal sim's energy (half the sum of squared residuals) above the noise
 that a model must remove; with less, more is missing and the verdict is `unknown`."""

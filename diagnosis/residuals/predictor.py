@@ -144,6 +144,13 @@ class Predictor:
         some._tolerance = None
         return some
 
+    def with_tolerances_beside(self, model: Model) -> "Predictor":
+        """A copy whose tolerances are those of all but a model's effects."""
+        some = copy(self)
+        if self._tolerance is not None:
+            some._tolerance = self._tolerance.beside({one.key for one in model})
+        return some
+
     def with_likely_tolerances(self, model: Model) -> "Predictor":
         """A copy whose tolerances are as wide as the errors that a model leaves."""
         some = copy(self)
@@ -195,7 +202,7 @@ class Predictor:
         if not tolerances:
             self._tolerance = known
         elif self.plant.base == "fixed":  # contacts outdo tolerances by far
-            self._tolerance = Tolerance(self._tolerated(model))
+            self._tolerance = self._tolerated(model)
 
     def doubt_as(self, other: "Predictor") -> None:
         """Take what wrong start states change, and tolerances, of the same traces."""
@@ -233,11 +240,11 @@ class Predictor:
         ends = np.cumsum([run.trace.ticks for run in self._replays.runs])
         return StartUncertainty(np.nan_to_num(changes), ends.tolist())
 
-    def _tolerated(self, model: Model) -> FloatArray:
-        """(k, N) changes of the residual that lie within the model's tolerances."""
-        changed = [(*model, one) for one in tolerated(self.plant, self.traces)]
-        residuals = self.residuals([model, *changed])
-        return np.asarray(residuals[1:] - residuals[0])
+    def _tolerated(self, model: Model) -> Tolerance:
+        """Changes of the residual that lie within the model's tolerances."""
+        every = tolerated(self.plant, self.traces)
+        residuals = self.residuals([model, *((*model, one) for one in every)])
+        return Tolerance(residuals[1:] - residuals[0], [one.key for one in every])
 
     def _given(self, model: Model) -> Model:
         """The model, and the effects that recordings of the healthy robot show."""

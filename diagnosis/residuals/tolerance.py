@@ -7,6 +7,8 @@ and tolerances together (generalised least squares, Aitken 1936): their energy i
 minus the log-likelihood with all tolerances marginalised, to first order.
 """
 
+from collections.abc import Collection, Sequence
+
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -24,9 +26,12 @@ inverse. Beyond both nothing changes any more: signatures vanish or are all remo
 class Tolerance:
     """The space of changes of a residual that tolerances allow, as orthogonal axes."""
 
-    def __init__(self, signatures: FloatArray) -> None:
-        """Use (k, N) changes of the residual [noise] by one standard deviation each."""
-        self._signatures = signatures
+    def __init__(self, signatures: FloatArray, names: Sequence[str] = ()) -> None:
+        """Use (k, N) changes of the residual [noise] by one standard deviation each.
+
+        `names` says of each what is uncertain, such as "payload_mass@forearm".
+        """
+        self._signatures, self._names = signatures, tuple(names)
         power, turn = np.linalg.eigh(signatures @ signatures.T)
         kept = power > NEGLIGIBLE
         self._power, turn = power[kept], turn[:, kept]
@@ -37,16 +42,27 @@ class Tolerance:
 
     def part(self, entries: BoolArray) -> "Tolerance":
         """Tolerances for some of a residual's entries, those where (N,) is true."""
-        return Tolerance(self._signatures[:, entries])
+        return Tolerance(self._signatures[:, entries], self._names)
+
+    def beside(self, known: Collection[str]) -> "Tolerance":
+        """The tolerances of all but what is `known`, by its name, to be fitted."""
+        kept = [i for i, name in enumerate(self._names) if name not in known]
+        names = [self._names[i] for i in kept]
+        return Tolerance(self._signatures[kept], names)
 
     @property
     def taken(self) -> float:
         """Number of the N entries' squares that whitening takes out of noise."""
         return float(np.sum(self._power / (1 + self._power)))
 
+    def and_of(self, other: "Tolerance") -> "Tolerance":
+        """These tolerances and others of the same residual."""
+        every = np.vstack([self._signatures, other._signatures])
+        return Tolerance(every, (*self._names, *other._names))
+
     def scaled(self, factor: float) -> "Tolerance":
         """The tolerances, all so many times as large."""
-        return Tolerance(factor * self._signatures)
+        return Tolerance(factor * self._signatures, self._names)
 
     def likely_scale(self, residual: FloatArray) -> float:
         """The factor for all tolerances that makes an (N,) residual most likely.

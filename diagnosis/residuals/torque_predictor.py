@@ -74,7 +74,7 @@ class TorquePredictor(Predictor):
         """Find what lies within the tolerances at a model."""
         if tolerances:
             self._tolerance = None
-            self._tolerance = Tolerance(self._tolerated(model))
+            self._tolerance = self._tolerated(model)
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) torques that the motion needs by n models, for all traces."""
@@ -116,14 +116,15 @@ class TorquePredictor(Predictor):
         found[:, self._starts] = sums * self._weight
         return np.where(self._scored, found, 0.0)
 
-    def _tolerated(self, model: Model) -> FloatArray:
-        """(k, N) changes by the model's tolerances, and by wrong zeros of torques."""
+    def _tolerated(self, model: Model) -> Tolerance:
+        """Changes by the model's tolerances, and by wrong zeros of torques."""
         size_nm = np.where(np.isfinite(self._measured), self._measured, 0.0)
         zero_nm = LEAST_TORQUE * np.sqrt(np.mean(size_nm**2, axis=0))
         joints = len(self.channels.names)
         wrong = np.eye(joints)[:, None] * zero_nm * np.ones_like(self._measured)
         zeros = self._whitened(self._means(wrong))
-        return np.vstack([super()._tolerated(model), zeros])
+        names = [f"torque_offset@{name.split('.')[1]}" for name in self.channels.names]
+        return super()._tolerated(model).and_of(Tolerance(zeros, names))
 
 
 def predictor_of(

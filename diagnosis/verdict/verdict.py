@@ -119,6 +119,8 @@ class Verdict:
         "not_identifiable": something may be missing, but these data cannot name it.
       effects: the effects found, the most probable first; a verdict of kind "unknown"
         may have some, too.
+      small: effects found that are no larger than robots usually differ from their
+        models: the corrected sim has them, but they are no evidence of missing physics.
       alternatives: other sets of effects that these data do not rule out.
       smallest_detectable: smallest size of each effect that these data could have
         shown, by "effect@place".
@@ -137,6 +139,7 @@ class Verdict:
 
     kind: VerdictKind
     effects: tuple[Found, ...] = ()
+    small: tuple[Found, ...] = ()
     alternatives: tuple[tuple[PlacedEffect, ...], ...] = ()
     smallest_detectable: Mapping[str, Amount] = field(default_factory=dict)
     unexplained: Unexplained | None = None
@@ -185,6 +188,7 @@ class Verdict:
         """
         plain = parse_object(text, "verdict", FORMAT)
         plain.setdefault("pulses", [])  # the first verdicts had no such keys
+        plain.setdefault("small", [])
         effects = plain.get("effects")
         for one in effects if isinstance(effects, list) else []:
             if isinstance(one, dict):

@@ -63,14 +63,15 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
     pulses = [*map(sentence, pulse_sentences(verdict.pulses))]
     what = "has changed" if changed else "is missing"
     if verdict.kind == "none":
-        return [*_nothing(verdict, what), *pulses]
+        return [*_nothing(verdict, what), *_small(verdict), *pulses]
     first, before = list[str](), ""
     if verdict.kind == "unknown":
         first, before = _unknown(verdict, what), "besides, "
     elif verdict.kind == "not_identifiable":
         first, before = _open(verdict, what), "this much is sure: "
     found = [before + each for each in findings(verdict.effects, changed)]
-    return [*first, *map(sentence, found), *pulses, *_gain(verdict)]
+    small = _small(verdict)
+    return [*first, *map(sentence, found), *small, *pulses, *_gain(verdict)]
 
 
 class Headline(NamedTuple):
@@ -100,6 +101,17 @@ def headline(fit: Fit | None) -> Headline | None:
     factor, unit = error_unit(worst.unit, max(errors))
     nominal, corrected, floor = errors_text(factor * error for error in errors)
     return Headline(channel_words(name), nominal, corrected, floor, unit)
+
+
+def _small(verdict: Verdict) -> list[str]:
+    """A sentence on values that differ from the model by no more than is usual."""
+    if not verdict.small:
+        return []
+    names = listing([at_words(one) for one in verdict.small], "and")
+    return [
+        f"These values differ from the model by no more than is usual: {names}; that "
+        "is no evidence of missing physics."
+    ]
 
 
 def _gain(verdict: Verdict) -> list[str]:

@@ -7,7 +7,8 @@ import pytest
 from made_up_search import found
 from made_up_traces import arm
 
-from diagnosis.conclude.answer import verdict_kind
+from diagnosis.conclude.answer import is_small, verdict_kind
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.search.result import SearchResult
 
 ARM = arm()
@@ -55,3 +56,20 @@ def nothing(energy):
 def test_kinds(searched, moving, wanted):
     """What no moving joint shows is named only together with what one shows."""
     assert kind(searched, moving) == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "small"),
+    [
+        ("servo_gain", 1.015, True),
+        ("servo_gain", 0.985, True),
+        ("servo_gain", 1.03, False),
+        ("servo_damping", 0.95, True),
+        ("servo_damping", 1.1, False),
+        ("coulomb_friction", 1e-6, False),
+    ],
+)
+def test_what_lies_within_tolerances_is_small(name, value, small):
+    """Gains are known to 1 %, damping to 3 %; friction that is missing is no error."""
+    placed = PlacedEffect(name, "elbow", (value,))
+    assert is_small(ARM, placed) is small

@@ -40,6 +40,15 @@ def test_without_tolerances_all_stays():
     )
 
 
+def test_what_is_fitted_is_not_uncertain_as_well():
+    random = np.random.default_rng(2)
+    signatures, residual = random.standard_normal((3, 20)), random.standard_normal(20)
+    every = Tolerance(signatures[:2], "ab").and_of(Tolerance(signatures[2:], "c"))
+    some = every.scaled(2.0).part(np.full(20, True)).beside({"b", "d"})
+    wanted = Tolerance(2.0 * signatures[[0, 2]]).without(residual[None])
+    np.testing.assert_allclose(some.without(residual[None]), wanted)
+
+
 def rms(*effects):
     """Rms [noise] of what the nominal arm leaves, with tolerances and without."""
     exact = Channels(CHANNELS.names, CHANNELS.noise / 20)
