@@ -95,7 +95,7 @@ class Nuisance:
         ]
         gains = [] if self.torque_gain is None else self.torque_gain.tolist()
         torques = [
-            {"name": "torque_gain", "place": joint, "parameters": {"factor": gain}}
+            {"name": "torque_scale", "place": joint, "parameters": {"factor": gain}}
             for joint, gain in zip(plant.joints, gains, strict=bool(gains))
         ]
         clock = {

@@ -166,7 +166,7 @@ def test_the_truth_tells_the_mismatch_in_words_of_an_answer():
         "payload_mass",
         "coulomb_friction",
         "viscous_friction",
-        "torque_gain",
+        "torque_scale",
         "time_jitter",
     }
     assert told[-1]["parameters"] == {"spread": 2e-4}
