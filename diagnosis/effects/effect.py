@@ -98,6 +98,10 @@ class Effect(ABC):
     """Whether joints with the same motor have about the same values; False for what
     differs from joint to joint. Only used where `on_every_servo` is True."""
 
+    jumps: ClassVar[bool] = False
+    """Whether the effect's torque jumps wherever a joint turns back, so that no other
+    suffers more from long time steps."""
+
     rarity_nats: ClassVar[float] = 0.0
     """Prior: extra log-likelihood [nats] that a rare effect needs to be accepted."""
 

@@ -73,6 +73,7 @@ class CoulombFriction(NumberEffect, JointEffect):
 
     name = "coulomb_friction"
     native = True
+    jumps = True
     quantity = "coulomb_nm"
     words = EffectWords(
         "dry friction",

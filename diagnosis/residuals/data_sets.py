@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
@@ -138,15 +138,16 @@ def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
 def shows_changes(whole: Predictor) -> Predictor:
     """The predictor with the longest step with which effects change what they should.
 
-    Dry friction at all joints is taken for the others: no effect suffers more from long
-    steps. The shortest step says what it should change.
+    Those that jump, such as dry friction, are taken for all: no others suffer more from
+    long steps. The shortest step says what they should change.
     """
     plant, (*longer_s, shortest_s) = whole.plant, STEPS_S[whole.plant.base]
     if whole.by_torque:
         return whole
-    kind = effect("coulomb_friction")
     rubbing = tuple(
         PlacedEffect(kind.name, place, values)
+        for kind in all_effects().values()
+        if kind.jumps
         for place in kind.places(plant, whole.traces)
         for values in kind.first_tries(plant, place, Usage.of(plant, whole.traces))[:1]
     )

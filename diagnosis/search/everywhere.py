@@ -56,11 +56,18 @@ def everywhere(judge: Judge, result: SearchResult) -> SearchResult:
 
 
 def best_of_all(fits: Fits) -> Judged:
-    """The best model; without effects if none explains much at many joints."""
+    """The best model; without effects if none explains much at many joints.
+
+    Torques are compared without replays, so that there is time to search both ways.
+    """
     detailed = each_joint(fits)
-    if _may_be_noise(fits, detailed):
-        return pruned(fits, shared(fits, detailed))
-    return pruned(fits, shared_first(fits))
+    if not _may_be_noise(fits, detailed):
+        return pruned(fits, shared_first(fits))
+    best = pruned(fits, shared(fits, detailed))
+    if not fits.fit.by_torque:
+        return best
+    other = pruned(fits, shared_first(fits))
+    return other if fits.ebic(best).prefers(other, best) else best
 
 
 def _may_be_noise(fits: Fits, best: Judged) -> bool:
