@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, shared_channels
-from diagnosis.residuals.data_sets import exact_steps
+from diagnosis.residuals.data_sets import with_best_steps
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.reference import learn_reference
 from diagnosis.traces.trace import Trace
@@ -24,13 +24,13 @@ def exact_replays(
     """
     channels = shared_channels(plant, [*traces, *reference])
     if not reference:
-        return exact_steps(Predictor(plant, traces, channels))
+        return with_best_steps(Predictor(plant, traces, channels))
     known: Model = ()
     if plant.base == "fixed":
         known = explained(_alone(plant, reference, channels))
     noise = learn_reference(plant, reference, channels, known=known)
-    return exact_steps(Predictor(plant, traces, channels, noise=noise))
+    return with_best_steps(Predictor(plant, traces, channels, noise=noise))
 
 
 def _alone(plant: Plant, reference: Sequence[Trace], channels: Channels) -> Predictor:
-    return exact_steps(Predictor(plant, reference, channels))
+    return with_best_steps(Predictor(plant, reference, channels))

@@ -98,8 +98,7 @@ class DataSets:
         parts = affordable(plant, split(traces, errors))
         every = [*parts.fit, *parts.select, *parts.test]
         options = None, threads, noise, on_replay, window_s
-        whole = predictor_of(plant, every, channels, *options)
-        whole = exact_steps(shows_changes(whole))
+        whole = with_best_steps(predictor_of(plant, every, channels, *options))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         fit, select = whole.part(0, first), whole.part(first, last)
         learned, test = whole.part(0, last), whole.part(last, len(every))
@@ -117,6 +116,11 @@ class DataSets:
         """Names of the recordings, or of parts of them, by their use."""
         uses = self.parts.fit, self.parts.select, self.parts.test
         return Recordings(*(tuple(trace.name for trace in use) for use in uses))
+
+
+def with_best_steps(whole: Predictor) -> Predictor:
+    """The predictor, calibrated, with the longest steps that do."""
+    return exact_steps(shows_changes(whole))
 
 
 def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:

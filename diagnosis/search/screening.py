@@ -47,7 +47,7 @@ class Guess:
 
 
 @dataclass(frozen=True, eq=False)
-class _View:
+class View:
     """Scalar products of K signatures (changes by effects) with one residual.
 
     `wanted` (K,) are products with the negative residual, `products` (K, K) those with
@@ -86,7 +86,10 @@ class Screen:
         the residual, its values may change when an effect is added, so that two effects
         that nearly cancel each other are found.
         """
-        view = self._view(residual, jacobian)
+        return self.singles_in(self._view(residual, jacobian))
+
+    def singles_in(self, view: View) -> list[Guess]:
+        """The best guess of each effect and place, the largest gain first."""
         best: dict[str, Guess] = {}
         for group in self._groups:
             guess = self._guess(view, [group])
@@ -95,21 +98,18 @@ class Screen:
                 best[key] = replace(guess, rows=tuple(group))
         return sorted(best.values(), key=lambda guess: -guess.gain)
 
-    def together(
-        self, residual: FloatArray, jacobian: FloatArray, guesses: Sequence[Guess]
-    ) -> Guess | None:
+    def together(self, view: View, guesses: Sequence[Guess]) -> Guess | None:
         """The best guess of several single effects at once; None if it is useless.
 
-        `guesses` are those of `singles` for the same residual and Jacobian.
+        `guesses` are those of `singles_in` the same view.
         """
-        view = self._view(residual, jacobian)
         guess = self._guess(view, [list(one.rows) for one in guesses])
         rows = tuple(row for one in guesses for row in one.rows)
         return replace(guess, rows=rows) if guess else None
 
-    def changes(self, rows: Sequence[int]) -> FloatArray:
-        """(N, k) changes of the residual by the effects of some signatures."""
-        return self._columns[list(rows)].T.astype(float)
+    def changes(self) -> FloatArray:
+        """(N, K) changes of the residual by the effects of all signatures."""
+        return self._columns.T.astype(float)
 
     def bounds(self, rows: Sequence[int]) -> tuple[FloatArray, FloatArray]:
         """(k,) smallest and largest factors of the sizes that were tried."""
@@ -197,7 +197,7 @@ class Screen:
             best = np.maximum(best, gain)
         return by_chance(best)
 
-    def _shared(self, view: _View, rows: Sequence[int]) -> Guess | None:
+    def _shared(self, view: View, rows: Sequence[int]) -> Guess | None:
         """The best allowed common first value of the effects of some signatures."""
         every = [self._found[row].placed for row in rows]
         kind, plant = effect(every[0].name), self._predictor.plant
@@ -223,7 +223,7 @@ class Screen:
         ]
         return Guess(tuple(model), gain)
 
-    def _promising(self, view: _View) -> list[tuple[list[int], list[int]]]:
+    def _promising(self, view: View) -> list[tuple[list[int], list[int]]]:
         """Pairs of effects, as groups of signature indices, whose gain to compute."""
         alone = [group for group in self._groups if len(group) == 1]
         rows = np.array([row for group in alone for row in group], int)
@@ -245,7 +245,7 @@ class Screen:
             pairs += [(vector, other) for other in others]
         return pairs
 
-    def _gains_together(self, view: _View, rows: IntArray) -> FloatArray:
+    def _gains_together(self, view: View, rows: IntArray) -> FloatArray:
         """(K, K) gains of pairs of K signatures by least squares, above the diagonal.
 
         0 if an effect would need an impossible sign, or both signatures are
@@ -278,18 +278,18 @@ class Screen:
                 alone.append([row])
         return [*alone, *vectors.values()]
 
-    def _view(self, residual: FloatArray, jacobian: FloatArray | None = None) -> _View:
+    def _view(self, residual: FloatArray, jacobian: FloatArray | None = None) -> View:
         """Scalar products with a residual, less the part in the span of a Jacobian."""
         wanted = -(self._columns @ residual.astype(np.float32)).astype(float)
         if jacobian is None or not jacobian.any():
-            return _View(wanted, self._products, TINY)
+            return View(wanted, self._products, TINY)
         basis, size, _ = np.linalg.svd(jacobian, full_matrices=False)
         basis = basis[:, size > SAME * size[0]]
         done = (self._columns @ basis.astype(np.float32)).astype(float)
         wanted = wanted + done @ (basis.T @ residual)
-        return _View(wanted, self._products - done @ done.T, SAME)
+        return View(wanted, self._products - done @ done.T, SAME)
 
-    def _guess(self, view: _View, groups: Sequence[list[int]]) -> Guess | None:
+    def _guess(self, view: View, groups: Sequence[list[int]]) -> Guess | None:
         """The best allowed sizes of some groups of signatures; None if useless."""
         rows = [row for group in groups for row in group]
         products, target = view.products[np.ix_(rows, rows)], view.wanted[rows]

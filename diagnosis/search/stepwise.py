@@ -17,7 +17,7 @@ from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
 from diagnosis.search.ebic import Ebic
 from diagnosis.search.result import Judged
-from diagnosis.search.screening import Guess, Screen
+from diagnosis.search.screening import SAME, TINY, Guess, Screen, View
 from diagnosis.search.ties import groups_of
 from groundwalk.arrays import FloatArray
 
@@ -38,40 +38,51 @@ EXCHANGES = 3
 
 @dataclass(frozen=True, eq=False)
 class _Start:
-    """What is left, by linear estimates, where effects are to be chosen beside others.
+    """Effects of the fitted model beside which others are to be chosen.
 
     Attributes:
-      model: the effects that are there.
-      jacobian: (N, p) its Jacobian.
-      residual: (N,) what it leaves [noise].
+      model: the effects.
+      kept: indices of the columns of its Jacobian, whose values are free.
+      away: (p,) how far the other values go, to stand for no effect.
       without: names and "effect@place" of effects that are not to be chosen.
     """
 
     model: Model
-    jacobian: FloatArray
-    residual: FloatArray
+    kept: tuple[int, ...]
+    away: FloatArray
     without: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, eq=False)
 class Stepwise:
     """A linear choice of effects beside those of a fitted model.
 
-    Attributes:
-      screen: has the signatures of all effects beside the model.
-      ebic: decides.
-      best: the model.
-      floor: energy that noise alone leaves on the fitting data [nats].
+    Residuals are linear in p values of the model and in the sizes of K signatures. All
+    that least squares need are the scalar products of these columns with each other and
+    with the residual, which are computed once.
     """
 
-    screen: Screen
-    ebic: Ebic
-    best: Judged
-    floor: float
+    def __init__(self, screen: Screen, ebic: Ebic, best: Judged, floor: float) -> None:
+        """Prepare choices beside a model.
+
+        Args:
+          screen: has the signatures of all effects beside the model.
+          ebic: decides.
+          best: the fitted model.
+          floor: energy that noise alone leaves on the fitting data [nats].
+        """
+        self.ebic, self.best = ebic, best
+        self._screen, self._floor = screen, floor
+        fit = best.fit
+        columns = np.concatenate([fit.jacobian, screen.changes()], axis=1)
+        self._values = fit.jacobian.shape[1]
+        self._products = columns.T @ columns
+        self._wanted = columns.T @ fit.residual
+        self._square = float(fit.residual @ fit.residual)
 
     def model(self) -> Model:
         """The effects to add, with values to start a fit from; none if none helps."""
-        start = _Start(self.best.model, self.best.fit.jacobian, self.best.fit.residual)
+        every = tuple(range(self._values))
+        start = _Start(self.best.model, every, np.zeros(self._values))
         taken = self._chosen(start)
         for _ in range(EXCHANGES):
             before = {guess.rows for guess in taken}
@@ -95,14 +106,14 @@ class Stepwise:
             for one in model
             if effect(one.name).of_motor
         }
-        now = self._criterion(self.best.fit.residual, model)
+        now = self._criterion(0.5 * self._square, model)
         for own in sorted({*groups_of(model), *kinds}, key=lambda some: some[0].key):
             start = self._without(own)
             taken = self._chosen(start) if start else []
             if start is None or not taken:
                 continue
-            left = self._residual(self._columns(start, taken), start.residual)
             added = tuple(placed for guess in taken for placed in guess.model)
+            left, _ = self._left(start, taken)
             other = self._criterion(left, (*start.model, *added))
             if other < now + UNSURE:
                 sized = self._sized(start, taken)
@@ -110,9 +121,8 @@ class Stepwise:
         found.sort(key=lambda one: one[0])
         return [one for _, one in found]
 
-    def _criterion(self, residual: FloatArray, model: Model) -> float:
-        """The criterion of a model that leaves an (N,) residual of the fitting data."""
-        energy = 0.5 * float(residual @ residual)
+    def _criterion(self, energy: float, model: Model) -> float:
+        """The criterion of a model that leaves an energy of the fitting data [nats]."""
         return self.ebic.nats_between(energy, 1.0) + self.ebic.price(model)
 
     def _without(self, own: Model) -> _Start | None:
@@ -121,60 +131,53 @@ class Stepwise:
         Neither these are to be chosen again nor, if they are several, others of their
         kind.
         """
-        fit = self.best.fit
-        coordinates, residual = fit.coordinates, fit.residual
-        x = coordinates.of(self.best.model)
+        coordinates = self.best.fit.coordinates
+        x, away = coordinates.of(self.best.model), np.zeros(self._values)
         for i in coordinates.columns_of(own):
             neutral = coordinates.parameters[i].neutral
             if not np.isfinite(neutral):
                 return None
-            residual = residual - fit.jacobian[:, i] * (
-                x[i] - coordinates.scaled(i, neutral)
-            )
+            away[i] = coordinates.scaled(i, neutral) - x[i]
         rest = tuple(placed for placed in self.best.model if placed not in own)
         gone = {own[0].name} if len(own) > 1 else {own[0].key}
-        return _Start(rest, fit.jacobian_of(rest), residual, frozenset(gone))
+        kept = tuple(coordinates.columns_of(rest))
+        return _Start(rest, kept, away, frozenset(gone))
 
     def _chosen(self, start: _Start) -> list[Guess]:
         """Effects that are added one by one as long as the criterion falls."""
         taken = list[Guess]()
-        begun = 0.5 * float(start.residual @ start.residual) - self.floor
+        begun = self._left(start, [])[0] - self._floor
         while len(taken) < MOST_AT_ONCE:
             more = self._next(start, taken)
             if more is None:
                 break
             taken.append(more)
-            left = self._residual(self._columns(start, taken), start.residual)
-            if 0.5 * float(left @ left) - self.floor < TRUSTED * begun:
+            if self._left(start, taken)[0] - self._floor < TRUSTED * begun:
                 break
         return taken
 
     def _next(self, start: _Start, taken: Sequence[Guess]) -> Guess | None:
         """The effect that lowers the criterion most beside some; None if none does."""
-        jacobian = self._columns(start, taken)
-        residual = self._residual(jacobian, start.residual)
-        energy = 0.5 * float(residual @ residual)
+        energy, view = self._left(start, taken)
         added = tuple(placed for guess in taken for placed in guess.model)
         model = (*start.model, *added)
         known = start.without | {placed.key for placed in model}
         best, least = None, 0.0
-        for guess in self._options(residual, jacobian, known):
+        for guess in self._options(view, known):
             nats = self.ebic.nats_between(energy, energy - guess.gain)
             price = self.ebic.price_within((*model, *guess.model), guess.model)
             if nats - price > least:
                 best, least = guess, nats - price
         return best
 
-    def _options(
-        self, residual: FloatArray, jacobian: FloatArray, without: Collection[str]
-    ) -> list[Guess]:
+    def _options(self, view: View, without: Collection[str]) -> list[Guess]:
         """Single effects, and kinds of effects at all joints that lack them.
 
         None of the names and "effect@place" in `without`.
         """
         singles = [
             guess
-            for guess in self.screen.singles(residual, jacobian)
+            for guess in self._screen.singles_in(view)
             if not {guess.model[0].key, guess.model[0].name} & set(without)
         ]
         kinds = dict[str, list[Guess]]()
@@ -182,42 +185,60 @@ class Stepwise:
             if effect(guess.model[0].name).of_motor:
                 kinds.setdefault(guess.model[0].name, []).append(guess)
         every = [
-            self.screen.together(residual, jacobian, own)
-            for own in kinds.values()
-            if len(own) > 1
+            self._screen.together(view, own) for own in kinds.values() if len(own) > 1
         ]
         return [*singles, *(guess for guess in every if guess)]
 
-    def _columns(self, start: _Start, taken: Sequence[Guess]) -> FloatArray:
-        """(N, p) Jacobian of the model and of some effects beside it."""
-        own = [self.screen.changes(guess.rows) for guess in taken]
-        return np.concatenate([start.jacobian, *own], axis=1)
+    def _free(self, start: _Start, taken: Sequence[Guess]) -> list[int]:
+        """Indices of the columns whose sizes are free."""
+        rows = (row for guess in taken for row in guess.rows)
+        return [*start.kept, *(self._values + row for row in rows)]
 
-    def _residual(self, jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-        """(N,) what a linear model leaves of a residual."""
-        if not jacobian.shape[1]:
-            return residual
-        size = np.linalg.lstsq(jacobian, residual, rcond=None)[0]
-        return np.asarray(residual - jacobian @ size)
+    def _begun(self, start: _Start) -> tuple[float, FloatArray]:
+        """Square of what is left before sizes are fitted, and its products (p + K,)."""
+        own = slice(0, self._values)
+        wanted = self._wanted + self._products[:, own] @ start.away
+        square = self._square + (self._wanted + wanted)[own] @ start.away
+        return float(square), wanted
+
+    def _left(self, start: _Start, taken: Sequence[Guess]) -> tuple[float, View]:
+        """Energy that is left [nats], and the signatures as seen beside some effects.
+
+        That is, without the part that is linear in the values of these effects.
+        """
+        square, wanted = self._begun(start)
+        free, some = self._free(start, taken), slice(self._values, None)
+        shared = self._products[:, free]
+        length = np.sqrt(np.maximum(np.diag(self._products)[free], TINY))
+        within = shared[free] / np.outer(length, length)
+        inverse = np.linalg.pinv(within, TINY, hermitian=True)
+        inverse /= np.outer(length, length)
+        found = inverse @ wanted[free]
+        left = wanted - shared @ found
+        products = self._products[some, some] - shared[some] @ inverse @ shared[some].T
+        energy = 0.5 * max(square - float(wanted[free] @ found), TINY)
+        return energy, View(-left[some], products, SAME)
 
     def _sized(self, start: _Start, taken: Sequence[Guess]) -> Model:
         """The effects with the sizes that are best together."""
         if not taken:
             return ()
-        jacobian, known = self._columns(start, taken), start.jacobian.shape[1]
+        free, known = self._free(start, taken), len(start.kept)
         rows = [row for guess in taken for row in guess.rows]
-        low = np.full(jacobian.shape[1], -np.inf)
+        low = np.full(len(free), -np.inf)
         high = -low
-        low[known:], high[known:] = self.screen.bounds(rows)
-        length = np.linalg.norm(jacobian, axis=0)
-        length = np.where(length > 0, length, 1.0)
+        low[known:], high[known:] = self._screen.bounds(rows)
+        # least squares with the same products: the columns' own number is not needed
+        wanted = self._begun(start)[1][free]
+        power, turn = np.linalg.eigh(self._products[np.ix_(free, free)])
+        root = np.sqrt(np.maximum(power, TINY * power.max()))
         found = lsq_linear(
-            jacobian / length, -start.residual, (low * length, high * length)
+            root[:, None] * turn.T, -(turn.T @ wanted) / root, (low, high)
         )
         ends = np.cumsum([len(guess.rows) for guess in taken])[:-1]
-        sizes = np.split((found.x / length)[known:], ends)
+        sizes = np.split(found.x[known:], ends)
         return tuple(
             placed
             for guess, size in zip(taken, sizes, strict=True)
-            for placed in self.screen.sized(guess.rows, size)
+            for placed in self._screen.sized(guess.rows, size)
         )
