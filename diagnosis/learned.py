@@ -44,7 +44,9 @@ class Learned:
       search: the search, which has ended.
       result: what it found.
       kind: the kind of verdict that follows from that.
-      everywhere: whether the result has effects at all joints.
+      everywhere: whether the result has effects at many joints.
+      inexact: whether what these leave is more than noise, and counts as noise: no
+        model of this robot is exact.
     """
 
     material: Material
@@ -54,6 +56,7 @@ class Learned:
     result: SearchResult
     kind: VerdictKind
     everywhere: bool
+    inexact: bool = False
 
     @classmethod
     def of(
@@ -84,7 +87,7 @@ class Learned:
         wide = channels.widened(wider)
         if first.everywhere and not soft:
             data, *_ = _divided(material, wide, given, threads, hooks)
-            return replace(first, data=data)
+            return replace(first, data=data, inexact=True)
         found = _best_of_each_size(first.search, first.result)
         return cls._of(material, wide, given.again, threads, hooks, found)
 

@@ -170,14 +170,17 @@ def _tested(learned: Learned, seed: np.random.SeedSequence) -> _Tested:
     """Fit the effects found to all data but the held-out ones; test them on these.
 
     Where effects are at many joints only what is not among them is uncertain within
-    tolerances: the search for these knows none.
+    tolerances; where these leave more than noise nothing is, since tolerances would
+    explain what no model does.
     """
     data, result, kind = learned.data, learned.result, learned.kind
     if kind == "not_identifiable":  # then no effect is believed
         result = replace(result, chosen=0)
     winner = result.winner
     both, test = data.calibrated(winner.model if winner else ())
-    if learned.everywhere:
+    if learned.inexact:
+        both = both.without_tolerances()
+    elif learned.everywhere:
         both = both.with_tolerances_beside(winner.model if winner else ())
     both, refitted, said = established(both, winner.model if winner else ())
     model = refitted.model if refitted else ()
