@@ -6,10 +6,9 @@ from torque_arm import arm, moved, rubbing
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.search import each_joint, stepwise
-from diagnosis.search.everywhere import best_of_all
 from diagnosis.search.fits import Fits
 from diagnosis.search.judging import Judge
-from diagnosis.search.pruning import pruned
+from diagnosis.search.pruning import pruned, shared
 
 JOINTS = "yaw", "shoulder", "elbow"
 DRY_NM, VISCOUS_NM_S = (1.0, 0.5, 0.2), (0.0, 2.0, 0.3)
@@ -61,8 +60,8 @@ def test_a_factor_of_two_does_not_matter(monkeypatch, judge, module, name, value
     assert found(judge) == pytest.approx(TRUE, rel=0.1)
 
 
-def test_the_criterion_decides_between_values_for_each_joint_and_for_all(judge):
-    """Joints whose friction differs clearly are not tied."""
-    best = best_of_all(Fits(judge))
-    assert values(best) == pytest.approx(TRUE, rel=0.1)
+def test_joints_whose_friction_differs_clearly_are_not_tied(judge):
+    fits = Fits(judge)
+    best = shared(fits, each_joint.each_joint(fits))
     assert {placed.tied for placed in best.model} == {""}
+    assert TRUE.keys() <= values(best).keys()
