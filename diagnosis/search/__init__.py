@@ -2,6 +2,7 @@
 
 `screening` estimates what effects would explain, `candidates` proposes models,
 `fitting` fits them, `judging` decides which to believe, `search` adds effects, `accept`
-tests the result, and `everywhere` adds an effect at all joints at once.
+tests the result. `few_or_many` goes on with `everywhere` where many joints are off:
+`each_joint` chooses effects at once (`stepwise`), `shared_first` adds kinds of them.
 `reference` learns from recordings of the healthy robot.
 """
