@@ -99,12 +99,14 @@ def is_small(plant: Plant, placed: PlacedEffect) -> bool:
     """Whether an effect may be what robots usually differ by from their models."""
     kind = effect(placed.name)
     size = WITHIN * kind.tolerance(plant, placed.place)
+    if size == 0:
+        return False
     parameters = kind.parameters(plant, placed.place)
     differences = [
         np.log(value / one.neutral) if one.logarithmic else value - one.neutral
         for one, value in zip(parameters, placed.values, strict=True)
     ]
-    return size > 0 and bool(np.all(np.abs(differences[: kind.components]) <= size))
+    return bool(np.all(np.abs(differences[: kind.components]) <= size))
 
 
 LEAST_CLOSED = 0.5

@@ -58,13 +58,16 @@ def _simplified(fits: Fits, best: Judged) -> Judged:
 def _without_idle(fits: Fits, best: Judged) -> Judged:
     """The model without effects that explain too little.
 
-    Linear estimates say what to try without, the likeliest first; a fit decides.
+    Linear estimates say what to try without, the likeliest first; a fit decides. What
+    they cannot say, since no finite value stands for no effect, is tried first.
     """
     needed, size = set[str](), len(best.model)
     while True:
         ebic = fits.ebic(best)
+        # what no finite value switches off is not known to be worth anything
         worth = {
-            group: ebic.nats(gain, best) - ebic.price_within(best.model, group)
+            group: ebic.nats(gain if np.isfinite(gain) else 0.0, best)
+            - ebic.price_within(best.model, group)
             for group, gain in gains_of_each(best.fit)
             if group[0].key not in needed
         }
