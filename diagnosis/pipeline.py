@@ -43,7 +43,7 @@ from diagnosis.search.result import MOST_LEFT, SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict import Amount, Fit, Unexplained, Verdict, VerdictKind
+from diagnosis.verdict import Amount, Fit, Found, Unexplained, Verdict, VerdictKind
 from groundwalk.blas import one_blas_thread
 
 TEST_REPLAYS = 150
@@ -216,22 +216,23 @@ def _verdict(
     nothing = tested.objections or (result.winner and not tested.model)
     if kind == "effects" and (refuted or nothing):
         kind = "unknown" if above**2 > 1 + MOST_LEFT else "none"
+    effects = believed_effects(both, result, tested.refitted)
+    small: tuple[Found, ...] = ()
+    if kind == "effects":
+        usual = {one.key for one in tested.model if is_small(material.plant, one)}
+        small = tuple(one for one in effects if f"{one.name}@{one.place}" in usual)
+        effects = tuple(one for one in effects if one not in small)
+        kind = "effects" if effects else "none"
     smallest: Mapping[str, Amount] = {}
     if kind in ("none", "not_identifiable"):
         gain = judge.least_fitted
         smallest = smallest_detectable(judge.fit, search.signatures, gain)
-    effects = believed_effects(both, result, tested.refitted)
-    usual = {one.key for one in tested.model if is_small(material.plant, one)}
-    small = tuple(one for one in effects if f"{one.name}@{one.place}" in usual)
-    effects = tuple(one for one in effects if one not in small)
-    if kind == "effects" and not effects:
-        kind = "none"
     if kind == "unknown":  # then none of them is established
         effects = tuple(replace(one, probability=None) for one in effects)
     return Verdict(
         kind=kind,
         effects=effects if kind != "none" else (),
-        small=small if kind in ("effects", "none") else (),
+        small=small,
         smallest_detectable=smallest,
         unexplained=_shape(*shape) if kind == "unknown" else None,
         limits=(

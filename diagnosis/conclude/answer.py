@@ -101,12 +101,12 @@ def is_small(plant: Plant, placed: PlacedEffect) -> bool:
     size = WITHIN * kind.tolerance(plant, placed.place)
     if size == 0:
         return False
-    parameters = kind.parameters(plant, placed.place)
+    parameters = kind.parameters(plant, placed.place)[: kind.components]
     differences = [
         np.log(value / one.neutral) if one.logarithmic else value - one.neutral
-        for one, value in zip(parameters, placed.values, strict=True)
+        for one, value in zip(parameters, placed.values, strict=False)
     ]
-    return bool(np.all(np.abs(differences[: kind.components]) <= size))
+    return bool(np.all(np.abs(differences) <= size))
 
 
 LEAST_CLOSED = 0.5

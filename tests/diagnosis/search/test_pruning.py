@@ -1,0 +1,50 @@
+"""What a model does not need is taken out of it, down to nothing."""
+
+import pytest
+from torque_arm import arm, moved, rubbing
+
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.torque_evidence import with_motions
+from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.search.fits import Fits
+from diagnosis.search.judging import Judge
+from diagnosis.search.pruning import pruned
+
+IDLE = PlacedEffect("viscous_friction", "elbow", (0.01,))
+ENDLESS = PlacedEffect("speed_limit", "elbow", (20.0,))
+DRY = PlacedEffect("coulomb_friction", "yaw", (0.5,))
+
+
+def fits_of(dry_nm):
+    rubs = rubbing((dry_nm, 0.0, 0.0), (0.0, 0.0, 0.0))
+    parts = []
+    for seed in (0, 1):
+        trace = moved(rubs, seed=seed, duration_s=5.0)
+        found = predictor_of(arm(), with_motions(arm(), [trace]))
+        found.calibrate()
+        parts.append(found)
+    return Fits(Judge(*parts))
+
+
+@pytest.fixture(scope="module")
+def rubs():
+    return fits_of(1.0)
+
+
+@pytest.mark.parametrize("idle", [IDLE, ENDLESS])
+def test_what_explains_nothing_is_taken_out(rubs, idle):
+    """That of a speed limit no finite value stands for no effect does not keep it."""
+    best = pruned(rubs, rubs.fitted((DRY, idle)))
+    (kept,) = best.model
+    assert kept.key == DRY.key
+    assert kept.values[0] == pytest.approx(1.0, rel=0.05)
+
+
+def test_what_is_needed_stays(rubs):
+    best = pruned(rubs, rubs.fitted((DRY,)))
+    assert [placed.key for placed in best.model] == [DRY.key]
+
+
+def test_nothing_may_be_left():
+    exact = fits_of(0.0)
+    assert pruned(exact, exact.fitted((IDLE,))).model == ()
