@@ -99,8 +99,7 @@ class Effect(ABC):
     differs from joint to joint. Only used where `on_every_servo` is True."""
 
     jumps: ClassVar[bool] = False
-    """Whether the effect's torque jumps wherever a joint turns back, so that no other
-    suffers more from long time steps."""
+    """Whether its torque jumps where a joint turns back: long steps distort it most."""
 
     rarity_nats: ClassVar[float] = 0.0
     """Prior: extra log-likelihood [nats] that a rare effect needs to be accepted."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.accept import accepted
-from diagnosis.search.everywhere import everywhere
+from diagnosis.search.many.everywhere import everywhere
 from diagnosis.search.result import SearchResult
 from diagnosis.search.search import Search
 

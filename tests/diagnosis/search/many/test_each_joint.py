@@ -5,10 +5,10 @@ from torque_arm import arm, moved, rubbing
 
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search import each_joint, stepwise
-from diagnosis.search.fits import Fits
 from diagnosis.search.judging import Judge
-from diagnosis.search.pruning import pruned, shared
+from diagnosis.search.many import each_joint, stepwise
+from diagnosis.search.many.fits import Fits
+from diagnosis.search.many.pruning import pruned, shared
 
 JOINTS = "yaw", "shoulder", "elbow"
 DRY_NM, VISCOUS_NM_S = (1.0, 0.5, 0.2), (0.0, 2.0, 0.3)

@@ -11,11 +11,11 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.everywhere import everywhere
 from diagnosis.search.few_or_many import more_is_missing
 from diagnosis.search.fitting import fit_all, ran_into_bound
 from diagnosis.search.judging import Judge
-from diagnosis.search.pruning import gains_of_each
+from diagnosis.search.many.everywhere import everywhere
+from diagnosis.search.many.pruning import gains_of_each
 from diagnosis.search.result import SearchResult
 from diagnosis.search.search import Search
 

@@ -6,9 +6,9 @@ from torque_arm import arm, moved, rubbing
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.fits import Fits
 from diagnosis.search.judging import Judge
-from diagnosis.search.pruning import pruned
+from diagnosis.search.many.fits import Fits
+from diagnosis.search.many.pruning import pruned
 
 IDLE = PlacedEffect("viscous_friction", "elbow", (0.01,))
 ENDLESS = PlacedEffect("speed_limit", "elbow", (20.0,))

@@ -4,8 +4,8 @@ import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
-from diagnosis.search.fits import Fits
 from diagnosis.search.fitting import FittedModel
+from diagnosis.search.many.fits import Fits
 from diagnosis.search.result import Judged
 from diagnosis.search.ties import Level, groups_of, number_of_values, tied
 

@@ -9,8 +9,8 @@ from diagnosis.residuals.signatures import signatures
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
-from diagnosis.search.known_changes import KnownChanges
-from diagnosis.search.shared_first import united
+from diagnosis.search.many.known_changes import KnownChanges
+from diagnosis.search.many.shared_first import united
 from diagnosis.traces.usage import Usage
 
 JOINTS = "yaw", "shoulder", "elbow"

@@ -9,33 +9,19 @@ from collections.abc import Sequence
 from diagnosis.effects.library import all_effects
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.signatures import Signature, signatures
-from diagnosis.search.fits import Fits
-from diagnosis.search.known_changes import KnownChanges
+from diagnosis.search.many.fits import Fits
+from diagnosis.search.many.known_changes import KnownChanges
+from diagnosis.search.many.stepwise import Stepwise
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen
-from diagnosis.search.stepwise import Stepwise
-
-MOST_ROUNDS = 12
-"""Most rounds in which a model grows or effects are exchanged."""
 
 EXCHANGED = 8
 """Number of models with other effects in place of some that are fitted in a round."""
 
-REPLAYS = 200
-"""Rough number of simulations of the recordings in a round; only for the progress
-display."""
-
 
 def each_joint(fits: Fits) -> Judged:
     """The model with effects at each joint by itself, as far as it gets better."""
-    best = fits.nominal()
-    for number in range(MOST_ROUNDS):
-        fits.judge.hooks.stage(f"each joint, round {number + 1}", REPLAYS)
-        other = _more_detailed(fits, best)
-        if other is None:
-            break
-        best = fits.exact(other)
-    return best
+    return fits.improved("each joint", _more_detailed)
 
 
 def _more_detailed(fits: Fits, best: Judged) -> Judged | None:

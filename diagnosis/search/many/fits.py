@@ -1,17 +1,24 @@
 """Fits models with effects at many joints and compares them by the extended BIC."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from diagnosis.residuals.predictor import Model
 from diagnosis.search.coordinates import Coordinates
-from diagnosis.search.ebic import Ebic
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import Judge
+from diagnosis.search.many.ebic import Ebic
 from diagnosis.search.result import Judged
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray
+
+MOST_ROUNDS = 12
+"""Most rounds in which a model is made better."""
+
+REPLAYS = 200
+"""Rough number of simulations of the recordings in a round; only for the progress
+display."""
 
 
 class Fits:
@@ -40,6 +47,22 @@ class Fits:
         (residual,) = self.fit.residuals([()])
         none = np.zeros((len(residual), 0)), Coordinates(self.fit.plant, ())
         return self.judge.judge([FittedModel((), residual, *none)])[0]
+
+    def improved(
+        self, name: str, better: Callable[["Fits", Judged], Judged | None]
+    ) -> Judged:
+        """The nominal model, made better round by round until `better` returns None.
+
+        `name` is that of the rounds in the progress display.
+        """
+        best = self.nominal()
+        for number in range(MOST_ROUNDS):
+            self.judge.hooks.stage(f"{name}, round {number + 1}", REPLAYS)
+            other = better(self, best)
+            if other is None:
+                break
+            best = self.exact(other)
+        return best
 
     def fitted(self, model: Model) -> Judged:
         """A model fitted to the end and judged."""

@@ -10,9 +10,9 @@ from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
-from diagnosis.search.kinds import kinds_to_add
+from diagnosis.search.many.kinds import kinds_to_add
+from diagnosis.search.many.shared_first import servo_effects
 from diagnosis.search.screening import Screen
-from diagnosis.search.shared_first import servo_effects
 from diagnosis.search.ties import number_of_values, tied
 from diagnosis.traces.usage import Usage
 

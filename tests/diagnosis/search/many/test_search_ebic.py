@@ -7,7 +7,7 @@ from made_up_traces import arm, recorded
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.ebic import Ebic
+from diagnosis.search.many.ebic import Ebic
 from diagnosis.search.ties import tied
 
 CRITERION = Ebic(samples=100.0, candidates=50, joints=4)

@@ -14,37 +14,23 @@ from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates
-from diagnosis.search.fits import Fits
 from diagnosis.search.fitting import ran_into_bound
-from diagnosis.search.kinds import kinds_to_add
-from diagnosis.search.known_changes import KnownChanges
+from diagnosis.search.many.fits import Fits
+from diagnosis.search.many.kinds import kinds_to_add
+from diagnosis.search.many.known_changes import KnownChanges
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen
 from diagnosis.search.spread import FEWEST
 from diagnosis.search.ties import groups_of
 
-MOST_ROUNDS = 12
-"""Most rounds in which a model grows."""
-
 FINISHED = 3
 """Number of models in a round that are fitted to the end, until one is not worse and
 has no new effect on a bound."""
 
-REPLAYS = 200
-"""Rough number of simulations of the recordings in a round; only for the progress
-display."""
-
 
 def shared_first(fits: Fits) -> Judged:
     """The best model; without effects if none explains much at all joints."""
-    best = fits.nominal()
-    for number in range(MOST_ROUNDS):
-        fits.judge.hooks.stage(f"all joints, round {number + 1}", REPLAYS)
-        larger = _larger(fits, best)
-        if larger is None:
-            break
-        best = fits.exact(larger)
-    return _replaced(fits, best)
+    return _replaced(fits, fits.improved("all joints", _larger))
 
 
 def _larger(fits: Fits, best: Judged) -> Judged | None:

@@ -7,12 +7,12 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.signatures import signatures
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.search.each_joint import EXCHANGED, lasting_effects
-from diagnosis.search.ebic import Ebic
 from diagnosis.search.fitting import fit_all
+from diagnosis.search.many.each_joint import EXCHANGED, lasting_effects
+from diagnosis.search.many.ebic import Ebic
+from diagnosis.search.many.stepwise import Stepwise
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen
-from diagnosis.search.stepwise import Stepwise
 from diagnosis.traces.usage import Usage
 
 JOINTS = "yaw", "shoulder", "elbow"
