@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, shared_channels
-from diagnosis.residuals.data_sets import with_best_steps
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.steps import with_best_steps
 from diagnosis.search.reference import learn_reference
 from diagnosis.traces.trace import Trace
 
@@ -16,7 +16,7 @@ def exact_replays(
     reference: Sequence[Trace],
     explained: Callable[[Predictor], Model],
 ) -> Predictor:
-    """Calibrated replays of recordings of a robot, with the longest exact time step.
+    """Calibrated replays of recordings of a robot, in time steps as of a diagnosis.
 
     `reference` are recordings of the healthy robot, if any. On a fixed base the effects
     by which the baseline itself explains them (`explained`) are taken as given; the

@@ -10,12 +10,12 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.steps import PRECISE_S, exact_steps, with_best_steps
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import LEAST_FLOATING_S, LEAST_S, Split, shortened, split
 from diagnosis.traces.trace import Trace
-from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Recordings
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
@@ -34,11 +34,6 @@ FLOATING_S = 3.0, 3.0, 6.0
 base floats: its contacts take long to simulate."""
 
 
-MOST_WRONG = 0.25
-"""Largest rms, in units of noise, of the integration error that a simulation may have
-after correction; a larger error would be mistaken for missing physics."""
-
-
 WINDOWS_S = (8.0, 4.0, 2.0, 1.0)
 """Lengths [s] of windows that are tried for joints without servos, longest first."""
 
@@ -49,14 +44,6 @@ of its usual error in the others: more than by other motions."""
 NEAR = 0.02
 """Largest distance of a replay from the recorded motion, as a share of each joint's
 range in the recording, in 95 % of the rows."""
-
-DISTORTED = 0.1
-"""Largest error, relative to it, of what effects change in simulations whose steps are
-long. Fits are repeated with the integration error of the model that they found, so that
-the values that they end with do not have this error."""
-
-PRECISE_S = 20.0
-"""Most seconds of the recordings on which the error of the simulation is measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,75 +103,6 @@ class DataSets:
         """Names of the recordings, or of parts of them, by their use."""
         uses = self.parts.fit, self.parts.select, self.parts.test
         return Recordings(*(tuple(trace.name for trace in use) for use in uses))
-
-
-def with_best_steps(whole: Predictor) -> Predictor:
-    """The predictor, calibrated, with the longest steps that do."""
-    return exact_steps(shows_changes(whole))
-
-
-def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
-    """The predictor, calibrated at a model, with steps as long as they may be.
-
-    Those with which the integration error is measured are as long as they are exact;
-    those of simulations may be longer, as long as they show what effects change.
-    """
-    for step_s in STEPS_S[whole.plant.base]:
-        finest_s = step_s / 4
-        if finest_s < whole.finest_s:
-            whole = whole.stepped(whole.step_s, finest_s)
-        if finest_s == whole.finest_s and whole.correct(model).max() < MOST_WRONG:
-            break
-    whole.doubt(model)
-    return whole
-
-
-def shows_changes(whole: Predictor) -> Predictor:
-    """The predictor with the longest step with which effects change what they should.
-
-    Those that jump, such as dry friction, are taken for all: no others suffer more from
-    long steps. The shortest step says what they should change.
-    """
-    plant, (*longer_s, shortest_s) = whole.plant, STEPS_S[whole.plant.base]
-    if whole.by_torque:
-        return whole
-    rubbing = tuple(
-        PlacedEffect(kind.name, place, values)
-        for kind in all_effects().values()
-        if kind.jumps
-        for place in kind.places(plant, whole.traces)
-        for values in kind.first_tries(plant, place, Usage.of(plant, whole.traces))[:1]
-    )
-    right = change(whole.stepped(shortest_s), rubbing)
-    for step_s in longer_s:
-        some = whole.stepped(step_s)
-        wrong = change(some, rubbing) - right
-        if np.linalg.norm(wrong) < DISTORTED * np.linalg.norm(right):
-            return some
-    return whole.stepped(shortest_s)
-
-
-def change(some: Predictor, model: Model) -> FloatArray:
-    """(N,) what a model changes in the residual of a predictor."""
-    nominal, changed = some.residuals([(), model])
-    return np.asarray(changed - nominal)
-
-
-def precise(
-    plant: Plant, traces: Sequence[Trace], channels: Channels, threads: int = 1
-) -> Channels:
-    """The channels, whose noise includes the error of the simulation itself.
-
-    That is what integration leaves at the shortest time step, see `Predictor`.
-    """
-    some = shortened(traces, PRECISE_S)
-    for step_s in STEPS_S[plant.base]:
-        predictor = predictor_of(plant, some, channels, step_s, threads)
-        error = predictor.correct()
-        if error.max() < MOST_WRONG:
-            break
-    wider = np.hypot(1.0, error)
-    return Channels(channels.names, channels.noise * wider, channels.floor * wider)
 
 
 def longest_window_s(

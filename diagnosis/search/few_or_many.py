@@ -1,4 +1,4 @@
-"""Searches for few effects, or for effects at all joints where few do not suffice."""
+"""Searches for few effects, or for effects at many joints where few do not suffice."""
 
 import numpy as np
 
@@ -10,17 +10,17 @@ from diagnosis.search.search import Search
 
 ALL_CLOSED = 0.95
 """Share of the energy above the noise that few effects must remove; otherwise effects
-at all joints are tried."""
+at many joints are tried."""
 
 TORQUES_LEFT = 1.5
 """Multiple of the sensors' squared noise from which on so much is left of torques that
-effects at all joints are tried."""
+effects at many joints are tried."""
 
 
 def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
-    """What a search finds, and whether these are effects at all joints.
+    """What a search finds, and whether these are effects at many joints.
 
-    Where most joints are off beside the best single effect, effects at all joints are
+    Where most joints are off beside the best single effect, effects at many joints are
     searched for at once, elsewhere where few effects leave much. Unless `tested` is
     false, few effects also have to pass closer tests.
     """
@@ -39,7 +39,7 @@ def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
 
 
 def more_is_missing(fit: Predictor, result: SearchResult) -> bool:
-    """Whether few effects leave so much that effects at all joints are tried.
+    """Whether few effects leave so much that effects at many joints are tried.
 
     Never on a floating base, where that would take an hour.
     """

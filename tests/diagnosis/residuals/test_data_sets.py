@@ -5,8 +5,9 @@ from joint_rigs import ARM, plant_of
 from made_up_traces import recorded
 
 from diagnosis.residuals.channels import shared_channels
-from diagnosis.residuals.data_sets import MOST_WRONG, DataSets
+from diagnosis.residuals.data_sets import DataSets
 from diagnosis.residuals.predictor import STEPS_S
+from diagnosis.residuals.steps import MOST_WRONG
 
 
 @pytest.mark.parametrize(

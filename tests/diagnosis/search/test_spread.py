@@ -57,11 +57,12 @@ def found(monkeypatch, **truth):
     """What is found where few or many joints lack something; which searches ran."""
     ran = []
 
+    search_for_many = few_or_many.everywhere
+
     def everywhere(judge, result):
         ran.append("everywhere")
-        return few_or_many_search(judge, result)
+        return search_for_many(judge, result)
 
-    few_or_many_search = few_or_many.everywhere
     monkeypatch.setattr(few_or_many, "everywhere", everywhere)
     parts = [Predictor(arm(), [measured(seed, **truth)], CHANNELS) for seed in (1, 2)]
     for part in parts:

@@ -79,7 +79,9 @@ def test_a_right_model_is_not_exchanged(predictor):
         PlacedEffect("viscous_friction", "shoulder", (1.0,)),
     )
     step = stepwise(predictor, *true)
-    for model in step.exchanged():
+    proposed = step.exchanged()
+    assert proposed
+    for model in proposed:
         fit = fit_all(predictor, [model])[0]
         other = Judged(fit, fit.energy)
         assert not step.ebic.prefers(other, step.best)

@@ -1,0 +1,101 @@
+"""Finds the time steps of replays: as long as they are exact and show what they must.
+
+The integration error is measured with short steps and taken out of replays with longer
+ones, see `Predictor`. Of the model at which it was measured nothing is then wrong. What
+other models change is wrong by a share that grows with the step.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.effects.library import all_effects
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.plant.plant import Plant
+from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
+from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.traces.split import shortened
+from diagnosis.traces.trace import Trace
+from diagnosis.traces.usage import Usage
+from groundwalk.arrays import FloatArray
+
+MOST_WRONG = 0.25
+"""Largest rms, in units of noise, of the integration error that a simulation may have
+after correction; a larger error would be mistaken for missing physics."""
+
+DISTORTED = 0.1
+"""Largest error, relative to it, of what effects change in simulations whose steps are
+long. Fits are repeated with the integration error of the model that they found, so that
+the values that they end with do not have this error."""
+
+PRECISE_S = 20.0
+"""Most seconds of the recordings on which the error of the simulation is measured."""
+
+
+def with_best_steps(whole: Predictor) -> Predictor:
+    """The predictor, calibrated, with steps as long as they may be."""
+    return exact_steps(_showing_changes(whole))
+
+
+def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
+    """The predictor, calibrated at a model with steps as long as they are exact.
+
+    The steps of its simulations stay as they are.
+    """
+    for step_s in STEPS_S[whole.plant.base]:
+        finest_s = step_s / 4
+        if finest_s < whole.finest_s:
+            whole = whole.stepped(whole.step_s, finest_s)
+        if finest_s == whole.finest_s and whole.correct(model).max() < MOST_WRONG:
+            break
+    whole.doubt(model)
+    return whole
+
+
+def _showing_changes(whole: Predictor) -> Predictor:
+    """The predictor with the longest step with which effects change what they should.
+
+    Those that jump, such as dry friction, are taken for all: no others suffer more from
+    long steps. The shortest step says what they should change.
+    """
+    plant, (*longer_s, shortest_s) = whole.plant, STEPS_S[whole.plant.base]
+    if whole.by_torque or not longer_s:
+        return whole
+    rubbing = tuple(
+        PlacedEffect(kind.name, place, values)
+        for kind in all_effects().values()
+        if kind.jumps
+        for place in kind.places(plant, whole.traces)
+        for values in kind.first_tries(plant, place, Usage.of(plant, whole.traces))[:1]
+    )
+    right = _change(whole.stepped(shortest_s), rubbing)
+    for step_s in longer_s:
+        some = whole.stepped(step_s)
+        wrong = _change(some, rubbing) - right
+        if np.linalg.norm(wrong) < DISTORTED * np.linalg.norm(right):
+            return some
+    return whole.stepped(shortest_s)
+
+
+def _change(some: Predictor, model: Model) -> FloatArray:
+    """(N,) what a model changes in the residual of a predictor."""
+    nominal, changed = some.residuals([(), model])
+    return np.asarray(changed - nominal)
+
+
+def precise(
+    plant: Plant, traces: Sequence[Trace], channels: Channels, threads: int = 1
+) -> Channels:
+    """The channels, whose noise includes the error of the simulation itself.
+
+    That is what integration leaves at the shortest time step, see `Predictor`.
+    """
+    some = shortened(traces, PRECISE_S)
+    for step_s in STEPS_S[plant.base]:
+        predictor = predictor_of(plant, some, channels, step_s, threads)
+        error = predictor.correct()
+        if error.max() < MOST_WRONG:
+            break
+    wider = np.hypot(1.0, error)
+    return Channels(channels.names, channels.noise * wider, channels.floor * wider)

@@ -1,0 +1,56 @@
+"""Long steps show a little less than short ones, and fits in them end at the same."""
+
+import pytest
+from known_arms import CHANNELS
+from made_up_traces import arm, recorded
+
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals import steps
+from diagnosis.residuals.predictor import STEPS_S, Predictor
+from diagnosis.search.fitting import fit_all
+
+LONG_S, *_, SHORT_S = STEPS_S["fixed"]
+FINEST_S = SHORT_S / 4
+START = (
+    PlacedEffect("coulomb_friction", "shoulder", (0.2,)),
+    PlacedEffect("servo_gain", "elbow", (1.0,)),
+)
+TRUE = ("coulomb_friction", "shoulder", 0.4), ("servo_gain", "elbow", 0.7)
+
+
+@pytest.fixture(scope="module")
+def trace():
+    return recorded(arm(), *TRUE, duration_s=2.0, noise_rad=1e-5)
+
+
+def fitted(trace, step_s, again):
+    """Values that fit; the error of steps is measured `again` at each model found."""
+    predictor = Predictor(arm(), [trace], CHANNELS, step_s, finest_s=FINEST_S)
+    predictor.calibrate()
+    model = fit_all(predictor, [START])[0].model
+    for _ in range(again):
+        predictor.correct(model)
+        model = fit_all(predictor, [model])[0].model
+    return [placed.values[0] for placed in model]
+
+
+def wrong(trace, again):
+    long, short = (fitted(trace, step_s, again) for step_s in (LONG_S, SHORT_S))
+    return max(abs(a / b - 1) for a, b in zip(long, short, strict=True))
+
+
+def test_fits_in_long_steps_end_at_the_values_of_short_ones(trace):
+    assert wrong(trace, again=2) < 2e-4
+    assert wrong(trace, again=0) > 1e-3
+
+
+def stiff():
+    plant = arm(kp=300.0, kd=3.0)
+    return Predictor(plant, [recorded(plant, duration_s=1.0)], CHANNELS)
+
+
+def test_steps_are_shortened_where_effects_would_be_distorted(monkeypatch):
+    monkeypatch.setattr(steps, "DISTORTED", 1.0)
+    assert steps.with_best_steps(stiff()).step_s == LONG_S
+    monkeypatch.setattr(steps, "DISTORTED", 1e-4)
+    assert steps.with_best_steps(stiff()).step_s == SHORT_S
