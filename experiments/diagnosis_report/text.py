@@ -70,8 +70,8 @@ def answer(verdict: Verdict, changed: bool = False) -> list[str]:
     elif verdict.kind == "not_identifiable":
         first, before = _open(verdict, what), "this much is sure: "
     found = [before + each for each in findings(verdict.effects, changed)]
-    small = _small(verdict)
-    return [*first, *map(sentence, found), *small, *pulses, *_gain(verdict)]
+    said = [*first, *map(sentence, found), *pulses, *_gain(verdict)]
+    return [*said, *_small(verdict)]
 
 
 class Headline(NamedTuple):

@@ -11,6 +11,7 @@ from diagnosis.verdict import (
     Estimate,
     Found,
     PlacedEffect,
+    Verdict,
     When,
 )
 from experiments.diagnosis_report.figures import CLOSE_UP_S, close_up
@@ -27,6 +28,7 @@ from experiments.diagnosis_report.place_words import (
     channel_words,
     place_words,
 )
+from experiments.diagnosis_report.text import answer
 from groundwalk.errors import UnknownNameError
 
 # Effects with their parameters, as the diagnosis' file format has them.
@@ -247,3 +249,22 @@ def test_what_the_data_do_not_show_is_not_given_as_a_number():
     )
     shove = replace(push, when=When("burst", 3.1, 3.35))
     assert finding(shove).endswith("in z, from 3.1 to 3.35 s")
+
+
+def test_small_values_are_said_last_and_are_no_evidence():
+    names = ("coulomb_friction", "torque", "N m"), ("servo_gain", "factor", "1")
+    missing, small = (
+        Found(
+            name=name,
+            place="knee",
+            parameters={value: Estimate(1.01, 1.0, 1.02, unit)},
+            probability=0.9,
+            native=True,
+        )
+        for name, value, unit in names
+    )
+    *_, last = answer(Verdict("effects", (missing,), (small,)))
+    assert "servo stiffness at the joint knee" in last
+    assert "no evidence" in last
+    assert "dry friction" not in last
+    assert not any("no evidence" in text for text in answer(Verdict("none")))
