@@ -78,7 +78,7 @@ class Learned:
         wider = np.ones(len(channels.names))
         if not (first.noise or soft):
             left = _left(first.data.learned, first.result)
-            wider = np.maximum(left, channels.floor / channels.noise)
+            wider = np.maximum(left, 1 / channels.wider)
         if not soft and max(wider.max(), 1 / wider.min()) <= MORE_THAN_NOISE:
             return first
         if soft:
@@ -154,8 +154,8 @@ def _divided(
         noise = learn_reference(plant, reference, channels, rules, threads, hooks)
     hooks.stage("fit", FIT_REPLAYS)
     data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
-    if reference:
-        healthy = reference_checks(plant, reference, channels, threads, hooks)
+    if noise:
+        healthy = reference_checks(plant, reference, channels, noise, threads, hooks)
     judge = Judge(data.fit, data.select, rules, healthy, hooks)
     return data, noise, Search(judge, promising)
 

@@ -2,7 +2,7 @@
 
 Recordings are audited and prepared (`material.py`); a search finds effects, pieces of
 physics that the sim lacks (`learned.py`); they are fitted again and tested on held-out
-data (`_tested`), and become the verdict (`_verdict`).
+data (`tested.py`), and become the verdict (`_verdict`).
 """
 
 import time
@@ -18,32 +18,27 @@ from diagnosis.conclude.answer import (
     is_small,
 )
 from diagnosis.conclude.estimates import smallest_detectable
-from diagnosis.conclude.guards import established, objections
 from diagnosis.conclude.held_out_errors import (
-    held_out_errors,
     larger_than_learned,
-    model_refuted,
-    rms_above_floor,
 )
 from diagnosis.conclude.held_out_series import HeldOutSeries, held_out_series
 from diagnosis.conclude.next_experiment import next_experiment
-from diagnosis.effects.library import effect
+from diagnosis.conclude.nuisance_found import sure_nuisance
 from diagnosis.learned import Learned
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.data_sets import DataSets, expected_seconds
+from diagnosis.residuals.data_sets import expected_seconds
 from diagnosis.residuals.mismatch_map import mismatch_map, unexplained
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.fitting import FittedModel
+from diagnosis.residuals.usual_errors import acting
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.reference import (
     reference_limit,
 )
-from diagnosis.search.result import MOST_LEFT, SearchResult
 from diagnosis.search.rules import Rules
-from diagnosis.search.search import Search
+from diagnosis.tested import Tested, tested_effects
 from diagnosis.traces.trace import DriveBy, Trace
-from diagnosis.verdict import Amount, Fit, Found, Unexplained, Verdict, VerdictKind
+from diagnosis.verdict import Amount, Fit, Found, Unexplained, Verdict
 from groundwalk.blas import one_blas_thread
 
 TEST_REPLAYS = 150
@@ -58,9 +53,11 @@ class Diagnosis:
     Attributes:
       model: the effects that the search accepted, with their fitted values.
       test: simulates the held-out recordings, less the integration error at `model`.
-      nominal: the same, less the integration error of the nominal model.
+      nominal: the same, less the integration error of the nominal model, and without
+        its small mismatch.
       audit: what the audit of the recordings found.
-      given: effects that recordings of the healthy robot show; empty without such.
+      given: effects that recordings of the healthy robot show, and likely small
+        mismatch of its model; empty without such.
 
     Example:
       >>> found = diagnose(plant, traces, np.random.SeedSequence(1))
@@ -75,8 +72,22 @@ class Diagnosis:
     audit: Audit
     given: Model = ()
 
+    @property
+    def nuisance(self) -> Model:
+        """Small mismatch of the nominal model beside `model`, with likely values.
+
+        None if the verdict is "unknown": it would stand for what is missing.
+        """
+        nuisance = self.test.nuisance
+        if nuisance is None or self.verdict.kind == "unknown":
+            return ()
+        return acting(self.plant, nuisance.beside({one.key for one in self.model}))
+
     def held_out(self) -> list[HeldOutSeries]:
-        """Held-out recordings as measured, and simulated without and with `model`."""
+        """Held-out recordings as measured, and simulated without and with `model`.
+
+        With it the small mismatch of the nominal model is corrected as well.
+        """
         return held_out_series(self.nominal, self.test, self.model)
 
 
@@ -122,137 +133,99 @@ def diagnose(
         )
         hooks.progress.cost(seconds)
     learned = Learned.of(material, rules, threads, hooks)
-    material = learned.material
-    data, search = learned.data, learned.search
     hooks.stage("test", TEST_REPLAYS)
-    tested = _tested(learned, seed)
+    tested = tested_effects(learned, seed)
     verdict = replace(
-        _verdict(material, data, search, tested),
+        _verdict(learned, tested),
         alternatives=alternatives(learned.result, learned.kind),
         seconds=time.monotonic() - begun_s,
     )
+    plant = learned.material.plant
     given: Model = ()
     if learned.noise:
-        given = learned.noise.model
-        more = reference_limit(learned.noise)
+        given = acting(plant, learned.noise.model)
+        more = reference_limit(plant, learned.noise)
         verdict = replace(verdict, limits=(*verdict.limits, *more))
-    sims = tested.test, data.test
-    return Diagnosis(
-        verdict, tested.model, material.plant, *sims, material.audited, given
-    )
+    sims = tested.sims[1], learned.data.test.nominal()
+    audited = learned.material.audited
+    return Diagnosis(verdict, tested.model, plant, *sims, audited, given)
 
 
-@dataclass(frozen=True, eq=False)
-class _Tested:
-    """The effects that a search found, fitted again and tested on held-out data.
-
-    The effects, None if there are none, were refitted to all data but the held-out
-    ones. `both` simulates these data, `test` the held-out ones, both less the
-    integration error at the effects; `fit` has the errors on held-out data,
-    `objections` are sentences on why nothing, or less, is established.
-    """
-
-    result: SearchResult
-    kind: VerdictKind
-    refitted: FittedModel | None
-    both: Predictor
-    test: Predictor
-    fit: Fit
-    objections: tuple[str, ...] = ()
-
-    @property
-    def model(self) -> Model:
-        """The effects that the search found, with their final values."""
-        return self.refitted.model if self.refitted else ()
-
-
-def _tested(learned: Learned, seed: np.random.SeedSequence) -> _Tested:
-    """Fit the effects found to all data but the held-out ones; test them on these.
-
-    Where effects are at many joints only what is not among them is uncertain within
-    tolerances; where these leave more than noise nothing is, since tolerances would
-    explain what no model does.
-    """
-    data, result, kind = learned.data, learned.result, learned.kind
-    if kind == "not_identifiable":  # then no effect is believed
-        result = replace(result, chosen=0)
-    winner = result.winner
-    both, test = data.calibrated(winner.model if winner else ())
-    if learned.inexact:
-        both = both.without_tolerances()
-    elif learned.everywhere:
-        both = both.with_tolerances_beside(winner.model if winner else ())
-    both, refitted, said = established(both, winner.model if winner else ())
-    model = refitted.model if refitted else ()
-    if not model:
-        both, test = data.calibrated(())
-    bare = [one.without_tolerances() for one in (data.learned, data.test, both, test)]
-    fit = held_out_errors((bare[0], bare[1]), bare[2], bare[3], result, model, seed)
-    if model:
-        timed = all(effect(placed.name).timed for placed in model)
-        said = (*said, *objections(fit, timed))
-    return _Tested(result, kind, refitted, both, test, fit, said)
-
-
-def _verdict(
-    material: Material, data: DataSets, search: Search, tested: _Tested
-) -> Verdict:
+def _verdict(learned: Learned, tested: Tested) -> Verdict:
     """The verdict; its kind becomes "unknown" where held-out data contradict it."""
-    both, result, kind = tested.both, tested.result, tested.kind
-    judge = search.judge
-    nominal = data.learned.residuals([()])[0]
-    left = tested.refitted.residual if tested.refitted else nominal
-    bare = data.learned.without_tolerances()
-    unmodelled = data.test.residuals([()])[0]
-    modelled = tested.test.residuals([tested.model])[0]
-    before, after = ((data.learned, left), (data.test, modelled))
-    larger = larger_than_learned(before, after)
-    refuted = model_refuted(unmodelled, modelled, judge.least_gain)
-    share = _share_left(tested.fit) if tested.model else 1.0
-    shape = both, tested.model, share
-    above = rms_above_floor(data.test, unmodelled)
-    if kind == "none" and (larger or above**2 > 1 + MOST_LEFT):
-        kind, shape = "unknown", (data.test, (), 1.0)
-    nothing = tested.objections or (result.winner and not tested.model)
-    if kind == "effects" and (refuted or nothing):
-        kind = "unknown" if above**2 > 1 + MOST_LEFT else "none"
-    effects = believed_effects(both, result, tested.refitted)
-    small: tuple[Found, ...] = ()
-    if kind == "effects":
-        usual = {one.key for one in tested.model if is_small(material.plant, one)}
-        small = tuple(one for one in effects if f"{one.name}@{one.place}" in usual)
-        effects = tuple(one for one in effects if one not in small)
-        kind = "effects" if effects else "none"
+    material, data, search = learned.material, learned.data, learned.search
+    judge, kind, model = search.judge, learned.kind, tested.model
+    both, test = tested.sims
+    nominal = tested.nominal[0].residuals([()])[0]
+    before = nominal if tested.refitted is None else tested.refitted.residual
+    after = test.residuals([model])[0]
+    larger = larger_than_learned((tested.nominal[0], before), (test, after))
+    shape: tuple[Predictor, Model, float] | None = None
+    if kind == "none" and model and tested.stands:
+        kind = "effects"  # mismatch that is larger than usual
+    elif kind == "effects" and not tested.stands:
+        kind = "unknown" if tested.leaves_much else "none"
+    elif kind == "none" and (larger or tested.leaves_much):
+        kind, shape = "unknown", (tested.nominal[1], (), 1.0)
+    share = _share_left(tested.fit) if model else 1.0
+    shape = shape or (both, model, share)
+    every = believed_effects(both, learned.result, tested.refitted)
+    named, small = _by_size(learned, tested, every)
+    if kind in ("effects", "none"):
+        kind = "effects" if named else "none"
+    else:
+        small = ()
     smallest: Mapping[str, Amount] = {}
     if kind in ("none", "not_identifiable"):
         gain = judge.least_fitted
         smallest = smallest_detectable(judge.fit, search.signatures, gain)
     if kind == "unknown":  # then none of them is established
-        effects = tuple(replace(one, probability=None) for one in effects)
+        named = tuple(replace(one, probability=None) for one in every)
+    bare = data.learned.nominal().evenly()
     return Verdict(
         kind=kind,
-        effects=effects if kind != "none" else (),
+        effects=named if kind in ("effects", "unknown") else (),
         small=small,
         smallest_detectable=smallest,
         unexplained=_shape(*shape) if kind == "unknown" else None,
         limits=(
             *larger,
-            *refuted,
             *tested.objections,
+            *tested.limits,
             *material.audited.limits,
             *material.limits,
         ),
         mismatch=mismatch_map(bare, bare.residuals([()])[0]),
         pulses=material.pulses,
         fit=tested.fit,
-        next_experiment=next_experiment(material.plant, result, material.traces),
+        next_experiment=next_experiment(
+            material.plant, learned.result, material.traces
+        ),
         recordings=data.recordings(),
     )
 
 
+def _by_size(
+    learned: Learned, tested: Tested, found: tuple[Found, ...]
+) -> tuple[tuple[Found, ...], tuple[Found, ...]]:
+    """What is named, the most probable first, and small mismatch that is sure.
+
+    What is usual differs from the model, not from the robot as it was before.
+    """
+    plant, least_gain = learned.material.plant, learned.search.judge.least_gain
+    usual = {one.key for one in tested.model if is_small(plant, one)}
+    usual = set() if learned.noise else usual
+    small = tuple(one for one in found if f"{one.name}@{one.place}" in usual)
+    named = [one for one in found if one not in small]
+    errors, larger = sure_nuisance(tested.sims[0], tested.model, least_gain)
+    named += larger
+    named.sort(key=lambda one: -(one.probability or 0.0))
+    return tuple(named), (*small, *(() if learned.noise else errors))
+
+
 def _shape(predictor: Predictor, model: Model, share: float) -> Unexplained | None:
     """The shape of the error that a model leaves, as a replay shows it."""
-    bare = predictor.without_tolerances()
+    bare = predictor.evenly()
     return unexplained(bare, bare.residuals([model])[0], share)
 
 

@@ -242,7 +242,7 @@ def write_correction(folder: RunFolder, found: Diagnosis) -> None:
         return
     first = found.test.traces[0]
     servo = found.plant.servo if first.unheld else first.servo
-    model = (*found.given, *found.model)
+    model = (*found.given, *found.nuisance, *found.model)
     folder.write_text(CORRECTED_XML, corrected_mjcf(found.plant, model, servo))
     folder.write_text(CORRECTED_JSON, Correction.of(found.plant, model).to_json())
 

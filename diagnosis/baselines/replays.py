@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import Channels, shared_channels
-from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.channels import shared_channels
+from diagnosis.residuals.predictor import Model, Predictor, no_nuisance
 from diagnosis.residuals.steps import with_best_steps
 from diagnosis.search.reference import learn_reference
 from diagnosis.traces.trace import Trace
@@ -24,13 +24,17 @@ def exact_replays(
     """
     channels = shared_channels(plant, [*traces, *reference])
     if not reference:
-        return with_best_steps(Predictor(plant, traces, channels))
+        return _ready(Predictor(plant, traces, channels))
     known: Model = ()
     if plant.base == "fixed":
-        known = explained(_alone(plant, reference, channels))
+        known = explained(_ready(Predictor(plant, reference, channels)))
     noise = learn_reference(plant, reference, channels, known=known)
-    return with_best_steps(Predictor(plant, traces, channels, noise=noise))
+    return _ready(Predictor(plant, traces, channels, noise=noise))
 
 
-def _alone(plant: Plant, reference: Sequence[Trace], channels: Channels) -> Predictor:
-    return with_best_steps(Predictor(plant, reference, channels))
+def _ready(predictor: Predictor) -> Predictor:
+    """The predictor in its best steps; usual errors of its model are no evidence."""
+    some = with_best_steps(predictor)
+    if some.plant.base == "fixed":
+        some.doubt_beside(no_nuisance(some), ())
+    return some

@@ -25,7 +25,7 @@ from diagnosis.baselines.sysid_models import (
 )
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
-from diagnosis.residuals.predictor import WARM_UP_S
+from diagnosis.residuals.replays import WARM_UP_S
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray

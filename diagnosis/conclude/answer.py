@@ -10,7 +10,9 @@ from diagnosis.effects.library import effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.fitting import FittedModel
+from diagnosis.search.many.pruning import gains_of_each
 from diagnosis.search.result import SearchResult
 from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Found, VerdictKind, When
@@ -38,14 +40,14 @@ def alike(
     They could replace it in the winning model and explain as much, or are its twins.
     """
     winner = found.winner
-    assert winner is not None
-    rest = winner.keys - {placed.key}
     others: dict[str, PlacedEffect] = {}
-    for judged in found.best[found.chosen]:
-        own = [other for other in judged.model if other.key not in rest]
-        other = len(own) == 1 and own[0].key != placed.key
-        if other and found.worse(judged) <= TIED_NATS:
-            others[own[0].key] = PlacedEffect(own[0].name, own[0].place)
+    if winner is not None and placed.key in winner.keys:
+        rest = winner.keys - {placed.key}
+        for judged in found.best[found.chosen]:
+            own = [other for other in judged.model if other.key not in rest]
+            other = len(own) == 1 and own[0].key != placed.key
+            if other and found.worse(judged) <= TIED_NATS:
+                others[own[0].key] = PlacedEffect(own[0].name, own[0].place)
     twins = effect(placed.name).twins(plant, placed.place)
     return tuple(dict.fromkeys((*others.values(), *twins)))
 
@@ -84,29 +86,21 @@ def gap(found: SearchResult, placed: PlacedEffect) -> float:
     return max(min(without, default=np.inf), 0.0)
 
 
-def probability(found: SearchResult, placed: PlacedEffect) -> float:
-    """Probability, 0.49 to 0.98, that an effect of the winning model is right."""
-    odds = SLOPE * np.log1p(gap(found, placed) / EVEN_NATS)
+def probability(nats: float) -> float:
+    """Probability, 0.49 to 0.98, that an effect is right.
+
+    `nats` is how much less plausible the best model without it is.
+    """
+    odds = SLOPE * np.log1p(nats / EVEN_NATS)
     return float(MOST / (1 + np.exp(-odds)))
 
 
-WITHIN = 2.0
-"""Multiple of a model's tolerance, one standard deviation, up to which an effect may
-well be its usual error: 95 % of all robots lie within."""
-
-
 def is_small(plant: Plant, placed: PlacedEffect) -> bool:
-    """Whether an effect may be what robots usually differ by from their models."""
-    kind = effect(placed.name)
-    size = WITHIN * kind.tolerance(plant, placed.place)
-    if size == 0:
-        return False
-    parameters = kind.parameters(plant, placed.place)[: kind.components]
-    differences = [
-        np.log(value / one.neutral) if one.logarithmic else value - one.neutral
-        for one, value in zip(parameters, placed.values, strict=False)
-    ]
-    return bool(np.all(np.abs(differences) <= size))
+    """Whether an effect is an error of what the robot model states, of usual size.
+
+    Dry friction, which models leave out, is missing and not small.
+    """
+    return is_usual(plant, placed) and not effect(placed.name).jumps
 
 
 LEAST_CLOSED = 0.5
@@ -132,10 +126,13 @@ def believed_effects(
     """The effects of a verdict with estimates, the most probable first.
 
     `refitted` is the search's winner fitted to the data of `both`, which simulates
-    fitting and selection data; None if it has no effect.
+    fitting and selection data; None if it has no effect. Effects that the search did
+    not find are small mismatch of the model that is sure.
     """
-    if refitted is None or searched.winner is None:
+    if refitted is None:
         return ()
+    known = searched.winner.keys if searched.winner else frozenset()
+    gains = {one.key: gain for own, gain in gains_of_each(refitted) for one in own}
     values = estimates(both, refitted)
     first_s = min(float(trace.time_s[0]) for trace in both.traces)
     last_s = max(float(trace.time_s[-1]) for trace in both.traces)
@@ -144,7 +141,9 @@ def believed_effects(
             name=placed.name,
             place=placed.place,
             parameters=own,
-            probability=probability(searched, placed),
+            probability=probability(
+                gap(searched, placed) if placed.key in known else gains[placed.key]
+            ),
             confusable_with=alike(searched, both.plant, placed),
             when=_when(placed, first_s, last_s),
             native=effect(placed.name).native,

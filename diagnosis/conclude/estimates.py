@@ -7,6 +7,7 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
+from diagnosis.residuals.usual_errors import USUAL
 from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.ties import groups_of
@@ -149,7 +150,7 @@ def smallest_detectable(
     The change of the residual by an effect (its signature) is taken as proportional to
     the effect's size, hence the gain grows with the square of the size. Effects that
     act only above a threshold are left out. `gain` [nats] is what an effect needs to be
-    reported.
+    reported. What a model states must be further off than is usual.
     """
     sizes: dict[str, Amount] = {}
     for signature in found:
@@ -163,6 +164,9 @@ def smallest_detectable(
         tried = max(abs(value) for value in placed.values[:1])
         size = abs(tried - first.neutral) or max(map(abs, placed.values))
         least = size * float(np.sqrt(gain / power))
+        kind = effect(placed.name)
+        if kind.tolerance(predictor.plant, placed.place):  # smaller ones are usual
+            least = max(least, USUAL * kind.spread(predictor.plant, placed.place))
         if placed.key not in sizes or least < sizes[placed.key].value:
             unit = predictor.plant.unit(first.unit, placed.place)
             sizes[placed.key] = Amount(least, unit)

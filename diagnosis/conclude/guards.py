@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.conclude.estimates import Z_80, standard_errors
+from diagnosis.conclude.held_out_errors import Judgement
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
@@ -22,7 +23,6 @@ from diagnosis.search.fitting import (
     fit_all,
     ran_into_bound,
 )
-from diagnosis.search.result import MOST_LEFT
 from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Errors, Fit
 
@@ -32,36 +32,38 @@ that a wrong answer must not reach: more than a coincidence, less than all."""
 
 MOST_OF_IT = 0.75
 """Share of the squared error above the noise that an answer must take away: the error
-falls to half. What is left is otherwise as large as what was found."""
+falls to half. What is left is otherwise as large as what was found. That of a
+regression without physics counts as noise where it explains something, but no more than
+the effects do."""
+
+SURELY = 2.33
+"""Standard errors by which a control that explains much must still leave more than the
+effects found: once in a hundred cases it does so by chance."""
 
 SHIFTS, FITTED = (-10, 3), 3
 """First and last shift, in bins of 50 ms, of the start of an effect that does not last,
 and number of the best starts that are fitted: an event shows late, and a fit does not
 find a moment from far away."""
 
-ROUNDS = 2
-"""How often values and the width of tolerances are estimated in turn."""
-
 
 def established(
     both: Predictor, model: Model
-) -> tuple[Predictor, FittedModel | None, tuple[str, ...]]:
+) -> tuple[FittedModel | None, tuple[str, ...]]:
     """The effects of a model, refitted, without those that may be nothing.
 
     Effects are removed one at a time, those that may be nothing before those on a
-    bound. Returns the predictor `both` with tolerances as wide as this robot needs, the
-    effects fitted with it, None if none is left, and sentences on those on a bound.
+    bound. Returns the effects fitted to the data of `both`, None if none is left, and
+    sentences on those on a bound.
     """
     said = list[str]()
     model = _retimed(both.without_tolerances(), model)
-    both, model = _as_exact_as_seen(both, model)
     while model:
         fitted = fit_all(both, [model])[0]
         model = fitted.model
         doubtful = _may_be_nothing(both, fitted)
         bound = [one for one in model if ran_into_bound(fitted, one)]
         if doubtful is None and not bound:
-            return both, fitted, tuple(said)
+            return fitted, tuple(said)
         gone = doubtful if doubtful is not None else bound[0]
         if doubtful is None:
             name = effect(gone.name).words.label
@@ -71,7 +73,7 @@ def established(
             )
         group = next(group for group in groups_of(model) if gone in group)
         model = tuple(one for one in model if one not in group)
-    return both, None, tuple(said)
+    return None, tuple(said)
 
 
 def _retimed(both: Predictor, model: Model) -> Model:
@@ -97,19 +99,6 @@ def _retimed(both: Predictor, model: Model) -> Model:
     return model
 
 
-def _as_exact_as_seen(both: Predictor, model: Model) -> tuple[Predictor, Model]:
-    """A predictor with tolerances as wide as the model needs, and the model refitted.
-
-    Values and tolerances are estimated in turn, from values that ignore tolerances:
-    with wide tolerances values are so uncertain that wrong ones would keep them wide.
-    """
-    bare = both.without_tolerances()
-    for _ in range(ROUNDS if model else 0):
-        model = fit_all(bare, [model])[0].model
-        bare = both.with_likely_tolerances(model)
-    return bare if model else both, model
-
-
 def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None:
     """The effect with the least evidence among those whose values may be neutral.
 
@@ -131,25 +120,26 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
     return worst
 
 
-def objections(every: Fit, timed: bool) -> tuple[str, ...]:
+def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
     """Sentences on why effects are not established, from errors on held-out data.
 
     `timed` says that they acted for a while only, perhaps not in the held-out data.
     Only channels in which the nominal sim is off count, if there are any: in many
     others an effect at one joint would be lost.
     """
-    fit = _telling(every)
+    hardly_more = judged.hardly_more
+    fit = _telling(judged.fit, hardly_more)
     gained = fit.nominal**2 - fit.corrected**2
     if timed and gained >= -(fit.floor**2):
         return ()
     if gained <= 0:
         return ("The effects found do not predict held-out motions better.",)
     said = []
-    possible = fit.nominal**2 - fit.floor**2
-    if fit.ceiling is not None and fit.ceiling < fit.nominal:
-        possible = min(possible, fit.nominal**2 - fit.ceiling**2)
+    possible = _possible(fit, hardly_more)
     share = gained / (fit.nominal**2 - fit.floor**2)
-    if share < MOST_OF_IT and fit.corrected**2 > (1 + MOST_LEFT) * fit.floor**2:
+    beaten = fit.ceiling is not None and fit.corrected <= fit.ceiling < fit.nominal
+    much_left = fit.corrected**2 > (1 + hardly_more) * fit.floor**2
+    if share < MOST_OF_IT and much_left and not beaten:
         said.append(
             f"The effects found take away {share:.0%} of the squared error above the "
             "noise in held-out motions: something else is missing, too."
@@ -159,24 +149,39 @@ def objections(every: Fit, timed: bool) -> tuple[str, ...]:
             f"The effects found explain {gained / possible:.0%} of what could be "
             "explained of the error in held-out motions, less than half."
         )
-    controls = (
-        (fit.wrong_place, "the same effect at another place"),
-        (fit.wrong_effect, "another effect at the same place"),
-    )
+    controls = {
+        "wrong_place": "the same effect at another place",
+        "wrong_effect": "another effect at the same place",
+    }
     said += [
         f"In held-out motions {words} explains about as much."
-        for error, words in controls
-        if error is not None and _does_as_well(fit, error)
+        for key, words in controls.items()
+        if judged.worse.get(key, 0.0) < SURELY
+        and getattr(fit, key) is not None
+        and _does_as_well(fit, getattr(fit, key), hardly_more)
     ]
     return tuple(said)
 
 
-def _telling(fit: Fit) -> Errors:
+def _possible(fit: Errors, hardly_more: float) -> float:
+    """How much of the squared error could be explained, if that is known; else 0.
+
+    A regression without physics shows it, and so does the noise, unless hardly more is
+    left: it is not known so well.
+    """
+    above, far = fit.nominal**2 - fit.floor**2, hardly_more * fit.floor**2
+    options = [above] if above > far else []
+    if fit.ceiling is not None and fit.ceiling < fit.nominal:
+        options.append(fit.nominal**2 - fit.ceiling**2)
+    return min(options, default=0.0)
+
+
+def _telling(fit: Fit, hardly_more: float) -> Errors:
     """The errors, by noise floors, over channels in which the nominal sim is off."""
     own = [
         one
         for one in fit.channels.values()
-        if one.nominal**2 > (1 + MOST_LEFT) * one.floor**2
+        if one.nominal**2 > (1 + hardly_more) * one.floor**2
     ]
     if not own:
         return fit
@@ -189,13 +194,13 @@ def _telling(fit: Fit) -> Errors:
     return Errors(**together)
 
 
-def _does_as_well(fit: Errors, control: float) -> bool:
+def _does_as_well(fit: Errors, control: float, hardly_more: float) -> bool:
     """Whether a control takes away half of the main effect's share, and leaves little.
 
     Similar effects explain much of each other; but the right one leaves far less.
     """
     alone = fit.nominal if fit.without is None else fit.without
-    left = max(fit.corrected**2 / fit.floor**2 - 1, MOST_LEFT)
+    left = max(fit.corrected**2 / fit.floor**2 - 1, hardly_more)
     return bool(
         alone**2 - control**2 > HALF * (alone**2 - fit.corrected**2)
         and control**2 / fit.floor**2 - 1 < left / HALF

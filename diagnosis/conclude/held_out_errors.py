@@ -3,8 +3,8 @@
 A diagnosis is convincing if all controls predict held-out recordings worse.
 """
 
-from collections.abc import Collection
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,8 +14,9 @@ from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.channels import channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.chance import independent_blocks
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.result import SearchResult
+from diagnosis.search.result import MORE_THAN_NOISE, MOST_LEFT, SearchResult
 from diagnosis.search.ties import groups_of, without_each
 from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
@@ -24,54 +25,187 @@ SURPRISE = 2.0
 """A verdict expresses a doubt if the rms error on held-out data is at least this
 multiple of that on the data of the fit."""
 
+FAINT = (
+    "The held-out recordings hardly show the main effect: all recordings count in what "
+    "it is judged by."
+)
+"""Sentence for the limits of a verdict."""
+
 
 def held_out_errors(
     nominal: tuple[Predictor, Predictor],
-    both: Predictor,
-    test: Predictor,
+    sims: tuple[Predictor, Predictor],
     searched: SearchResult,
     model: Model,
+    least_shown: float,
     seed: np.random.SeedSequence,
-) -> Fit:
+) -> tuple[Fit, "Judgement"]:
     """Errors on held-out data: of the nominal sim, a model and wrong models (controls).
 
     The held-out data are used only here, after effects are chosen and fitted.
 
     Args:
       nominal: predictors of the data used so far (fitting and selection) and of the
-        held-out data, both calibrated at the nominal robot model.
-      both: predictor of the data used so far, calibrated at `model`.
-      test: predictor of the held-out data, calibrated at `model`.
+        held-out data, both calibrated at the nominal robot model; see `beside_control`.
+      sims: the same, calibrated at `model`. All of them have small mismatch of the
+        nominal model, which is fitted anew to each control.
       searched: the result of the search.
-      model: the effects that are reported, fitted to `both`.
+      model: the effects that are reported, fitted to the data used so far.
+      least_shown: energy [nats] of what the main effect changes from which on held-out
+        data show it. Otherwise all data count in what effects are judged by: held-out
+        motions need not meet an end stop, and hardly show what is faint.
       seed: seed of the flexible regression and of the random choice of a control.
+
+    Returns:
+      Errors as they are measured, and those by which to judge.
     """
-    errors = {"nominal": _error(nominal[1], ()), "corrected": _error(test, model)}
     regression, lot = seed.spawn(2)
+    both, test = sims
+    found = {"nominal": (nominal, ()), "corrected": (sims, model)}
+    parts, said = [1], tuple[str, ...]()
     if model:
         others = [alike(searched, both.plant, placed) for placed in model]
         keys = {f"{one.name}@{one.place}" for own in others for one in own}
         controls = controls_of(both, model, keys, np.random.default_rng(lot))
         for key, control in controls.items():
             if control is not None:
-                errors[key] = _error(test, control)
-    errors["ceiling"] = flexible_regression_errors(*nominal, regression)
-    channels = {}
-    noise, floor = test.channels.noise, test.channels.floor
+                found[key] = beside_control(sims, model, control), control
+        if _shown(test, model, found["without"][1]) < least_shown:
+            parts, said = [0, 1], (FAINT,)
+    seeds = regression.spawn(2)
+    measured = {
+        key: _error([pair[1].evenly()], own) for key, (pair, own) in found.items()
+    }
+    even = nominal[0].evenly(), nominal[1].evenly()
+    measured["ceiling"] = flexible_regression_errors(*even, seeds[0])
+    judged = {
+        key: _error([pair[i] for i in parts], own) for key, (pair, own) in found.items()
+    }
+    if parts == [1]:
+        judged["ceiling"] = flexible_regression_errors(*nominal, seeds[1])
+    channels = test.channels
+    wider = channels.noise / channels.floor, channels.wider
+    worse = {
+        key: _worse([sims[i] for i in parts], model, [pair[i] for i in parts], own)
+        for key, (pair, own) in found.items()
+        if key in CONTROLS
+    }
+    fit = _fit(test, judged, wider[1])
+    judgement = Judgement(fit, worse, said, hardly_more_than_noise(test))
+    return _fit(test, measured, wider[0]), judgement
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Errors by which a model is judged.
+
+    Attributes:
+      fit: errors on held-out data, beyond what the jitter of clocks, wrong starts and
+        other small mismatch of the nominal model may explain.
+      worse: for each control (a wrong model), how much more it leaves than the model,
+        in standard errors of that difference.
+      limits: a sentence for the limits of the verdict if all data count.
+      hardly_more: share of the squared noise up to which what is left above it is
+        hardly more than noise.
+    """
+
+    fit: Fit
+    worse: Mapping[str, float] = field(default_factory=dict)
+    limits: tuple[str, ...] = ()
+    hardly_more: float = MOST_LEFT
+
+
+def hardly_more_than_noise(test: Predictor) -> float:
+    """Share of the squared noise that is hardly anything above it.
+
+    How much of a torque's noise its smoothing leaves is known to a factor of two.
+    """
+    return MORE_THAN_NOISE**2 - 1 if test.by_torque else MOST_LEFT
+
+
+CONTROLS = "wrong_place", "wrong_effect"
+"""Names of the wrong models with which the one found is compared."""
+
+
+def _worse(
+    own: Sequence[Predictor], model: Model, others: Sequence[Predictor], control: Model
+) -> float:
+    """How much more a control leaves than a model, in standard errors.
+
+    Energies of independent blocks of time are compared in pairs, as signed square
+    roots, so that a few moments do not decide.
+    """
+    differences = []
+    for one, other in zip(own, others, strict=True):
+        (left,), (wrong,) = one.residuals([model]), other.residuals([control])
+        block = independent_blocks(one, left)
+        differences.append(np.bincount(block, wrong**2 - left**2))
+    every = np.concatenate(differences)
+    every = np.sign(every) * np.sqrt(np.abs(every))
+    deviation = float(np.std(every, ddof=1)) if len(every) > 1 else np.inf
+    return float(every.sum() / max(deviation * np.sqrt(len(every)), 1e-12))
+
+
+def _shown(test: Predictor, model: Model, rest: Model) -> float:
+    """Energy [nats] of what the effects that only `model` has change in data."""
+    with_it, without = test.residuals([model, rest])
+    return 0.5 * float(np.sum((with_it - without) ** 2))
+
+
+def beside_control(
+    sims: tuple[Predictor, Predictor], model: Model, control: Model = ()
+) -> tuple[Predictor, Predictor]:
+    """Predictors with the small mismatch that is likely beside a control.
+
+    None is where a model has effects: what these explain is compared with what a
+    control and the usual mismatch of other places and kinds explain, not with a part of
+    the effects themselves. `sims` are of learned and of held-out data.
+    """
+    learned, test = sims
+    if learned.nuisance is None:
+        return sims
+    keys = {one.key for one in model} - {one.key for one in control}
+    none = learned.nuisance.none_at(keys)
+    learned = learned.moved_to((*control, *none)).with_tolerances_beside(none)
+    return learned, test.with_nuisance_of(learned).with_tolerances_beside(none)
+
+
+def _fit(test: Predictor, errors: Mapping[str, FloatArray], wider: FloatArray) -> Fit:
+    """Errors by channel and together, from rms errors (c,) in units of noise.
+
+    `wider` (c,) is the noise in units of the floor.
+    """
+    channels, floor = {}, test.channels.floor
     for i, name in enumerate(test.channels.names):
-        own = {key: float(rms[i] * noise[i]) for key, rms in errors.items()}
+        own = {key: float(rms[i] * wider[i] * floor[i]) for key, rms in errors.items()}
         unit = channel_unit(test.plant, name)
         channels[name] = ChannelFit(unit=unit, floor=float(floor[i]), **own)
     every = {
-        key: float(np.sqrt(np.mean((rms * noise / floor) ** 2)))
-        for key, rms in errors.items()
+        key: float(np.sqrt(np.mean((rms * wider) ** 2))) for key, rms in errors.items()
     }
     return Fit(floor=1.0, channels=channels, **every)
 
 
-def _error(test: Predictor, model: Model) -> FloatArray:
-    """(c,) rms error of a model on the held-out data, in units of noise."""
-    return channel_rms(test, test.residuals([model])[0])
+def above_nominal(fit: Fit, nominal: Predictor) -> Fit:
+    """The errors, beside those of the nominal sim as it is.
+
+    `nominal` predicts the held-out data without any small mismatch of the model.
+    """
+    rms = _error([nominal], ())
+    noise, floor = nominal.channels.noise, nominal.channels.floor
+    channels = {
+        name: replace(one, nominal=float(rms[i] * noise[i]))
+        for i, (name, one) in enumerate(fit.channels.items())
+    }
+    every = float(np.sqrt(np.mean((rms * noise / floor) ** 2)))
+    return replace(fit, nominal=every, channels=channels)
+
+
+def _error(parts: Sequence[Predictor], model: Model) -> FloatArray:
+    """(c,) rms error of a model on parts of the data, in units of noise."""
+    rms = np.array([channel_rms(one, one.residuals([model])[0]) for one in parts])
+    rows = np.array([one.scored.sum() for one in parts])
+    return np.asarray(np.sqrt(rows @ rms**2 / rows.sum()))
 
 
 def channel_rms(predictor: Predictor, residual: FloatArray) -> FloatArray:
@@ -100,8 +234,7 @@ def model_refuted(
 
 def rms_above_floor(predictor: Predictor, residual: FloatArray) -> float:
     """Rms of an (N,) residual in the worst channel, in multiples of its noise floor."""
-    channels = predictor.channels
-    rms = channel_rms(predictor, residual) * channels.noise / channels.floor
+    rms = channel_rms(predictor, residual) * predictor.channels.wider
     return float(rms.max())
 
 

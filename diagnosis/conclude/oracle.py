@@ -59,7 +59,7 @@ def fit_structure(
     used = [*parts.fit, *parts.select, *parts.test]
     every = Predictor(plant, used, channels, noise=noise)
     every.calibrate(model)
-    residuals = every.without_tolerances().residuals([(), model, *others])
+    residuals = every.nominal().residuals([(), model, *others])
     held_out = every.trace >= len(parts.fit) + len(parts.select)
     error = np.sqrt(np.mean(residuals[:, held_out & every.scored] ** 2, axis=1))
     gain = log_score_gain(residuals[0], residuals[1], every.channel) / len(traces)

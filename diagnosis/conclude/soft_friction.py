@@ -41,9 +41,10 @@ def creeps(learned: Predictor, model: Model, least: float) -> bool:
     soft, stiff = learned.on(softly(learned.plant)), learned.on(learned.plant)
     energies = []
     for one in (soft, stiff):
-        one.correct(model)
         one.doubt_as(learned)
-        energies.append(fit_all(one, [model])[0].energy if model else _energy(one))
+        one.correct(model)
+        near = one.moved_to(model)
+        energies.append(fit_all(near, [model])[0].energy if model else _energy(near))
     return energies[1] - energies[0] > least
 
 

@@ -10,6 +10,7 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.verdict import Verdict
 from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
 from groundwalk.json_data import from_plain, parse_object, to_plain
@@ -69,6 +70,9 @@ class Correction:
     def model(self, plant: Plant) -> Model:
         """The effects with places and values, checked against a model of the robot.
 
+        How level a base was mounted, if it was about level, is left out for a robot
+        that walks.
+
         Raises:
           BadModelError: the effects belong to another robot, have other parameters, or
             cannot act on this robot model.
@@ -79,21 +83,18 @@ class Correction:
                 f"these effects are of {self.robot!r}, the robot is {plant.name!r}"
             )
         parts = (*self.native, *self.per_tick)
-        return tuple(self._placed(plant, part) for part in parts)
+        placed = (self._placed(plant, part) for part in parts)
+        return tuple(one for one in placed if one is not None)
 
-    def _placed(self, plant: Plant, part: Entry) -> PlacedEffect:
+    def _placed(self, plant: Plant, part: Entry) -> PlacedEffect | None:
+        """The effect with its values; None if it is usual, but not on this base."""
         obstacle = effect(part.name).obstacle(self.base, plant.base)
+        placed = _checked(plant, part)
+        if obstacle and is_usual(plant, placed):
+            return None
         if obstacle:
             raise BadModelError(obstacle)
-        _check_place(plant, part)
-        names = _parameters(plant, part)
-        if sorted(names) != sorted(part.parameters):
-            raise BadModelError(
-                f"{part.name}@{part.place} has the parameters "
-                f"{', '.join(part.parameters)}; it needs {', '.join(names)}"
-            )
-        values = tuple(part.parameters[name] for name in names)
-        return PlacedEffect(part.name, part.place, values)
+        return placed
 
 
 def load_correction(source: str | Path, plant: Plant) -> Model:
@@ -142,6 +143,18 @@ def _sorted(parts: Sequence[Entry]) -> tuple[tuple[Entry, ...], tuple[Entry, ...
 def _parameters(plant: Plant, placed: PlacedEffect | Entry) -> list[str]:
     every = effect(placed.name).parameters(plant, placed.place)
     return [parameter.name for parameter in every]
+
+
+def _checked(plant: Plant, part: Entry) -> PlacedEffect:
+    _check_place(plant, part)
+    names = _parameters(plant, part)
+    if sorted(names) != sorted(part.parameters):
+        raise BadModelError(
+            f"{part.name}@{part.place} has the parameters "
+            f"{', '.join(part.parameters)}; it needs {', '.join(names)}"
+        )
+    values = tuple(part.parameters[name] for name in names)
+    return PlacedEffect(part.name, part.place, values)
 
 
 def _check_place(plant: Plant, part: Entry) -> None:

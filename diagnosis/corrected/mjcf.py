@@ -113,8 +113,12 @@ def _write_fields(
 
 
 def _delay_commands(spec: mujoco.MjSpec, delay_s: float, step_s: float) -> None:
-    """Delay all actuators' controls, interpolating if the delay is not whole steps."""
-    if delay_s == 0:
+    """Delay all actuators' controls, interpolating if the delay is not whole steps.
+
+    MuJoCo delays by a step at least. Less than half of one is left out, and so is a
+    negative delay, as that of a clock may be.
+    """
+    if delay_s < step_s / 2:
         return
     for actuator in spec.actuators:
         actuator.delay = delay_s

@@ -26,12 +26,13 @@ from worlds.sim.world import SimWorld, ground_name, world_spec
 class _Delay:
     """Values that count later, by a time that may end between two physics steps.
 
+    A negative delay, as that of a clock may be, is none: nothing is known beforehand.
     `values` has the two that count now in front, the older one first, of which it has
     the `share`.
     """
 
     def __init__(self, delay_s: float, step_s: float) -> None:
-        steps, self.share = divmod(delay_s / step_s, 1)
+        steps, self.share = divmod(max(delay_s, 0.0) / step_s, 1)
         self.values: deque[Any] = deque(maxlen=int(steps) + 2)
 
     def begin(self, value: Any) -> None:

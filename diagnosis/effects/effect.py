@@ -26,16 +26,14 @@ STRETCHES = (0.4, 1.0, 2.5)
 """Factors on a guessed size of an effect that are tried before the size is fitted."""
 
 LIMITS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
-"""Factors on a guessed torque or speed limit that are tried before it is fitted. They
-are close, since gradients are useless where a joint too weak for its load collapses."""
+"""The same for a torque or speed limit. They are close, since gradients are useless
+where a joint too weak for its load collapses."""
 
 STIFFNESSES = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
-"""Factors on a guessed stiffness that are tried before it is fitted: at a guess between
-two resonances the gradient points to neither."""
+"""The same for a stiffness: between two resonances the gradient points to neither."""
 
 LEAST_STRETCH = 1e-3
-"""Smallest factor by which a value is divided, where an infinite value stands for no
-effect; avoids division by zero."""
+"""Smallest factor by which a value is divided, where infinity stands for no effect."""
 
 
 class Effect(ABC):
@@ -156,11 +154,14 @@ class Effect(ABC):
     def tolerance(self, plant: Plant, place: str) -> float:
         """Standard deviation to which a model states this effect's first value.
 
-        In the value's unit, or its logarithm's for logarithmic parameters; for vectors
-        that of each component. What lies within it is no evidence of missing physics. 0
-        if the effect is no matter of degree, such as a push.
+        In the value's unit, or its logarithm's if logarithmic; of each component of a
+        vector. 0 if the effect is no matter of degree, such as a push.
         """
         return 0.0
+
+    def spread(self, plant: Plant, place: str) -> float:
+        """Standard deviation, as `tolerance`, on robots with a model of usual care."""
+        return self.tolerance(plant, place)
 
     def obstacle(self, recorded: Base, base: Base) -> str:
         """Why a sim with a `base` cannot have the effect; "" if it can."""
@@ -237,10 +238,7 @@ class Effect(ABC):
         return When()
 
     def torque_column(self, motion: JointMotion) -> FloatArray | None:
-        """(rows,) joint torque [N m] for a value of 1 of the `column_parameter`.
-
-        None for effects that are not even nearly linear in it.
-        """
+        """(rows,) joint torque [N m] if `column_parameter` is 1; None if not linear."""
         return None
 
     def from_column(

@@ -4,7 +4,7 @@ import numpy as np
 
 from diagnosis.effects.effect import JointEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
-from diagnosis.effects.scales import brisk_rad_s, torque_nm
+from diagnosis.effects.scales import brisk_rad_s, torque_nm, weak_friction_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.usage import Usage
@@ -41,6 +41,10 @@ class ViscousFriction(NumberEffect, JointEffect):
         """The coefficient b [N m s/rad]; typical: 10 % of full torque in brisk use."""
         scale = torque_nm(plant, place) / brisk_rad_s(plant, place)
         return (Parameter("coefficient", "N m s/rad", 0.0, scale, 0.0, 0.1 * scale),)
+
+    def spread(self, plant: Plant, place: str) -> float:
+        """The grease in a gear takes some torque in brisk use."""
+        return weak_friction_nm(plant, place) / brisk_rad_s(plant, place)
 
     def twins(self, plant: Plant, place: str) -> tuple[PlacedEffect, ...]:
         """Effects that look alike: larger servo damping, if there is back-EMF."""
@@ -86,6 +90,10 @@ class CoulombFriction(NumberEffect, JointEffect):
         """The torque tau [N m], at most half of a large torque for the joint."""
         scale = torque_nm(plant, place)
         return (Parameter("torque", "N m", 0.0, 0.5 * scale, 0.0, 0.05 * scale),)
+
+    def spread(self, plant: Plant, place: str) -> float:
+        """Every gear rubs a little."""
+        return weak_friction_nm(plant, place)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) smooth sign of the velocity: the torque of dry friction of 1 N m."""

@@ -37,6 +37,17 @@ def torque_nm(plant: Plant, joint: str) -> float:
     return max(gravity, _ACCELERATION_RAD_S2 * inertia_kg_m2(plant, joint), used)
 
 
+WEAK = 0.01
+"""Share of a large torque that weak friction takes, as in every gear."""
+
+
+def weak_friction_nm(plant: Plant, joint: str) -> float:
+    """Friction torque [N m] that every gear has; 0 for a joint without a motor."""
+    column = plant.joints.index(joint)
+    driven = plant.used_nm is not None or plant.servo.kp_nm_rad[column] > 0
+    return WEAK * torque_nm(plant, joint) if driven else 0.0
+
+
 def inertia_kg_m2(plant: Plant, joint: str) -> float:
     """A joint's entry in the mass matrix's diagonal, in the reference pose."""
     model, data = plant.model, _reference(plant)

@@ -44,6 +44,10 @@ class TorqueScale(NumberEffect, JointEffect):
         """2 %: the accuracy to which the constants of a motor are known."""
         return 0.02
 
+    def spread(self, plant: Plant, place: str) -> float:
+        """3 %: makers state the constants of motors to 10 % at most."""
+        return 0.03
+
 
 class SensorDelay(NumberEffect):
     """Late encoders: measured(t) = true(t - delay), positions and velocities.

@@ -56,6 +56,10 @@ class ServoGain(NumberEffect, ServoEffect):
         """1 %, as motors of one type differ."""
         return 0.01
 
+    def spread(self, plant: Plant, place: str) -> float:
+        """3 %: makers state the constants of motors to 10 % at most."""
+        return 0.03
+
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) torque of the nominal stiffness; the share 1 - factor is missing."""
         return motion.pull_nm

@@ -31,20 +31,45 @@ class Channels:
         divided: the floor, or what the best model leaves if that is more.
       floor: (c,) standard deviation of sensor noise and of the simulation's own error;
         by default `noise`.
+      own_jitter_s, common_jitter_s: rms errors of the time stamps, of each channel by
+        itself and of a whole row; the noise does not include what they add.
+      share_at_rest: (c,) share of the floor that is left without what they add.
+      rounding: (c,) standard deviation of what rounding alone makes, as that of an
+        encoder. It lasts as long as a joint rests, so that what changes from row to row
+        does not show it.
     """
 
     names: tuple[str, ...]
     noise: FloatArray
     floor: FloatArray = None  # type: ignore[assignment]
+    own_jitter_s: float = 0.0
+    common_jitter_s: float = 0.0
+    share_at_rest: float | FloatArray = 1.0
+    rounding: float | FloatArray = 0.0
 
     def __post_init__(self) -> None:
         """Take the noise for the floor by default."""
         if self.floor is None:
             object.__setattr__(self, "floor", self.noise)
 
+    @property
+    def wider(self) -> FloatArray:
+        """(c,) the noise as a multiple of that of the sensors, both without jitter."""
+        return np.asarray(self.noise / (self.floor * self.share_at_rest))
+
     def widened(self, left: FloatArray) -> "Channels":
         """The channels with their noise (c,) times as large, and the same floor."""
         return replace(self, noise=self.noise * left)
+
+    def jittering(self, share: FloatArray, own_s: float, common_s: float) -> "Channels":
+        """The channels with a jitter of time stamps, and (c,) shares of their noise."""
+        return replace(
+            self,
+            noise=self.noise * share,
+            share_at_rest=share,
+            own_jitter_s=own_s,
+            common_jitter_s=common_s,
+        )
 
     def of_joint(self, joint: str) -> list[int]:
         """Indices of the channels that belong to a joint."""
@@ -85,11 +110,14 @@ def shared_channels(plant: Plant, traces: Sequence[Trace]) -> Channels:
     bare = Channels(tuple(names), np.ones(len(names)))
     measured = [measured_of(trace, bare) for trace in traces]
     found = [
-        [noise_of(trace.time_s, one).total for one in values.T]
+        [noise_of(trace.time_s, one) for one in values.T]
         for trace, values in zip(traces, measured, strict=True)
     ]
-    noise = np.maximum(np.median(found, axis=0), _least(names, np.vstack(measured)))
-    return Channels(tuple(names), np.where(noise > 0, noise, 1.0))
+    total = np.median([[one.total for one in own] for own in found], axis=0)
+    rounding = np.median([[one.rounding for one in own] for own in found], axis=0)
+    noise = np.maximum(total, _least(names, np.vstack(measured)))
+    noise = np.where(noise > 0, noise, 1.0)
+    return Channels(tuple(names), noise, rounding=rounding)
 
 
 def _least(names: Sequence[str], values: FloatArray) -> FloatArray:

@@ -87,22 +87,38 @@ class DataSets:
         options = None, threads, noise, on_replay, window_s
         whole = with_best_steps(predictor_of(plant, every, channels, *options))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
-        fit, select = whole.part(0, first), whole.part(first, last)
-        learned, test = whole.part(0, last), whole.part(last, len(every))
+        learned, test = _learned_and_test(whole, last, ())
+        fit, select = learned.part(0, first), learned.part(first, last)
         if not all(part.scored.any() for part in (fit, select, test)):
             raise BadRecordingError(TOO_SHORT)
         return cls(parts, fit, select, learned, test, whole)
 
     def calibrated(self, model: Model) -> tuple[Predictor, Predictor]:
         """Predictors of `learned` and of `test` data, calibrated at another model."""
-        whole = exact_steps(self._whole, model) if model else self._whole
-        last = len(self.learned.traces)
-        return whole.part(0, last), whole.part(last, len(whole.traces))
+        if not model:
+            return self.learned, self.test
+        whole = exact_steps(self._whole, model)
+        return _learned_and_test(whole, len(self.learned.traces), model)
 
     def recordings(self) -> Recordings:
         """Names of the recordings, or of parts of them, by their use."""
         uses = self.parts.fit, self.parts.select, self.parts.test
         return Recordings(*(tuple(trace.name for trace in use) for use in uses))
+
+
+def _learned_and_test(
+    whole: Predictor, last: int, model: Model
+) -> tuple[Predictor, Predictor]:
+    """Predictors of the first traces and of the others, calibrated at a model.
+
+    Small mismatch of the nominal model is fitted to the first ones only.
+    """
+    learned, test = whole.part(0, last), whole.part(last, len(whole.traces))
+    learned.doubt(model)
+    test.doubt_beside(learned.nuisance, model)
+    for part in (learned, test):
+        part.correct(model)
+    return learned, test
 
 
 def longest_window_s(

@@ -2,27 +2,29 @@
 
 from collections.abc import Callable, Sequence
 from copy import copy
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, measured_of, shared_channels
+from diagnosis.residuals.clock import clock_noise
+from diagnosis.residuals.doubts import Doubts
+from diagnosis.residuals.integration_error import IntegrationError
+from diagnosis.residuals.nuisance import Nuisance
+from diagnosis.residuals.nuisance_fit import NuisanceFit
 from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
 from diagnosis.residuals.replays import Model as Model
-from diagnosis.residuals.replays import Replays, tolerated
+from diagnosis.residuals.replays import Replays, time_blocks
 from diagnosis.residuals.start_state import StartUncertainty
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.trace import Trace
-from diagnosis.traces.windows import is_left_over, window_s
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
 """Time steps of simulations [s] by the kind of base, the longest first."""
-
-WARM_UP_S = 0.4
-"""Time [s] at the start of a recording in which errors do not count, because the start
-state of the simulation is only known up to sensor noise."""
 
 BLOCK_S = 0.5
 """Length [s] of the time blocks of which standard errors take account: errors in
@@ -36,11 +38,9 @@ rows after that."""
 class Predictor:
     """Simulates models on recordings, and corrects the integration error.
 
-    The integration error of a coarse time step is smooth and hardly depends on the
-    model. `calibrate` measures it once for one model, with finer steps and Richardson
-    extrapolation (first order: twice the finer result minus the coarser one); it is
-    then taken out of every simulation. So steps may be long: of the model at which
-    it was measured nothing is wrong, and of others only what they change.
+    `calibrate` measures the integration error for one model, which is then taken out of
+    every simulation. So steps may be long: of the model at which it was measured
+    nothing is wrong, and of others only what they change.
 
     Attributes:
       blocks: rows of all traces in blocks of 0.3 s, in which model errors that the
@@ -90,24 +90,19 @@ class Predictor:
         self._measured = np.concatenate(
             [measured_of(trace, self.channels) for trace in traces]
         )
-        self._scored = np.isfinite(self._measured) & ~self._warming()[:, None]
-        self._correction = np.zeros((sum(rows), c))
-        self._fine_correction = self._exact_correction = self._correction
+        self._scored = np.isfinite(self._measured) & ~self._replays.warming()[:, None]
+        none = np.zeros((sum(rows), c))
+        self._error = IntegrationError(none, none, none)
         self._ends = np.cumsum(rows).tolist()
-        self._doubt: StartUncertainty | None = None
-        self._tolerance: Tolerance | None = None
-        self._noise, self._on_replay = noise, on_replay
+        self._on_replay = on_replay
         self.blocks = blocks_of(self._replays.runs, self._scored.any(axis=1))
         self.channel = np.tile(np.arange(c), sum(rows))
         self.trace = np.repeat(np.arange(len(rows)), np.array(rows) * c)
         self.scored = self._scored.reshape(-1)
-        numbers = [  # none occurs in two traces
-            (trace.time_s - trace.time_s[0]) // BLOCK_S + 1000 * i
-            for i, trace in enumerate(traces)
-        ]
-        blocks = np.repeat(np.concatenate(numbers), c)
-        self.block = np.unique(blocks, return_inverse=True)[1]
+        self.block = np.repeat(time_blocks(traces, BLOCK_S), c)
         self._prepare()
+        clock = clock_noise(self.traces, self.channels, self._scored)
+        self._doubts = Doubts(clock=clock, noise=noise, blocks=self.blocks)
 
     def _prepare(self) -> None:
         """Prepare what another kind of predictor needs beside windows and channels."""
@@ -117,16 +112,17 @@ class Predictor:
         some = self.stepped(self.step_s, self.finest_s, self.traces[first:last])
         ends = [0, *self._ends]
         own = slice(ends[first], ends[last])
-        some._correction = self._correction[own]
-        some._fine_correction = self._fine_correction[own]
-        some._exact_correction = self._exact_correction[own]
-        if self._doubt is not None:
-            runs = self._replays.first_run
-            some._doubt = self._doubt.part(runs[first], runs[last])
-        if self._tolerance is not None:
-            entries = np.zeros_like(self._scored)
-            entries[own] = True
-            some._tolerance = self._tolerance.part(entries.reshape(-1))
+        some._error = self._error.part(own)
+        within = np.zeros_like(self._scored)
+        within[own] = True
+        runs = slice(self._replays.first_run[first], self._replays.first_run[last])
+        some._doubts = some._doubts.part(self._doubts, within.reshape(-1), runs)
+        return some
+
+    def _with(self, **changes: Any) -> "Predictor":
+        """A copy that takes other things out of residuals, see `Doubts`."""
+        some = copy(self)
+        some._doubts = replace(self._doubts, **changes)
         return some
 
     @property
@@ -135,29 +131,33 @@ class Predictor:
 
         It is 1/2 for each entry that counts, less what whitening takes out of noise.
         """
-        taken = [one.taken for one in (self._doubt, self._tolerance) if one is not None]
-        return 0.5 * float(self.scored.sum() - sum(taken))
+        return 0.5 * float(self.scored.sum() - self._doubts.taken)
+
+    @property
+    def nuisance(self) -> Nuisance | None:
+        """Small mismatch of the nominal model, which is in all simulations, if any."""
+        return self._doubts.nuisance
+
+    def evenly(self) -> "Predictor":
+        """A copy with residuals in one unit at all speeds; nothing is tolerated."""
+        start = self._doubts.start
+        start = start.evenly() if start else None
+        return self._with(clock=None, start=start, tolerance=None)
+
+    def nominal(self) -> "Predictor":
+        """A copy without small mismatch of the model, neither likely nor tolerated."""
+        return self._with(nuisance=None, tolerance=None)
 
     def without_tolerances(self) -> "Predictor":
-        """A copy whose residuals are not whitened with tolerances."""
-        some = copy(self)
-        some._tolerance = None
-        return some
+        """A copy that has likely small mismatch, but does not tolerate more."""
+        return self._with(tolerance=None)
 
     def with_tolerances_beside(self, model: Model) -> "Predictor":
         """A copy whose tolerances are those of all but a model's effects."""
-        some = copy(self)
-        if self._tolerance is not None:
-            some._tolerance = self._tolerance.beside({one.key for one in model})
-        return some
-
-    def with_likely_tolerances(self, model: Model) -> "Predictor":
-        """A copy whose tolerances are as wide as the errors that a model leaves."""
-        some = copy(self)
-        if self._tolerance is not None:
-            (left,) = self.without_tolerances().residuals([model])
-            some._tolerance = self._tolerance.scaled(self._tolerance.likely_scale(left))
-        return some
+        tolerance = self._doubts.tolerance
+        return self._with(
+            tolerance=tolerance and tolerance.beside({one.key for one in model})
+        )
 
     @property
     def by_torque(self) -> bool:
@@ -166,7 +166,13 @@ class Predictor:
 
     def on(self, plant: Plant) -> "Predictor":
         """An uncalibrated predictor of the same traces with another robot model."""
-        own = self.channels, self.step_s, self._threads, self._noise, self._on_replay
+        own = (
+            self.channels,
+            self.step_s,
+            self._threads,
+            self._doubts.noise,
+            self._on_replay,
+        )
         return type(self)(plant, self.traces, *own, self._window_s, self.finest_s)
 
     def stepped(
@@ -179,34 +185,77 @@ class Predictor:
 
         It is of given or its own traces.
         """
-        own = self.channels, step_s, self._threads, self._noise, self._on_replay
+        own = self.channels, step_s, self._threads, self._doubts.noise, self._on_replay
         some = self.traces if traces is None else traces
         return type(self)(self.plant, some, *own, self._window_s, finest_s)
 
     def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.
 
-        Both are then taken out of the residuals of all models, and so is what errors
-        within the tolerances of the nominal model change. Returns (c,) the rms, in
-        units of noise, of the integration error that remains in each channel. Without
-        `tolerances` those stay that were found before.
+        Both are then taken out of the residuals of all models. Small mismatch that the
+        nominal model may have are fitted, and what others would change is found.
+        Returns (c,) the rms, in units of noise, of the integration error that remains
+        in each channel. Without `tolerances` those stay that were found before.
         """
+        first = self.nuisance is None
         error = self.correct(model)
         self.doubt(model, tolerances)
-        return error
+        return self.correct(model) if first and self.nuisance else error
 
     def doubt(self, model: Model = (), tolerances: bool = True) -> None:
-        """Find what wrong start states change, and errors within tolerances."""
-        known = self._tolerance
-        self._doubt, self._tolerance = self._start_doubt(model), None
-        if not tolerances:
-            self._tolerance = known
-        elif self.plant.base == "fixed":  # contacts outdo tolerances by far
-            self._tolerance = self._tolerated(model)
+        """Find what wrong start states change, and small mismatch of the nominal model.
+
+        Without `tolerances` these stay as they were found before. Where recordings of
+        the healthy robot tell it small mismatch is taken as it is.
+        """
+        if tolerances and self._doubts.is_known:
+            self.doubt_beside(no_nuisance(self), model)
+            return
+        self._doubts = replace(self._doubts, start=self._start_doubt(model))
+        if tolerances and self.plant.base == "fixed":  # contacts outdo these by far
+            start = self.nuisance or no_nuisance(self)
+            found = self.nuisance_fit(model).fitted(start)
+            self._doubts = self._doubts.taking(found, self._beyond())
+
+    def doubt_beside(self, errors: Nuisance | None, model: Model) -> None:
+        """Take small mismatch as it is given; find what other sizes would change.
+
+        So it is not fitted to traces that are held out.
+        """
+        self._doubts = replace(self._doubts, start=self._start_doubt(model))
+        if errors is not None:
+            found = self.nuisance_fit(model).seen(errors)
+            self._doubts = self._doubts.taking(found, self._beyond())
 
     def doubt_as(self, other: "Predictor") -> None:
-        """Take what wrong start states change, and tolerances, of the same traces."""
-        self._doubt, self._tolerance = other._doubt, other._tolerance
+        """Take small mismatch, and what wrong starts change, from a predictor."""
+        self._doubts = other._doubts
+
+    def moved_to(self, model: Model) -> "Predictor":
+        """A copy with the small mismatch that is likeliest beside another model."""
+        if self.nuisance is None or self._doubts.is_known:
+            return self
+        return self._taking(self.nuisance_fit(model).moved(self.nuisance))
+
+    def with_nuisance_of(self, other: "Predictor") -> "Predictor":
+        """A copy with the small mismatch that another predictor has."""
+        if self.nuisance is None or other.nuisance is None:
+            return self
+        return self._taking(self.nuisance.at(other.nuisance.sizes))
+
+    def _taking(self, nuisance: Nuisance) -> "Predictor":
+        some = copy(self)
+        some._doubts = self._doubts.taking(nuisance, self._beyond())
+        return some
+
+    def nuisance_fit(self, model: Model) -> NuisanceFit:
+        """Fits of small mismatch of the nominal model, beside a model."""
+        some = self._with(nuisance=None, tolerance=self._beyond())
+        return NuisanceFit(some.residuals, model)
+
+    def _beyond(self) -> Tolerance:
+        """What is tolerated beside small mismatch of the nominal model: nothing."""
+        return Tolerance(np.zeros((0, len(self.scored))))
 
     def correct(self, model: Model = ()) -> FloatArray:
         """Measure the integration error of a model, to be taken out of all residuals.
@@ -214,51 +263,24 @@ class Predictor:
         Returns (c,) the rms, in units of noise, of that which remains in each channel;
         large if the simulation of `model` diverges.
         """
-        own = [self.step_s / part for part in (1, 2, 4)]
-        finest = [self.finest_s * part for part in (4, 2, 1)]
-        found = {
-            step_s: self._replayed([model], step_s)[0]
-            for step_s in dict.fromkeys([*own, *finest])
-        }
-        coarse, fine, finer = (found[step_s] for step_s in finest)
-        right = 2 * finer - fine
-        self._correction = right - found[own[0]]
-        self._fine_correction = right - found[own[1]]
-        self._exact_correction = right - (2 * found[own[2]] - found[own[1]])
-        # the extrapolation leaves the error of second order
-        left = (finer - fine) - (fine - coarse) / 2
+
+        def values(step_s: float) -> FloatArray:
+            return np.asarray(self._replayed([model], step_s)[0])
+
+        self._error, left = IntegrationError.of(values, self.step_s, self.finest_s)
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
         return np.asarray(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2, axis=0)))
 
     def _start_doubt(self, model: Model) -> StartUncertainty | None:
         """How wrong start states change simulations; None if noise includes that."""
         # with a floating base the reference noise contains the errors of wrong starts
-        if self._noise is not None and self.plant.base == "floating":
+        if self._doubts.noise is not None and self.plant.base == "floating":
             return None
-        changes = self._replays.start_errors(self._given(model), self.step_s)
+        changes = self._replays.start_errors(self._doubts.given(model), self.step_s)
         changes = np.where(self._scored, changes, 0.0) / self.channels.noise
         ends = np.cumsum([run.trace.ticks for run in self._replays.runs])
-        return StartUncertainty(np.nan_to_num(changes), ends.tolist())
-
-    def _tolerated(self, model: Model) -> Tolerance:
-        """Changes of the residual that lie within the model's tolerances."""
-        every = tolerated(self.plant, self.traces)
-        residuals = self.residuals([model, *((*model, one) for one in every)])
-        return Tolerance(residuals[1:] - residuals[0], [one.key for one in every])
-
-    def _given(self, model: Model) -> Model:
-        """The model, and the effects that recordings of the healthy robot show."""
-        return (*self._noise.model, *model) if self._noise else model
-
-    def _warming(self) -> BoolArray:
-        """(rows,) whether errors in a row do not count: at starts, in short windows."""
-        flags = []
-        for run in self._replays.runs:
-            since_s = run.trace.time_s - run.trace.time_s[0]
-            whole = window_s(self.plant, run.trace) is None
-            left_over = is_left_over(self.plant, run.trace)
-            flags.append(since_s < WARM_UP_S if whole else (since_s <= 0) | left_over)
-        return np.concatenate(flags)
+        clock = self._doubts.clock
+        return StartUncertainty(np.nan_to_num(changes), ends.tolist(), clock)
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) values of c channels as n models predict them, for all traces.
@@ -267,10 +289,10 @@ class Predictor:
         step: its motor oscillates too fast for the full one.
         """
         stiff = [any(effect(placed.name).stiff for placed in one) for one in models]
-        predicted = np.empty((len(models), *self._correction.shape))
+        predicted = np.empty((len(models), *self._error.whole.shape))
         for is_stiff, step_s, correction in (
-            (False, self.step_s, self._correction),
-            (True, self.step_s / 2, self._fine_correction),
+            (False, self.step_s, self._error.whole),
+            (True, self.step_s / 2, self._error.half),
         ):
             rows = [i for i, one in enumerate(stiff) if one is is_stiff]
             if rows:
@@ -287,7 +309,7 @@ class Predictor:
         implicitly and an equal force that it treats explicitly.
         """
         fine, finer = (self._replayed(models, self.step_s / part) for part in (2, 4))
-        return np.asarray(2 * finer - fine + self._exact_correction)
+        return np.asarray(2 * finer - fine + self._error.extrapolated)
 
     def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
         """(n, N) measured less predicted values of n models, in units of noise.
@@ -297,7 +319,7 @@ class Predictor:
         healthy robot show, are taken out. `exactly` predicts by `exact` instead of
         `predict`.
         """
-        return self._whitened(self._errors(models, exactly))
+        return self._doubts.without(self._errors(models, exactly), models)
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less predicted values of n models [noise]."""
@@ -306,19 +328,15 @@ class Predictor:
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
         return np.where(self._scored, wrong, 0.0)
 
-    def _whitened(self, wrong: FloatArray) -> FloatArray:
-        """(n, N) errors (n, rows, c) without what is no evidence, in units of noise."""
-        if self._doubt is not None:
-            wrong = self._doubt.without(wrong)
-        if self._noise is not None:
-            wrong = self._noise.without(wrong, self.blocks)
-        flat = wrong.reshape(len(wrong), -1)
-        return flat if self._tolerance is None else self._tolerance.without(flat)
-
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values without corrections."""
-        given = [self._given(model) for model in models]
+        given = [self._doubts.given(model) for model in models]
         predicted = self._replays.values(given, step_s)
         if self._on_replay is not None:
             self._on_replay(len(models) * round(self.step_s / step_s))
         return predicted
+
+
+def no_nuisance(some: Predictor) -> Nuisance:
+    """Small mismatch of a predictor's robot model, of size zero."""
+    return Nuisance.of(some.plant, some.traces, len(some.scored))

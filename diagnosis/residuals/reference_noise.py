@@ -10,7 +10,7 @@ error is as much evidence as the sensors' noise allows.
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,6 +90,8 @@ class ReferenceNoise:
         times `scale`) squared; at least 1.
       axes: (waves c, k) orthonormal directions, in coefficients of waves and channels.
       rows: median number of rows of the blocks from which these were learned.
+      spread: (k, k) covariance, in usual standard deviations, of what is left unknown
+        of small mismatch of the robot model; None if nothing was learned of it.
     """
 
     model: tuple[PlacedEffect, ...]
@@ -97,6 +99,7 @@ class ReferenceNoise:
     power: FloatArray
     axes: FloatArray
     rows: float
+    spread: FloatArray | None = None
 
     @classmethod
     def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":
@@ -135,6 +138,17 @@ class ReferenceNoise:
         )
         rows = float(np.median([len(block.waves) for block in long]))
         return cls(model, scale, *_covariance(smooth), rows)
+
+    def knowing(self, changes: FloatArray, blocks: Sequence[Block]) -> "ReferenceNoise":
+        """With what the recordings leave unknown of small mismatch of the model.
+
+        `changes` (k, rows, c) are those of the residual, in units of noise, by one
+        usual standard deviation of each error, beside the errors that are likely. The
+        robot has the same errors in other recordings.
+        """
+        seen = self.without(changes, blocks).reshape(len(changes), -1)
+        spread = np.linalg.inv(np.eye(len(seen)) + seen @ seen.T)
+        return replace(self, spread=np.asarray(spread, float))
 
     def without(self, residual: FloatArray, blocks: Sequence[Block]) -> FloatArray:
         """(n, rows, c) residuals in units of noise, whitened by the covariance."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
@@ -14,11 +14,15 @@ from diagnosis.residuals.channels import Channels, stacked
 from diagnosis.residuals.limbs import Limb, limbs_of
 from diagnosis.residuals.start_state import SPREADS, STEPS, nudged
 from diagnosis.traces.trace import Trace
-from diagnosis.traces.windows import Run, runs_of
-from groundwalk.arrays import BoolArray, FloatArray
+from diagnosis.traces.windows import Run, is_left_over, runs_of, window_s
+from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
 Model = tuple[PlacedEffect, ...]
 """A hypothesis: the nominal robot model plus these effects, or nothing for ()."""
+
+WARM_UP_S = 0.4
+"""Time [s] at the start of a recording in which errors do not count, because the start
+state of the simulation is only known up to sensor noise."""
 
 MOST_ROWS = 192
 """Most simulations in one batch; more would need more memory and save no time."""
@@ -85,6 +89,16 @@ class Replays:
                     ],
                 )
 
+    def warming(self) -> BoolArray:
+        """(rows,) whether errors in a row do not count: at starts, in short windows."""
+        flags = []
+        for run in self.runs:
+            since_s = run.trace.time_s - run.trace.time_s[0]
+            whole = window_s(self._plant, run.trace) is None
+            left_over = is_left_over(self._plant, run.trace)
+            flags.append(since_s < WARM_UP_S if whole else (since_s <= 0) | left_over)
+        return np.concatenate(flags)
+
     def start_errors(self, model: Model, step_s: float) -> FloatArray:
         """(k, rows, c) changes of simulated values by wrong start states.
 
@@ -141,19 +155,16 @@ class Replays:
         return np.concatenate(parts)
 
 
-def tolerated(plant: Plant, traces: Sequence[Trace]) -> list[PlacedEffect]:
-    """Effects of the size of a robot model's tolerances, each component by itself."""
-    found = []
-    for name, kind in all_effects().items():
-        for place in kind.places(plant, traces):
-            size = kind.tolerance(plant, place)
-            parameters = kind.parameters(plant, place)
-            for i in range(kind.components if size else 0):
-                values = [one.neutral for one in parameters]
-                is_factor = parameters[i].logarithmic
-                values[i] = values[i] * np.exp(size) if is_factor else values[i] + size
-                found.append(PlacedEffect(name, place, tuple(values)))
-    return found
+def time_blocks(traces: Sequence[Trace], length_s: float) -> IntArray:
+    """(rows,) number of the time block of each row of some recordings.
+
+    No block is in two recordings.
+    """
+    numbers = [
+        (trace.time_s - trace.time_s[0]) // length_s + 1000 * i
+        for i, trace in enumerate(traces)
+    ]
+    return np.unique(np.concatenate(numbers), return_inverse=True)[1]
 
 
 def variants_of(plant: Plant, models: Sequence[Model]) -> Variants:

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.residuals.clock import ClockNoise
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
@@ -46,23 +47,37 @@ def nudged(runs: Sequence[Run], joints: Sequence[Sequence[int]]) -> list[list[Ru
 class StartUncertainty:
     """Courses of the error (signatures) by wrong start states, window by window."""
 
-    def __init__(self, changes: FloatArray, ends: Sequence[int]) -> None:
+    def __init__(
+        self,
+        changes: FloatArray,
+        ends: Sequence[int],
+        clock: ClockNoise | None = None,
+    ) -> None:
         """Prepare the whitening.
 
         `changes` (k, rows, c) of the simulated channels, in units of noise and 0 where
         errors do not count, are those by start positions, then by start velocities that
         are wrong by one standard deviation; `ends` are the rows after each window.
+        Residuals have been whitened for the errors of a `clock` before.
         """
+        self._changes, self._ends = changes, list(ends)
+        timed = changes if clock is None else clock.without(changes)
         self._windows = [
-            (last - first, Tolerance(changes[:, first:last].reshape(len(changes), -1)))
+            (last - first, Tolerance(timed[:, first:last].reshape(len(timed), -1)))
             for first, last in itertools.pairwise([0, *ends])
         ]
 
     def part(self, first: int, last: int) -> "StartUncertainty":
         """The start uncertainty of the windows `first` to `last - 1` only."""
-        some = copy(self)
+        some, ends = copy(self), [0, *self._ends]
         some._windows = self._windows[first:last]
+        some._changes = self._changes[:, ends[first] : ends[last]]
+        some._ends = [end - ends[first] for end in ends[first + 1 : last + 1]]
         return some
+
+    def evenly(self) -> "StartUncertainty":
+        """That for residuals which were not whitened for a clock."""
+        return StartUncertainty(self._changes, self._ends)
 
     @property
     def taken(self) -> float:

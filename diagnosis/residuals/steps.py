@@ -6,6 +6,7 @@ other models change is wrong by a share that grows with the step.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.clock import speeds, with_clock
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import shortened
@@ -34,14 +36,15 @@ PRECISE_S = 20.0
 
 
 def with_best_steps(whole: Predictor) -> Predictor:
-    """The predictor, calibrated, with steps as long as they may be."""
+    """The predictor with its integration error and steps as long as they may be."""
     return exact_steps(_showing_changes(whole))
 
 
 def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
-    """The predictor, calibrated at a model with steps as long as they are exact.
+    """The predictor, with the integration error of a model and steps that are exact.
 
-    The steps of its simulations stay as they are.
+    The steps of its simulations stay as they are. Small mismatch of the nominal model
+    is not fitted.
     """
     for step_s in STEPS_S[whole.plant.base]:
         finest_s = step_s / 4
@@ -49,7 +52,7 @@ def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
             whole = whole.stepped(whole.step_s, finest_s)
         if finest_s == whole.finest_s and whole.correct(model).max() < MOST_WRONG:
             break
-    whole.doubt(model)
+    whole.doubt(model, tolerances=False)
     return whole
 
 
@@ -89,7 +92,8 @@ def precise(
 ) -> Channels:
     """The channels, whose noise includes the error of the simulation itself.
 
-    That is what integration leaves at the shortest time step, see `Predictor`.
+    That is what integration leaves at the shortest time step, see `Predictor`. The
+    jitter of the clock is measured as well.
     """
     some = shortened(traces, PRECISE_S)
     for step_s in STEPS_S[plant.base]:
@@ -98,4 +102,12 @@ def precise(
         if error.max() < MOST_WRONG:
             break
     wider = np.hypot(1.0, error)
-    return Channels(channels.names, channels.noise * wider, channels.floor * wider)
+    noise, floor = channels.noise * wider, channels.floor * wider
+    found = replace(channels, noise=noise, floor=floor)
+    if predictor.by_torque or plant.base == "floating":
+        return found
+    predictor = predictor_of(plant, some, found, threads=threads)
+    predictor.calibrate()
+    left = predictor.without_tolerances().residuals([()]).reshape(-1, len(wider))
+    speed = speeds(some, found)
+    return with_clock(found, left, speed, predictor.scored.reshape(left.shape))

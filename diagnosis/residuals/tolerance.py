@@ -10,7 +10,7 @@ minus the log-likelihood with all tolerances marginalised, to first order.
 from collections.abc import Collection, Sequence
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.linalg import block_diag
 
 from groundwalk.arrays import BoolArray, FloatArray
 
@@ -18,37 +18,54 @@ NEGLIGIBLE = 1e-6
 """Smallest eigenvalue of the signatures' products [noise^2], as a share of 1, that is
 whitened; what is smaller is far below the noise."""
 
-LARGEST_SCALE = 20.0
-"""Largest factor by which a model may be outside its tolerances; the smallest is its
-inverse. Beyond both nothing changes any more: signatures vanish or are all removed."""
-
 
 class Tolerance:
-    """The space of changes of a residual that tolerances allow, as orthogonal axes."""
+    """The space of changes of a residual that tolerances allow, as orthogonal axes.
 
-    def __init__(self, signatures: FloatArray, names: Sequence[str] = ()) -> None:
+    Residuals may be those of a model with likely errors already in it.
+
+    Attributes:
+      changes: (k, N) changes of the residual [noise] by one standard deviation each.
+    """
+
+    def __init__(
+        self,
+        signatures: FloatArray,
+        names: Sequence[str] = (),
+        sizes: FloatArray | None = None,
+        spread: FloatArray | None = None,
+    ) -> None:
         """Use (k, N) changes of the residual [noise] by one standard deviation each.
 
-        `names` says of each what is uncertain, such as "payload_mass@forearm".
+        `names` says of each what is uncertain, such as "payload_mass@forearm"; `sizes`
+        (k,) are the errors, in standard deviations, that residuals have in them;
+        `spread` (k, k) is the errors' covariance, None if they are independent.
         """
-        self._signatures, self._names = signatures, tuple(names)
-        power, turn = np.linalg.eigh(signatures @ signatures.T)
+        self.changes, self._names = signatures, tuple(names)
+        self._sizes = np.zeros(len(signatures)) if sizes is None else sizes
+        self._spread = spread
+        root = (
+            signatures if spread is None else np.linalg.cholesky(spread).T @ signatures
+        )
+        power, turn = np.linalg.eigh(root @ root.T)
         kept = power > NEGLIGIBLE
         self._power, turn = power[kept], turn[:, kept]
-        self._unit = (turn / np.sqrt(self._power)).T @ signatures
+        unit = (turn / np.sqrt(self._power)).T @ root
         # (I + S'S)^(-1/2) = I - A'A, with A the axes below
         share = 1 - 1 / np.sqrt(1 + self._power)
-        self._axes = np.sqrt(share)[:, None] * self._unit
+        self._axes = np.sqrt(share)[:, None] * unit
 
     def part(self, entries: BoolArray) -> "Tolerance":
         """Tolerances for some of a residual's entries, those where (N,) is true."""
-        return Tolerance(self._signatures[:, entries], self._names)
+        some = self.changes[:, entries]
+        return Tolerance(some, self._names, self._sizes, self._spread)
 
     def beside(self, known: Collection[str]) -> "Tolerance":
         """The tolerances of all but what is `known`, by its name, to be fitted."""
         kept = [i for i, name in enumerate(self._names) if name not in known]
         names = [self._names[i] for i in kept]
-        return Tolerance(self._signatures[kept], names)
+        spread = None if self._spread is None else self._spread[np.ix_(kept, kept)]
+        return Tolerance(self.changes[kept], names, self._sizes[kept], spread)
 
     @property
     def taken(self) -> float:
@@ -57,31 +74,27 @@ class Tolerance:
 
     def and_of(self, other: "Tolerance") -> "Tolerance":
         """These tolerances and others of the same residual."""
-        every = np.vstack([self._signatures, other._signatures])
-        return Tolerance(every, (*self._names, *other._names))
+        every = np.vstack([self.changes, other.changes])
+        sizes = np.concatenate([self._sizes, other._sizes])
+        spread = None
+        if self._spread is not None or other._spread is not None:
+            spread = block_diag(self._covariance(), other._covariance())
+        return Tolerance(every, (*self._names, *other._names), sizes, spread)
 
-    def scaled(self, factor: float) -> "Tolerance":
-        """The tolerances, all so many times as large."""
-        return Tolerance(factor * self._signatures, self._names)
+    def _covariance(self) -> FloatArray:
+        """(k, k) covariance of the errors, in standard deviations."""
+        independent = np.eye(len(self.changes))
+        return independent if self._spread is None else self._spread
 
-    def likely_scale(self, residual: FloatArray) -> float:
-        """The factor for all tolerances that makes an (N,) residual most likely.
+    def taken_back(self, known: Collection[str]) -> FloatArray:
+        """(N,) what the errors that residuals have in them change in these.
 
-        The residual is that of a model, not whitened. A robot as exact as its model has
-        a factor near 0, so that what is fitted need not be as wide as tolerances allow
-        (empirical Bayes: the marginal likelihood is maximised).
+        That is to be taken from a residual, to first order that of no such errors.
+        Those that are `known`, by their name, are not in it.
         """
-        seen = (self._unit @ residual) ** 2
-        if not len(seen):
-            return 1.0
-
-        def surprise(log_factor: float) -> float:
-            variance = 1 + np.exp(2 * log_factor) * self._power
-            return float(np.sum(np.log(variance) + seen / variance))
-
-        most = np.log(LARGEST_SCALE)
-        found = minimize_scalar(surprise, bounds=(-most, most), method="bounded")
-        return float(np.exp(found.x))
+        own = np.array([name not in known for name in self._names], bool)
+        sizes = self._sizes if not self._names else self._sizes * own
+        return np.asarray(sizes @ self.changes)
 
     def without(self, residuals: FloatArray) -> FloatArray:
         """(n, N) residuals, whitened."""

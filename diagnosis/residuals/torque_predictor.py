@@ -1,7 +1,6 @@
 """Compares the torque that a recorded motion needs with the measured torque."""
 
 from collections.abc import Callable, Sequence
-from copy import copy
 
 import numpy as np
 
@@ -70,16 +69,13 @@ class TorquePredictor(Predictor):
         """Zeros (c,), since nothing is integrated."""
         return np.zeros(len(self.channels.names))
 
-    def doubt(self, model: Model = (), tolerances: bool = True) -> None:
-        """Find what lies within the tolerances at a model."""
-        if tolerances:
-            self._tolerance = None
-            self._tolerance = self._tolerated(model)
+    def _start_doubt(self, model: Model) -> None:
+        """None, since nothing starts anywhere."""
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) torques that the motion needs by n models, for all traces."""
         torque = np.empty((len(models), *self._measured.shape))
-        given = [self._given(model) for model in models]
+        given = [self._doubts.given(model) for model in models]
         for rows, _, acting in self._replays.together(given):
             torque[:, rows] = self._needed.of(variants_of(self.plant, acting))[:, rows]
         if self._on_replay is not None:
@@ -89,19 +85,6 @@ class TorquePredictor(Predictor):
     def exact(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) torques as of `predict`: there is no integration error."""
         return self.predict(models)
-
-    def with_likely_tolerances(self, model: Model) -> Predictor:
-        """A copy whose tolerances are narrower if the model's errors are.
-
-        They are never wider: a robot whose masses are far from the model's does not
-        have wrong scales of its torques for that.
-        """
-        some = copy(self)
-        if self._tolerance is not None:
-            (left,) = self.without_tolerances().residuals([model])
-            factor = min(self._tolerance.likely_scale(left), 1.0)
-            some._tolerance = self._tolerance.scaled(factor)
-        return some
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less needed torques in means over blocks [noise]."""
@@ -116,15 +99,15 @@ class TorquePredictor(Predictor):
         found[:, self._starts] = sums * self._weight
         return np.where(self._scored, found, 0.0)
 
-    def _tolerated(self, model: Model) -> Tolerance:
-        """Changes by the model's tolerances, and by wrong zeros of torques."""
+    def _beyond(self) -> Tolerance:
+        """Changes by wrong zeros of the measured torques."""
         size_nm = np.where(np.isfinite(self._measured), self._measured, 0.0)
         zero_nm = LEAST_TORQUE * np.sqrt(np.mean(size_nm**2, axis=0))
         joints = len(self.channels.names)
         wrong = np.eye(joints)[:, None] * zero_nm * np.ones_like(self._measured)
-        zeros = self._whitened(self._means(wrong))
+        zeros = self._doubts.before_tolerance(self._means(wrong))
         names = [f"torque_offset@{name.split('.')[1]}" for name in self.channels.names]
-        return super()._tolerated(model).and_of(Tolerance(zeros, names))
+        return Tolerance(zeros, names)
 
 
 def predictor_of(

@@ -2,20 +2,19 @@
 
 `accepted` applies three tests in this order. The best models are compared again, each
 with its own integration error. Values and effects that the best one does not need are
-removed. With recordings of the healthy robot on a floating base, effects that improve
-the fit there as much are removed, too: they are not new.
+removed. Effects that recordings of the healthy robot show as well are removed, too
+(`old_effects.py`).
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
-
 from diagnosis.effects.library import effect
-from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.predictor import Model
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
+from diagnosis.search.old_effects import without_old_effects
 from diagnosis.search.result import Judged, SearchResult, keys_of
 from diagnosis.search.ties import without_each
 from groundwalk.arrays import FloatArray
@@ -27,10 +26,6 @@ are tried in it. The number is large since trying a few more models is cheap."""
 REPLAYS_EACH = 30
 """Rough number of simulations of the recordings in the tests after a search, for each
 model compared; only for the progress display."""
-
-SURE = 3.0
-"""Standard errors by which the gain of an effect on the diagnosed recordings must
-exceed its gain on recordings of the healthy robot."""
 
 
 def accepted(judge: Judge, result: SearchResult) -> SearchResult:
@@ -131,44 +126,3 @@ def without_idle_effects(judge: Judge, result: SearchResult) -> SearchResult:
         others = [one for one in result.best.get(size, []) if one.keys != best.keys]
         result = replace(result.with_models(size, [best, *others]), chosen=size)
     return result
-
-
-def without_old_effects(judge: Judge, result: SearchResult) -> SearchResult:
-    """Remove effects that recordings of the healthy robot, if there are any, may show.
-
-    The model of a walking robot is wrong in a different way at each step. An effect
-    that fits some of these errors by chance gains much at some moments, loses at
-    others, and gains on recordings of the healthy robot, too. A true change gains at
-    most moments, and much more than it gains there.
-    """
-    chosen = result.chosen
-    while judge.healthy and chosen:
-        less = result.best[chosen - 1][0].model if chosen > 1 else ()
-        if _is_new(judge, less, result.best[chosen][0].model):
-            break
-        chosen -= 1
-    return replace(result, chosen=chosen)
-
-
-def _is_new(judge: Judge, less: Model, more: Model) -> bool:
-    """Whether `more` gains more over `less` than it does on the healthy robot."""
-    # fitting and selection data together, since each has too few time blocks
-    now, before = (
-        np.concatenate([_gains(part, less, more) for part in parts])
-        for parts in ((judge.fit, judge.select), judge.healthy)
-    )
-    usual = max(float(before.mean()), 0.0)
-    variance = now.var() / len(now) + before.var() / len(before)
-    return bool(now.mean() - usual > SURE * np.sqrt(variance))
-
-
-def _gains(predictor: Predictor, less: Model, more: Model) -> FloatArray:
-    """(blocks,) gains of `more` over `less` in each time block, as signed square roots.
-
-    The root reduces the weight of single moments, such as a squat, at which an effect
-    shows far more than at others.
-    """
-    residuals = predictor.residuals([less, more])
-    gains = 0.5 * (residuals[0] ** 2 - residuals[1] ** 2)
-    every = np.bincount(predictor.block, gains)
-    return np.asarray(np.sign(every) * np.sqrt(2 * np.abs(every)))

@@ -29,8 +29,7 @@ def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
         wide = everywhere(judge, result)
         if wide is not result:
             return wide, True
-        for part in (judge.fit, judge.select):
-            part.calibrate()
+        judge.calibrate(())
         result = search.run(anyway=True)
         return (accepted(judge, result) if tested else result), False
     few = accepted(judge, result) if tested else result

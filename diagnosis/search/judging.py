@@ -1,6 +1,7 @@
 """Fits models and judges them on data that they were not fitted to."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import chi2
@@ -54,20 +55,45 @@ class Judge:
         """Judge the nominal sim, with which all models are compared.
 
         Predictors are calibrated and have the same channels; `healthy` are those of
-        recordings of the healthy robot: a gain there, too, is no evidence of a change.
+        recordings of the healthy robot: on a floating base, a gain there, too, is no
+        evidence of a change.
         """
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.healthy, self.hooks = healthy, hooks or Hooks()
         self.floor, self.floor_fit = select.noise_energy, fit.noise_energy
         # Models of one size hardly differ in what they fit by chance, so the fitting
         # data count in their comparison. They do not on a floating base, where two
-        # recordings differ by chance, and not with a reference, which is compared with
-        # both kinds of data.
-        self._weight = float(fit.plant.base == "fixed" and not healthy)
-        self.residual = fit.residuals([()])[0]
+        # recordings differ by chance.
+        self._weight = float(fit.plant.base == "fixed")
+        self._see_nominal()
+        self.least_gain = gain_of_noise(places_of_effects(fit))
+
+    def _see_nominal(self) -> None:
+        self.residual = self.fit.residuals([()])[0]
         self.nothing_fit = 0.5 * float(self.residual @ self.residual)
         self.nothing = self.energies([()])[0]
-        self.least_gain = gain_of_noise(places_of_effects(fit))
+
+    def calibrate(self, model: Model) -> None:
+        """Calibrate the predictors at a model, and judge the nominal sim anew.
+
+        Small mismatch is that of the fitting data. What was judged before is to be
+        judged `again`.
+        """
+        self.fit.calibrate(model)
+        self.select.correct(model)
+        self.select.doubt_beside(self.fit.nuisance, model)
+        self._see_nominal()
+
+    def again(self, judged: Sequence[Judged]) -> list[Judged]:
+        """Models that were judged before, with the same values, judged again."""
+        if not judged:
+            return []
+        left = self.fit.residuals([one.model for one in judged])
+        fits = [
+            replace(one.fit, residual=own)
+            for one, own in zip(judged, left, strict=True)
+        ]
+        return self.judge(fits)
 
     def ranked(self, judged: Sequence[Judged]) -> list[Judged]:
         """Models in the order of their plausibility, the most plausible first."""
@@ -184,8 +210,8 @@ class Judge:
         """Energies [nats] of models on the selection data, with a penalty.
 
         The penalty is the model's gain on recordings of the healthy robot, if there are
-        any: what was there before is no change. `exactly` removes each model's own
-        integration error, not one common to all.
+        any and the base floats: what was there before is no change. `exactly` removes
+        each model's own integration error, not one common to all.
         """
         if not models:
             return []
@@ -197,9 +223,10 @@ class Judge:
     def _gains_before(self, models: Sequence[Model]) -> list[float]:
         """Gain of each model [nats, at least 0] on recordings of the healthy robot.
 
-        Gains are scaled to the length of the selection data.
+        Gains are scaled to the length of the selection data. On a fixed base effects
+        of the healthy robot are part of the nominal model, so that nothing is gained.
         """
-        if not self.healthy:
+        if not self.healthy or self.fit.plant.base == "fixed":
             return [0.0] * len(models)
         energies = sum(
             0.5 * np.sum(one.residuals([(), *models]) ** 2, axis=1)

@@ -3,13 +3,19 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from diagnosis.audit.audit import audit
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
-from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.data_sets import longest_window_s
+from diagnosis.residuals.left_out import left_out
+from diagnosis.residuals.predictor import Model, Predictor, no_nuisance
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.few_or_many import found_by
+from diagnosis.search.fitting import fit_all
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import pack_noise, unpack_noise
@@ -18,6 +24,7 @@ from diagnosis.search.search import Search
 from diagnosis.traces.split import LEAST_FLOATING_S, shortened, split
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import FLOATING_WINDOW_S
+from groundwalk.arrays import FloatArray, IntArray
 from groundwalk.errors import BadRecordingError
 
 MOST_S = 40.0
@@ -43,15 +50,46 @@ class _Simulations(NamedTuple):
     channels: Channels
     threads: int
     hooks: Hooks
+    window_s: float
+
+    @classmethod
+    def of(
+        cls,
+        plant: Plant,
+        traces: Sequence[Trace],
+        channels: Channels,
+        threads: int,
+        hooks: Hooks,
+    ) -> "_Simulations":
+        """Simulations in windows over which replays of the traces stay close."""
+        window_s = longest_window_s(plant, traces, channels, threads)
+        return cls(plant, channels, threads, hooks, window_s)
 
     def predictor(
-        self, traces: Sequence[Trace], noise: ReferenceNoise | None = None
+        self,
+        traces: Sequence[Trace],
+        noise: ReferenceNoise | None = None,
     ) -> Predictor:
-        """A calibrated predictor of some recordings."""
-        options = None, self.threads, noise, self.hooks.advance
-        predictor = predictor_of(self.plant, traces, self.channels, *options)
-        predictor.calibrate()
+        """A calibrated predictor of recordings.
+
+        Small mismatch that `noise` has is taken as it is, what may be beside it is not
+        fitted.
+        """
+        predictor = self.uncalibrated(traces, noise)
+        if noise is None:
+            predictor.calibrate()
+            return predictor
+        predictor.correct()
+        errors = no_nuisance(predictor) if self.plant.base == "fixed" else None
+        predictor.doubt_beside(errors, ())
         return predictor
+
+    def uncalibrated(
+        self, traces: Sequence[Trace], noise: ReferenceNoise | None
+    ) -> Predictor:
+        """A predictor of recordings with windows as for those to be diagnosed."""
+        options = None, self.threads, noise, self.hooks.advance, self.window_s
+        return predictor_of(self.plant, traces, self.channels, *options)
 
 
 def learn_reference(
@@ -81,10 +119,11 @@ def learn_reference(
         raise BadRecordingError(f"the reference: {refused[0]}")
     hooks = (hooks or Hooks()).within("reference")
     traces = shortened(traces, MOST_S)
-    sims = _Simulations(plant, channels, threads, hooks)
+    sims = _Simulations.of(plant, traces, channels, threads, hooks)
     model = known or ()
-    if known is None and plant.base == "fixed":
-        model = _explained(sims, traces, rules)
+    if plant.base == "fixed":
+        found = _explained(sims, traces, rules) if known is None else known
+        model = _with_small_mismatch(sims, traces, found)
     hooks.stage("noise", REPLAYS)
     return _learned(sims, traces, model)
 
@@ -100,34 +139,71 @@ def _learned(
         floats = sims.plant.base == "floating"
         every = [late for one in traces for late in _shifted(one)] if floats else traces
         predictor = sims.predictor(every, known)
-        residual = predictor.residuals([()])[0].reshape(-1, count)
+        if floats:
+            (residual,) = predictor.residuals([()])
+        else:
+            residual = _left_out(sims, predictor, model)
+        residual = residual.reshape(-1, count)
         scored = predictor.scored.reshape(-1, count)
-        return ReferenceNoise.of(model, residual, scored, predictor.blocks)
+        noise = ReferenceNoise.of(model, residual, scored, predictor.blocks)
+        if predictor.nuisance is None:
+            return noise
+        changes = predictor.nuisance.changes
+        return noise.knowing(changes.reshape(len(changes), -1, count), predictor.blocks)
 
     return sims.hooks.saved(work, pack_noise, unpack_noise)
+
+
+def _left_out(sims: _Simulations, predictor: Predictor, model: Model) -> FloatArray:
+    """(N,) what a model leaves in each recording if it is learned from the others.
+
+    Else what fits these recordings alone would pass for what the robot always has.
+    """
+    (left,) = predictor.without_tolerances().residuals([()])
+    nuisance = predictor.nuisance
+    changes = np.zeros((0, len(left))) if nuisance is None else nuisance.changes
+    found = tuple(one for one in model if not is_usual(sims.plant, one))
+    if found:
+        rest = tuple(one for one in model if one not in found)
+        known = ReferenceNoise.known(rest, len(sims.channels.names))
+        others = sims.uncalibrated(predictor.traces, known)
+        others.calibrate(found, tolerances=False)
+        (fitted,) = fit_all(others, [found], 1)
+        changes = np.vstack([changes, fitted.jacobian.T])
+    whole = left_out(left, changes, _parts(predictor))
+    return whole if nuisance is None else nuisance.tolerance().without(whole[None])[0]
+
+
+def _parts(predictor: Predictor) -> IntArray:
+    """(N,) number of the recording of each entry; halves of one that is alone."""
+    if len(predictor.traces) > 1:
+        return predictor.trace
+    return np.asarray(2 * predictor.block > predictor.block.max(), int)
 
 
 def reference_checks(
     plant: Plant,
     traces: Sequence[Trace],
     channels: Channels,
+    noise: ReferenceNoise,
     threads: int = 1,
     hooks: Hooks | None = None,
 ) -> list[Predictor]:
     """Predictors of recordings of the healthy robot, to reject effects seen there, too.
 
-    An effect that explains as much of these recordings is no change. Each half of them
-    is judged with the noise learned from the other half: with its own noise nothing
-    would be left to explain. With a fixed base the list is empty: effects of the
-    healthy robot are part of the nominal model there. Arguments are those of
-    `learn_reference`.
+    An effect that explains as much of these recordings is no change. With a floating
+    base each half of them is judged with the noise learned from the other half: with
+    its own noise nothing would be left to explain. With a fixed base the `noise` is
+    what is left if each is left out, and the effects that are known. Other arguments
+    are those of `learn_reference`.
     """
-    if plant.base == "fixed":
-        return []
     hooks = (hooks or Hooks()).within("reference check")
     hooks.stage("", 2 * REPLAYS)
-    halves = _halves(shortened(traces, MOST_S))
-    sims = _Simulations(plant, channels, threads, hooks)
+    traces = shortened(traces, MOST_S)
+    sims = _Simulations.of(plant, traces, channels, threads, hooks)
+    if plant.base == "fixed":
+        return [sims.predictor(traces, noise)]
+    halves = _halves(traces)
     checks = []
     for own, other in (halves, halves[::-1]):
         some = shortened(own, CHECK_S / 2, LEAST_FLOATING_S)
@@ -144,9 +220,10 @@ def _halves(traces: Sequence[Trace]) -> tuple[list[Trace], list[Trace]]:
     return [trace.part(0, middle)], [trace.part(middle, trace.ticks)]
 
 
-def reference_limit(noise: ReferenceNoise) -> tuple[str, ...]:
+def reference_limit(plant: Plant, noise: ReferenceNoise) -> tuple[str, ...]:
     """A sentence for the report: what the healthy robot shows is not searched for."""
-    known = ", ".join(f"{one.name} at {one.place}" for one in noise.model)
+    large = [one for one in noise.model if not is_usual(plant, one)]
+    known = ", ".join(f"{one.name} at {one.place}" for one in large)
     given = f" ({known})" if known else ""
     return (
         f"differences from the sim that the reference recordings show as well{given} "
@@ -157,7 +234,7 @@ def reference_limit(noise: ReferenceNoise) -> tuple[str, ...]:
 def _explained(
     sims: _Simulations, traces: Sequence[Trace], rules: Rules | None
 ) -> Model:
-    """The effects, with values, that a search finds in recordings."""
+    """The effects that a search finds in recordings."""
     parts = split(traces)
     fit, select = (*parts.fit, *parts.test), parts.select
     whole = sims.predictor([*fit, *select])
@@ -165,6 +242,17 @@ def _explained(
     judge = Judge(*parted, rules, hooks=sims.hooks)
     result, _ = found_by(Search(judge), tested=False)
     return result.winner.model if result.winner else ()
+
+
+def _with_small_mismatch(
+    sims: _Simulations, traces: Sequence[Trace], model: Model
+) -> Model:
+    """A model, and the small mismatch that is likely beside it in recordings."""
+    predictor = sims.uncalibrated(traces, None)
+    predictor.calibrate(model)
+    if predictor.nuisance is None:
+        return model
+    return (*predictor.nuisance.beside({one.key for one in model}), *model)
 
 
 def _shifted(trace: Trace) -> list[Trace]:

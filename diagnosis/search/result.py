@@ -179,6 +179,8 @@ def pack_noise(noise: ReferenceNoise) -> Saved:
     """Convert model errors of the healthy robot to the form a checkpoint stores."""
     names = ("scale", "power", "axes")
     arrays = {name: getattr(noise, name) for name in names}
+    if noise.spread is not None:
+        arrays["spread"] = noise.spread
     return Saved({"model": _plain(noise.model), "rows": noise.rows}, arrays)
 
 

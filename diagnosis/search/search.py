@@ -9,9 +9,9 @@ is believed. `accept.py` tests the result further.
 import itertools
 from collections.abc import Sequence
 
-from diagnosis.effects.library import all_effects
+from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.bursts import push_intervals
-from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates, grown
 from diagnosis.search.judging import Judge, distinct, gain_of_noise
@@ -36,8 +36,6 @@ class Search:
         self.signatures: list[Signature] = []
         self.widespread = False
         self._rules, self._fit = judge.rules, judge.fit
-        # whitened with tolerances a short error is no longer short
-        self._bare = judge.fit.without_tolerances()
         self._usage = Usage.of(judge.fit.plant, judge.fit.traces)
 
     def run(self, anyway: bool = False) -> SearchResult:
@@ -46,12 +44,14 @@ class Search:
         It ends after a single effect if most joints are off beside it, unless it is
         to go on `anyway`.
         """
-        judge, residual = self.judge, self.judge.residual
+        judge = self.judge
         self.widespread = False
         intervals = push_intervals(self._bare, self._bare.residuals([()])[0])
         self.signatures = signatures(self._fit, (), self._usage, intervals)
         starts = Candidates(self._fit, self.signatures, self._rules)
-        best = {1: self._round(1, self._with_promising(1, starts.alone(residual)))}
+        best = {
+            1: self._round(1, self._with_promising(1, starts.alone(judge.residual)))
+        }
         chosen, size = 0, 1
         before: Judged | None = None
         while best.get(size):
@@ -76,9 +76,19 @@ class Search:
             replaced = starts.swapped(best[chosen][0])
             swapped = self._round(chosen, replaced, "replacements of ")
             best[chosen] = distinct(judge.ranked(best[chosen] + swapped))
+        for smaller in range(
+            1, chosen
+        ):  # by what small mismatch beside the best leaves
+            some = best[smaller][: self._rules.compared]
+            best[smaller] = judge.ranked(judge.again(some))
         return SearchResult(
             judge.nothing, judge.floor, best, chosen, judge.nothing_fit, judge.floor_fit
         )
+
+    @property
+    def _bare(self) -> Predictor:
+        """Without tolerances: whitened with them a short error is no longer short."""
+        return self._fit.without_tolerances()
 
     def _most_joints_are_off(self, best: Judged) -> bool:
         """Whether most joints are off beside the best single effect, if it is one."""
@@ -104,7 +114,15 @@ class Search:
         return self.judge.judged(starts)
 
     def _starts_from(self, leader: Judged) -> Candidates:
-        """Candidates that include pushes visible in the leading model's residual."""
+        """Candidates beside a leading model, with pushes visible in its residual.
+
+        Small mismatch of the nominal model was fitted anew beside it, and signatures
+        are found anew as well.
+        """
+        lasting = [name for name, kind in all_effects().items() if not kind.timed]
+        old = [one for one in self.signatures if effect(one.placed.name).timed]
+        new = signatures(self._fit, leader.model, self._usage, names=lasting)
+        self.signatures = [*new, *old]
         left = leader.fit.residual, self._bare.residuals([leader.model])[0]
         found = [push_intervals(self._fit, one)[1:] for one in left]
         bursts = list(dict.fromkeys(itertools.chain(*found)))
@@ -153,11 +171,11 @@ class Search:
         effects are fitted as well.
         """
         judge = self.judge
-        for again in range(self._rules.refinements):
+        for _ in range(self._rules.refinements):
             before = best[0]
-            for part in (self._fit, judge.select):
-                part.calibrate(before.model, tolerances=not again)
-            first, others = best[: self._rules.beam], best[self._rules.beam :]
+            judge.calibrate(before.model)
+            first = best[: self._rules.beam]
+            others = judge.again(best[self._rules.beam :])
             wider = grown(before.model)
             models = [*(judged.model for judged in first), *wider]
             known = [None, *(judged.fit.jacobian for judged in first[1:])]

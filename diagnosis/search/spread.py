@@ -3,7 +3,7 @@
 import numpy as np
 
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.result import MOST_LEFT
+from diagnosis.search.result import MORE_THAN_NOISE
 
 FEWEST = 2
 """A single joint is never most of them."""
@@ -12,14 +12,14 @@ FEWEST = 2
 def joints_off(fit: Predictor, model: Model) -> list[str]:
     """Joints in one of whose channels a model leaves much more than noise.
 
-    What lies within the robot model's tolerances counts as well; the integration error
-    of the model does not.
+    Small mismatch, fitted beside the model, and its integration error do not count.
     """
-    (left,) = fit.without_tolerances().residuals([model], exactly=True)
-    squares, own = left**2, fit.channel[fit.scored]
+    beside = fit.moved_to(model).without_tolerances()
+    (left,) = beside.residuals([model], exactly=True)
+    squares, channel = left**2, fit.channel[fit.scored]
     count = len(fit.channels.names)
-    sums = np.bincount(own, squares[fit.scored], count)
-    off = sums > (1 + MOST_LEFT) * np.bincount(own, minlength=count)
+    sums = np.bincount(channel, squares[fit.scored], count)
+    off = sums > MORE_THAN_NOISE**2 * np.bincount(channel, minlength=count)
     return [
         joint
         for joint in fit.plant.joints

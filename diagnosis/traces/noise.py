@@ -42,7 +42,12 @@ class Noise:
     @property
     def total(self) -> float:
         """Standard deviation of noise and rounding together."""
-        return float(np.hypot(self.std, (self.quantum or 0.0) / np.sqrt(12)))
+        return float(np.hypot(self.std, self.rounding))
+
+    @property
+    def rounding(self) -> float:
+        """Standard deviation of what rounding alone makes."""
+        return float((self.quantum or 0.0) / np.sqrt(12))
 
     @property
     def step(self) -> float:

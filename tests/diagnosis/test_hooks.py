@@ -89,7 +89,7 @@ def test_what_was_learned_from_a_reference_is_not_learned_again():
         reports = Reports()
         hooks = Hooks(reports, store)
         noise = learn_reference(plant, before, channels, hooks=hooks)
-        checks = reference_checks(plant, before, channels, hooks=hooks)
+        checks = reference_checks(plant, before, channels, noise, hooks=hooks)
         residuals = [check.residuals([()])[0] for check in checks]
         return reports, pack_noise(noise), np.concatenate(residuals)
 

@@ -28,6 +28,7 @@ def found(effects):
         verdict=SimpleNamespace(effects=effects),
         model=(PLAY, WEAK),
         given=(),
+        nuisance=(),
         plant=plant,
         test=SimpleNamespace(traces=[SimpleNamespace(servo=plant.servo, unheld=False)]),
     )

@@ -35,7 +35,7 @@ class Fits:
 
     def __init__(self, judge: Judge) -> None:
         """Prepare the fits; the predictors of `judge` must be calibrated already."""
-        parts = judge.fit.without_tolerances(), judge.select.without_tolerances()
+        parts = judge.fit.nominal(), judge.select.nominal()
         for part in parts:  # at the nominal model, whatever was found before
             part.calibrate(tolerances=False)
         self.judge = Judge(*parts, judge.rules, judge.healthy, judge.hooks)

@@ -61,15 +61,15 @@ def test_kinds(searched, moving, wanted):
 @pytest.mark.parametrize(
     ("name", "value", "small"),
     [
-        ("servo_gain", 1.015, True),
-        ("servo_gain", 0.985, True),
-        ("servo_gain", 1.03, False),
-        ("servo_damping", 0.95, True),
-        ("servo_damping", 1.1, False),
+        ("servo_gain", 1.08, True),
+        ("servo_gain", 0.93, True),
+        ("servo_gain", 1.12, False),
+        ("servo_damping", 0.93, True),
+        ("servo_damping", 1.12, False),
         ("coulomb_friction", 1e-6, False),
     ],
 )
-def test_what_lies_within_tolerances_is_small(name, value, small):
-    """Gains are known to 1 %, damping to 3 %; friction that is missing is no error."""
+def test_usual_errors_of_what_a_model_states_are_small(name, value, small):
+    """Gains are known to 3 % (one in 400 robots is off by more than 9 %)."""
     placed = PlacedEffect(name, "elbow", (value,))
     assert is_small(ARM, placed) is small

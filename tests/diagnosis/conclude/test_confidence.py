@@ -9,6 +9,7 @@ from diagnosis.conclude.answer import (
     TIED_NATS,
     alike,
     alternatives,
+    gap,
     probability,
 )
 from diagnosis.search.result import VALUE_NATS, SearchResult
@@ -21,7 +22,7 @@ GAIN, ELSEWHERE = "servo_gain@shoulder", "viscous_friction@shoulder"
 
 
 def sure(*models):
-    return probability(found(ARM, *models), placed(models[0][1]))
+    return probability(gap(found(ARM, *models), placed(models[0][1])))
 
 
 def test_what_does_nearly_as_well_may_be_the_truth():
@@ -76,9 +77,11 @@ def test_smaller_models_are_rivals_too():
     pairs = found(ARM, (100.0, VISCOUS, GAIN), (150.0, COULOMB, GAIN))
     single = {1: [judged(ARM, 104.0, VISCOUS)]}
     known = SearchResult(1e4, 100.0, {**single, **pairs.best}, 2)
-    assert probability(pairs, placed(GAIN)) > 0.97
-    assert probability(known, placed(GAIN)) < 0.7
-    assert probability(known, placed(VISCOUS)) == probability(pairs, placed(VISCOUS))
+    assert probability(gap(pairs, placed(GAIN))) > 0.97
+    assert probability(gap(known, placed(GAIN))) < 0.7
+    assert probability(gap(known, placed(VISCOUS))) == probability(
+        gap(pairs, placed(VISCOUS))
+    )
 
 
 def test_a_gap_counts_less_where_the_best_model_is_wrong():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.held_out_errors import controls_of
+from diagnosis.conclude.held_out_errors import FAINT, controls_of, held_out_errors
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
@@ -25,7 +25,7 @@ def predictor():
     trace = recorded(PLANT, ("servo_gain", "elbow", 0.8), duration_s=2.0)
     predictor = Predictor(PLANT, [trace], CHANNELS, step_s=0.004)
     predictor.calibrate()
-    return predictor.without_tolerances()
+    return predictor.nominal()
 
 
 def energy(predictor, model):
@@ -91,3 +91,41 @@ def test_what_contains_an_effect_is_no_other_effect(predictor):
         for seed in range(8):
             found = controls(predictor, one, seed=seed)
             assert found.wrong_effect[0].key != other.key
+
+
+def sims(*seeds, effects=(("servo_gain", "elbow", 0.8),)):
+    """Predictors of learned and of held-out recordings of an arm."""
+    found = []
+    for seed in seeds:
+        trace = recorded(PLANT, *effects, duration_s=8.0, seed=seed, noise_rad=4e-4)
+        one = Predictor(PLANT, [trace], CHANNELS, step_s=0.004)
+        one.calibrate()
+        found.append(one)
+    return found[0], found[1]
+
+
+def judged(nominal, model, least_shown=9.0):
+    both, test = nominal
+    for one in (both, test):
+        one.doubt_beside(one.nuisance, model)
+    seed, nothing = np.random.SeedSequence(1), SimpleNamespace(winner=None)
+    usual = nominal
+    return held_out_errors(usual, (both, test), nothing, model, least_shown, seed)
+
+
+@pytest.fixture(scope="module")
+def weak():
+    return sims(1, 2)
+
+
+def test_a_wrong_place_is_surely_worse_where_much_is_shown(weak):
+    fit, judgement = judged(weak, (TRUTH,))
+    assert judgement.limits == ()
+    assert judgement.worse["wrong_place"] > 2.5
+    assert fit.corrected < 0.5 * fit.nominal
+
+
+def test_what_held_out_data_hardly_show_is_judged_by_all(weak):
+    _, judgement = judged(weak, (TRUTH,), least_shown=1e9)
+    assert judgement.limits == (FAINT,)
+    assert judgement.worse["wrong_place"] > 2.5

@@ -8,6 +8,7 @@ from known_arms import CHANNELS, NOISE_RAD
 from made_up_traces import arm, recorded
 
 from diagnosis.conclude.guards import established, objections
+from diagnosis.conclude.held_out_errors import Judgement
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.verdict import ChannelFit, Fit
@@ -23,8 +24,9 @@ GOOD = Fit(
 )
 
 
-def said(timed=False, **changes):
-    return " ".join(objections(replace(GOOD, **changes), timed))
+def said(timed=False, worse=None, **changes):
+    judged = Judgement(replace(GOOD, **changes), worse or {})
+    return " ".join(objections(judged, timed))
 
 
 def test_a_good_answer_meets_no_objection():
@@ -46,6 +48,15 @@ def test_the_error_must_fall_to_half():
     assert said(nominal=1.6, corrected=1.2, ceiling=None, **alone) == ""
 
 
+def test_where_hardly_more_than_noise_is_left_a_regression_says_what_is_possible():
+    """The noise itself is not known to some percent of its square."""
+    near = {"nominal": 1.2, "wrong_place": None, "wrong_effect": None}
+    assert said(corrected=1.17, ceiling=None, **near) == ""
+    assert said(corrected=1.17, ceiling=1.3, **near) == ""
+    assert "less than half" in said(corrected=1.17, ceiling=1.1, **near)
+    assert said(corrected=1.13, ceiling=1.1, **near) == ""
+
+
 @pytest.mark.parametrize(
     ("control", "words"),
     [("wrong_place", "at another place"), ("wrong_effect", "another effect")],
@@ -54,6 +65,9 @@ def test_a_wrong_answer_must_not_do_about_as_well(control, words):
     """Of 98 explained 1.25 are left; a wrong answer leaves 1.6 at 1.6, 8 at 3.0."""
     assert words in said(**{control: 1.6})
     assert said(**{control: 3.0}) == ""
+    # unless it surely leaves more
+    assert words in said(worse={control: 2.0}, **{control: 1.6})
+    assert said(worse={control: 2.5}, **{control: 1.6}) == ""
 
 
 def test_of_several_effects_the_main_one_is_compared():
@@ -99,7 +113,7 @@ GAIN = "servo_gain", "elbow", 0.7
 def test_an_effect_that_may_be_nothing_is_taken_out():
     both = predictor(GAIN)
     nothing = PlacedEffect("viscous_friction", "shoulder", (0.001,))
-    _, fitted, told = established(both, (PlacedEffect(*GAIN[:2], (0.75,)), nothing))
+    fitted, told = established(both, (PlacedEffect(*GAIN[:2], (0.75,)), nothing))
     (kept,) = fitted.model
     assert kept.key == "servo_gain@elbow"
     assert kept.values[0] == pytest.approx(0.7, rel=0.03)
@@ -108,14 +122,14 @@ def test_an_effect_that_may_be_nothing_is_taken_out():
 
 def test_where_nothing_is_left_nothing_is():
     nothing = PlacedEffect("viscous_friction", "shoulder", (0.001,))
-    assert established(predictor(), (nothing,))[1:] == (None, ())
-    assert established(predictor(), ())[1:] == (None, ())
+    assert established(predictor(), (nothing,)) == (None, ())
+    assert established(predictor(), ()) == (None, ())
 
 
 def test_a_value_that_runs_into_its_bound_is_not_stated():
     """Commands are 0.9 s late, and the library allows for 0.6 s."""
     both = predictor(("command_latency", "commands", 0.9))
     late = PlacedEffect("command_latency", "commands", (0.5,))
-    _, fitted, told = established(both, (late,))
+    fitted, told = established(both, (late,))
     assert fitted is None
     assert "end of its possible range" in told[0]

@@ -21,7 +21,7 @@ def shared_fit(*coulomb_nm):
     rubs = rubbing(coulomb_nm, (0.0, 0.0, 0.0))
     predictor = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
     predictor.calibrate()
-    bare = predictor.without_tolerances()
+    bare = predictor.nominal()
     return bare, fit_all(bare, [tied(arm(), EACH, "all")])[0]
 
 

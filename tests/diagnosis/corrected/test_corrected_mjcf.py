@@ -100,6 +100,15 @@ def test_late_commands(delay_s):
     check_same(plant, [("command_latency", "commands", delay_s)])
 
 
+@pytest.mark.parametrize("delay_s", [-5e-4, 3e-4])
+def test_what_is_nearer_to_no_delay_than_to_a_step_is_none(delay_s):
+    """A clock may seem to run ahead; MuJoCo would not move with a negative delay."""
+    plant = load_plant("nao", "fixed")
+    late = PlacedEffect("command_latency", "commands", (delay_s,))
+    model = mujoco.MjModel.from_xml_string(corrected_mjcf(plant, (late,)))
+    assert not model.actuator_delay.any()
+
+
 def test_what_mujoco_lacks_is_left_out():
     plant = load_plant("nao", "fixed")
     play = PlacedEffect("backlash", "LKneePitch", (0.03,))

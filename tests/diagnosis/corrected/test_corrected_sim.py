@@ -163,6 +163,15 @@ def test_latency_is_that_of_the_worlds_own_delay_line(flat):
     assert np.abs(prompt["position_rad"] - own["position_rad"]).max() > 0.01
 
 
+def test_no_command_is_known_before_it_is_given(flat):
+    commands = swing(0.3)
+    early = roll(sim([flat], ("command_latency", "commands", -1e-5)), commands)
+    prompt = roll(sim([flat], nominal=True), commands)
+    np.testing.assert_allclose(
+        early["position_rad"], prompt["position_rad"], rtol=0, atol=1e-8
+    )
+
+
 def test_encoders_show_the_past_and_the_gyroscope_its_bias(flat):
     effects = [("sensor_delay", "encoders", 0.02), ("gyro_bias", "gyroscope", 1, 2, -3)]
     plain = roll(sim([flat], nominal=True), swing(0.5))

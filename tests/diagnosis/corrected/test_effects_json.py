@@ -136,6 +136,13 @@ def test_how_a_base_was_mounted_is_nothing_for_a_robot_that_walks(
     assert load_correction(written(tmp_path, walking, HUNG), walking) == (HUNG,)
 
 
+def test_a_base_that_was_mounted_about_level_is_no_obstacle(tmp_path, held, walking):
+    level = PlacedEffect("ground_slope", "world", (0.004, 0.0))
+    path = written(tmp_path, held, PLAY, level)
+    assert load_correction(path, held) == (level, PLAY)
+    assert load_correction(path, walking) == (PLAY,)
+
+
 def test_feet_in_the_air_have_no_contact(tmp_path, held, walking):
     path = written(tmp_path, walking, PlacedEffect("contact_friction", "feet", (0.5,)))
     assert load_correction(path, walking)

@@ -103,7 +103,7 @@ def searched(*truth):
     [
         (("speed_brake", "elbow", 0.6), 0.05),
         (("other_gravity", "world", 0.6, 0.0, 0.9), 0.1),
-        (("wind", "world", 4.0, 0.0, 2.0, 1.1, 0.7), 0.1),
+        (("wind", "world", 4.0, 0.0, 0.0, 1.1, 0.7), 0.1),
     ],
 )
 def test_effects_of_ones_own_are_found_with_their_values(truth, rel):

@@ -5,7 +5,7 @@ import pytest
 from made_up_residuals import noise, pushed, time_of, two_traces
 
 from diagnosis.residuals.bursts import BIN_S, onsets, push_intervals
-from diagnosis.residuals.predictor import WARM_UP_S
+from diagnosis.residuals.replays import WARM_UP_S
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,8 @@ from made_up_traces import arm, arm_command, recorded
 
 from diagnosis.effects.joints import JointElasticity
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.predictor import WARM_UP_S, WORST, Channels, Predictor
+from diagnosis.residuals.predictor import WORST, Channels, Predictor
+from diagnosis.residuals.replays import WARM_UP_S
 
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
@@ -74,6 +75,7 @@ def test_calibration_at_one_model_serves_others(pendulum):
     here, there = (Predictor(plant, [trace], CHANNELS) for _ in range(2))
     here.calibrate(near)
     there.calibrate()
+    here, there = here.nominal(), there.nominal()
     difference = (here.predict([near]) - there.predict([near])) / NOISE_RAD
     assert np.sqrt(np.mean(difference**2)) < 1
     assert np.sqrt(np.mean(difference**2)) > 0
@@ -85,9 +87,9 @@ def test_a_stiff_spring_takes_shorter_steps(monkeypatch):
     plant = arm()
     trace = recorded(plant, duration_s=2.0)
     truth = Predictor(plant, [trace], CHANNELS, step_s=5e-4)
-    truth.calibrate(spring)
+    truth.correct(spring)
     predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
-    predictor.calibrate()
+    predictor.correct()
 
     def wrong():
         found = predictor.predict([(), spring])[1] - truth.predict([spring])[0]

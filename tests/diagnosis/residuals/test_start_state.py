@@ -6,6 +6,7 @@ from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.clock import ClockNoise
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.residuals.start_state import StartUncertainty
 from diagnosis.traces.windows import Run
@@ -41,7 +42,7 @@ def test_a_right_model_leaves_noise_though_its_start_is_wrong(seed):
     assert np.abs(start - truth).max() > 0.05
     assert rms(predictor) > 2
     predictor.calibrate()
-    predictor = predictor.without_tolerances()
+    predictor = predictor.nominal()
     assert rms(predictor) == pytest.approx(1, abs=0.15)
     for wrong in (
         PlacedEffect("servo_gain", "elbow", (0.95,)),
@@ -56,7 +57,7 @@ def test_parts_of_a_predictor_know_the_starts_of_theirs():
     traces = [recorded(plant, duration_s=1.5, seed=seed) for seed in range(3)]
     whole = Predictor(plant, traces, CHANNELS)
     whole.calibrate()
-    whole = whole.without_tolerances()  # these are shared by all traces
+    whole = whole.nominal()  # these are shared by all traces
     rows = whole.trace >= 1
     part = whole.part(1, 3).residuals([()])[0]
     np.testing.assert_allclose(part, whole.residuals([()])[0][rows], atol=1e-6)
@@ -117,3 +118,19 @@ def test_windows_have_starts_of_their_own():
     np.testing.assert_allclose(alone, left[:rows])
     against = np.vstack([np.hstack([decay, -wave])] * 2)[None]
     assert np.abs(doubt.without(against)[0][:rows]).max() > 0.5 * decay.max()
+
+
+def test_errors_of_a_clock_are_whitened_before_those_of_a_start():
+    """Without the clock the same start is taken out of errors as they are."""
+    random = np.random.default_rng(4)
+    changes, speed = 40 * random.standard_normal((2, 60, 2)), np.zeros((60, 2))
+    speed[:30] = 3000.0
+    clock = ClockNoise(speed, 5e-4, 3e-4)
+    start = StartUncertainty(changes, [40, 60], clock)
+    wrong = changes[:1] + 0.0 * changes[1:]
+    timed = start.without(clock.without(wrong))
+    assert np.abs(timed).max() < 0.1 * np.abs(clock.without(wrong)).max()
+    evenly = start.evenly().without(wrong)
+    assert np.abs(evenly).max() < 0.1 * np.abs(wrong).max()
+    later = start.part(1, 2)
+    np.testing.assert_allclose(later.evenly().without(wrong[:, 40:]), evenly[:, 40:])

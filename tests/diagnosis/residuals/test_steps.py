@@ -27,6 +27,8 @@ def fitted(trace, step_s, again):
     """Values that fit; the error of steps is measured `again` at each model found."""
     predictor = Predictor(arm(), [trace], CHANNELS, step_s, finest_s=FINEST_S)
     predictor.calibrate()
+    predictor = predictor.nominal()
+    predictor.correct()
     model = fit_all(predictor, [START])[0].model
     for _ in range(again):
         predictor.correct(model)

@@ -38,8 +38,8 @@ def test_what_is_the_same_physics_does_as_well():
         (PlacedEffect("viscous_friction", "shoulder", (0.6,)),),
     ]
     for part in (fit, select):
-        part.calibrate(models[0])
-    judge = Judge(fit.without_tolerances(), select.without_tolerances(), LEAN)
+        part.calibrate(models[0], tolerances=False)
+    judge = Judge(fit, select, LEAN)
     before = judge.judged(models)
     # unfair: the error of the one's steps is taken out of both
     assert selected(before)[OIL] > selected(before)[DRAG] + 20

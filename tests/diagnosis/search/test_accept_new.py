@@ -5,7 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.search.accept import without_old_effects
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.search.judging import Judge
+from diagnosis.search.old_effects import without_old_effects
 from diagnosis.search.result import SearchResult
 
 FIRST, SECOND = ("first",), ("first", "second")
@@ -14,7 +16,8 @@ FIRST, SECOND = ("first",), ("first", "second")
 class Known:
     """A predictor of eight moments, of ten values each, whose gains are given."""
 
-    def __init__(self, **gains):
+    def __init__(self, base="floating", **gains):
+        self.plant = SimpleNamespace(base=base)
         self._gains = {"": np.zeros(8)} | {
             name: np.array(values, float) for name, values in gains.items()
         }
@@ -28,6 +31,17 @@ class Known:
             gain = sum((self._gains[name] for name in model), np.zeros(8))
             row[:, 0] = np.sqrt(2 * (1000 - gain))
         return found.reshape(len(models), -1)
+
+
+class Keyed(Known):
+    """The same for models of placed effects, by their names."""
+
+    def residuals(self, models):
+        """See `Known.residuals`; effects without a given gain gain nothing."""
+        names = [[one.name for one in model] for model in models]
+        for name in {name for some in names for name in some}:
+            self._gains.setdefault(name, np.zeros(8))
+        return super().residuals(names)
 
 
 def chosen(now, before, size=1, fit=None):
@@ -76,6 +90,37 @@ def test_few_moments_of_each_kind_of_data_tell_together(fitted, expected):
     before = Known(first=NONE)
     assert chosen(now, [before], fit=now) == 1
     assert chosen(now, [before], fit=Known(first=fitted)) == expected
+
+
+class Told(Judge):
+    """Judges models of placed effects by their given gains, without any fit."""
+
+    def __init__(self, fit, healthy):
+        self.fit = self.select = fit
+        self.healthy = healthy
+
+    def judged(self, starts, jacobians=None):
+        return [SimpleNamespace(model=start) for start in starts]
+
+
+@pytest.mark.parametrize(
+    ("before", "kept"),
+    [
+        ({}, "ab"),
+        ({"b": [9] * 8}, "ab"),  # by chance, or as faint as it was always
+        ({"b": [11] * 8}, "a"),
+        ({"a": [18] * 8, "b": [11] * 8}, ""),
+    ],
+)
+def test_on_a_fixed_base_what_gained_half_as_much_before_is_old(before, kept):
+    a, b = (PlacedEffect(name, "elbow", (1.0,)) for name in "ab")
+    gains = {"a": [20] * 8, "b": [20] * 8}
+    now, then = (Keyed("fixed", **own) for own in (gains, before))
+    best = {1: [], 2: [SimpleNamespace(model=(a, b))]}
+    result = SearchResult(0.0, 0.0, best, 2)
+    found = without_old_effects(Told(now, [then]), result)
+    model = found.winner.model if found.winner else ()
+    assert "".join(one.name for one in model) == kept
 
 
 def test_without_a_reference_nothing_is_asked():

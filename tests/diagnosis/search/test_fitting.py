@@ -19,8 +19,8 @@ def predictor_of(*effects, noise_rad, model=(), **more):
     plant = arm()
     trace = recorded(plant, *effects, noise_rad=noise_rad, duration_s=2.0, **more)
     predictor = Predictor(plant, [trace], CHANNELS, step_s=START_S)
-    predictor.calibrate(model)
-    return predictor.without_tolerances()
+    predictor.calibrate(model, tolerances=False)
+    return predictor
 
 
 @pytest.mark.parametrize(
@@ -43,7 +43,7 @@ def test_values_without_noise(name, place, start, truth, tolerance):
     for _ in range(ROUNDS):
         (fit,) = fit_all(predictor, [model])
         model = fit.model
-        predictor.calibrate(model)
+        predictor.calibrate(model, tolerances=False)
     (found,) = fit.model
     assert (found.name, found.place) == (name, place)
     assert found.values == pytest.approx(truth, rel=tolerance)

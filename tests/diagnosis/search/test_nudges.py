@@ -26,7 +26,7 @@ def predictor():
     rubs = rubbing((1.0, 2.0, 0.5), (0.0, 0.0, 0.0))
     found = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
     found.calibrate()
-    return found.without_tolerances()
+    return found.nominal()
 
 
 def grouped(predictor, model):

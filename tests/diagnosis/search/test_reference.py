@@ -14,6 +14,7 @@ from diagnosis.pipeline import diagnose
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.judging import Judge
 from diagnosis.search.reference import learn_reference, reference_checks
 from diagnosis.traces.windows import runs_of
@@ -24,7 +25,7 @@ SEED = np.random.SeedSequence(0)
 
 def rubbing(t, q, v):
     """What the arm's model never had."""
-    return np.array([0.0, -0.3]) * v
+    return np.array([0.0, -0.6]) * v
 
 
 def waving(t, q, v):
@@ -55,7 +56,7 @@ def verdict_of(plant, traces, reference, rules=SINGLE):
 def test_what_an_arm_lacked_before_is_part_of_it():
     plant, before = arm(), of_arm(0)
     found = diagnose(plant, of_arm(10), SEED, SINGLE, reference=before)
-    (given,) = found.given
+    (given,) = [one for one in found.given if not is_usual(plant, one)]
     assert given.place == "elbow"
     assert given.name in ("viscous_friction", "servo_damping")
     assert found.verdict.kind == "none"
@@ -106,7 +107,8 @@ def test_an_unreadable_reference_is_refused():
 def test_each_half_of_a_reference_is_judged_by_the_other(count):
     plant = swinger()
     traces = [moved(seed, duration_s=1.5) for seed in range(count)]
-    wells = reference_checks(plant, traces, shared_channels(plant, traces))
+    none = ReferenceNoise.known((), 8)
+    wells = reference_checks(plant, traces, shared_channels(plant, traces), none)
     first, second = ({t.name.split("[")[0] for t in well.traces} for well in wells)
     assert first | second == {f"swing {seed}" for seed in range(count)}
     assert count == 1 or not first & second
@@ -133,9 +135,32 @@ def test_what_explains_the_reference_too_gains_nothing():
     assert wise > nothing - 0.2 * (nothing - plain)
 
 
-def test_with_a_fixed_base_effects_are_part_of_the_plant_already():
-    plant, traces = arm(), [measured(0)]
-    assert reference_checks(plant, traces, shared_channels(plant, traces)) == []
+def test_with_a_fixed_base_what_was_learned_leaves_little():
+    """And what is still unknown of small mismatch is less than what is usual."""
+    plant, traces = arm(), of_arm(0)[:2]
+    channels = shared_channels(plant, traces)
+    friction = (PlacedEffect("viscous_friction", "elbow", (0.6,)),)
+    noise = learn_reference(plant, traces, channels, known=friction)
+    (check,) = reference_checks(plant, traces, channels, noise)
+    (left,) = check.residuals([()])
+    assert np.mean(left[check.scored] ** 2) < 1.2
+    gone = (PlacedEffect("viscous_friction", "elbow", (-0.3,)),)
+    (wrong,) = check.residuals([gone])
+    assert np.mean(wrong[check.scored] ** 2) > 4
+    power = np.linalg.eigvalsh(noise.spread)
+    assert 0 < power[0] < 0.1
+    assert power[-1] <= 1 + 1e-9
+
+
+def test_a_fault_as_small_as_usual_errors_is_seen_beside_a_reference():
+    """A servo that lost 6 % of its stiffness: a model may be as wrong, a robot not."""
+    before, after = of_arm(0), of_arm(10, gain=(0.94, 1.0))
+    (found,) = verdict_of(arm(), after, before).effects
+    assert (found.name, found.place) == ("servo_gain", "shoulder")
+    assert found.parameters["factor"].value == pytest.approx(0.94, abs=0.01)
+    assert "servo_gain" not in {
+        one.name for one in verdict_of(arm(), after, []).effects
+    }
 
 
 def test_no_window_starts_at_the_edge_of_a_recording():

@@ -32,7 +32,7 @@ def screened(*effects, names=CANDIDATES, noise_rad=NOISE_RAD, base=()):
     trace = recorded(plant, *effects, noise_rad=noise_rad, duration_s=3.0)
     predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
     predictor.calibrate()
-    predictor = predictor.without_tolerances()
+    predictor = predictor.nominal()
     usage = Usage.of(plant, [trace])
     residual = predictor.residuals([base])[0]
     found = signatures(predictor, base, usage, names=names)

@@ -13,8 +13,8 @@ from diagnosis.search.judging import Judge
 from diagnosis.search.search import Search
 from diagnosis.search.spread import is_widespread, joints_off
 
-SHOULDER = ("servo_gain", "shoulder", 0.94)
-ELBOW = ("servo_gain", "elbow", 0.94)
+SHOULDER = ("servo_gain", "shoulder", 0.75)
+ELBOW = ("servo_gain", "elbow", 0.7)
 
 
 def predictor_of(*effects):
@@ -33,7 +33,6 @@ def model_of(*effects):
         ((), (), []),
         ((ELBOW,), (), ["elbow"]),
         ((SHOULDER, ELBOW), (), ["shoulder", "elbow"]),
-        ((SHOULDER, ELBOW), (SHOULDER,), ["elbow"]),
         ((SHOULDER, ELBOW), (SHOULDER, ELBOW), []),
     ],
 )
@@ -43,14 +42,12 @@ def test_joints_are_off_until_a_model_explains_them(missing, known, off):
     assert is_widespread(predictor, model) is (len(off) == 2)
 
 
-def test_what_lies_within_tolerances_counts():
-    """Tolerances of 1 % would hide half of an error of 2 %."""
-    close = ("servo_gain", "elbow", 0.98)
-    predictor = predictor_of(close)
-    whitened = predictor.residuals([()])[0]
+def test_what_models_usually_get_wrong_does_not_count():
+    predictor = predictor_of(("servo_gain", "elbow", 0.94))
+    nominal = predictor.nominal().residuals([()])[0]
     elbow = predictor.scored & (predictor.channel == 1)
-    assert np.mean(whitened[elbow] ** 2) < 1.5
-    assert joints_off(predictor, ()) == ["elbow"]
+    assert np.mean(nominal[elbow] ** 2) > 20
+    assert joints_off(predictor, ()) == []
 
 
 def found(monkeypatch, **truth):
@@ -74,11 +71,11 @@ def found(monkeypatch, **truth):
 @pytest.mark.slow
 def test_effects_at_all_joints_are_searched_for_where_most_are_off(monkeypatch):
     keys = {"servo_gain@shoulder", "servo_gain@elbow"}
-    wrong = {"gain": (0.9, 0.8), "duration_s": 2.5}
+    wrong = {"gain": (0.75, 0.7), "duration_s": 2.5}
     assert found(monkeypatch, **wrong) == (keys, True, ["everywhere"])
 
 
 @pytest.mark.slow
 def test_few_effects_are_searched_for_where_few_joints_are_off(monkeypatch):
-    wrong = {"gain": (0.9, 1.0), "duration_s": 2.5}
+    wrong = {"gain": (0.8, 1.0), "duration_s": 2.5}
     assert found(monkeypatch, **wrong) == ({"servo_gain@shoulder"}, False, [])

@@ -52,7 +52,7 @@ def test_friction_is_what_was_published():
     learned = [*parts.fit, *parts.select]
     predictor = Predictor(plant, learned, shared_channels(plant, learned))
     predictor.calibrate()
-    predictor = predictor.without_tolerances()
+    predictor = predictor.nominal()
     (fitted,) = fit_all(predictor, [FRICTION])
     coulomb, viscous, spring = estimates(predictor, fitted)
     # another estimator on one of the runs: 80 % intervals may miss it by a little

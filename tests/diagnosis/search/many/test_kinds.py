@@ -30,7 +30,7 @@ def predictor_with(*coulomb_nm):
     rubs = rubbing(coulomb_nm, (0.0, 0.0, 0.0))
     found = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
     found.calibrate()
-    return found.without_tolerances()
+    return found.nominal()
 
 
 @pytest.fixture(scope="module")

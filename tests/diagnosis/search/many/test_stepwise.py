@@ -27,7 +27,7 @@ def predictor_with(dry_nm, viscous_nm_s):
     rubs = rubbing(dry_nm, (0.0, viscous_nm_s, 0.0))
     found = predictor_of(arm(), with_motions(arm(), [moved(rubs)]))
     found.calibrate()
-    return found.without_tolerances()
+    return found.nominal()
 
 
 @pytest.fixture(scope="module")

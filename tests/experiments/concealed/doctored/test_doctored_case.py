@@ -77,7 +77,7 @@ def errors(plant, trace, *models):
             places = effect(placed.name).places(ready.plant, ready.traces)
             assert placed.place in places
     predictor = predictor_of(ready.plant, ready.traces, ready.channels)
-    predictor.calibrate(models[-1])
+    predictor.calibrate(models[-1], tolerances=False)
     residuals = predictor.residuals(models)[:, predictor.scored]
     return np.sqrt(np.mean(residuals**2, axis=1)).tolist()
 

@@ -1,0 +1,50 @@
+"""The integration error of simulations, measured with shorter steps.
+
+The error of a coarse time step is smooth and hardly depends on the model. So it is
+measured once for one model, by Richardson extrapolation (first order: twice the finer
+result minus the coarser one), and taken out of simulations of others.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from groundwalk.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class IntegrationError:
+    """What to add to simulated values (rows, c) to take the integration error out.
+
+    Attributes:
+      whole: for simulations with a step.
+      half: for those with half of it.
+      extrapolated: for the extrapolation from those with half and a quarter of it.
+    """
+
+    whole: FloatArray
+    half: FloatArray
+    extrapolated: FloatArray
+
+    def part(self, rows: slice) -> "IntegrationError":
+        """That of some rows."""
+        return IntegrationError(
+            self.whole[rows], self.half[rows], self.extrapolated[rows]
+        )
+
+    @classmethod
+    def of(
+        cls, values: Callable[[float], FloatArray], step_s: float, finest_s: float
+    ) -> tuple["IntegrationError", FloatArray]:
+        """Measure it where `values` (rows, c) are those with a time step [s].
+
+        The shortest of the steps is `finest_s`. Also returns what the extrapolation
+        leaves, an error of second order.
+        """
+        own = [step_s / part for part in (1, 2, 4)]
+        finest = [finest_s * part for part in (4, 2, 1)]
+        found = {one: values(one) for one in dict.fromkeys([*own, *finest])}
+        coarse, fine, finer = (found[one] for one in finest)
+        right = 2 * finer - fine
+        extrapolated = right - (2 * found[own[2]] - found[own[1]])
+        error = cls(right - found[own[0]], right - found[own[1]], extrapolated)
+        return error, (finer - fine) - (fine - coarse) / 2

@@ -1,0 +1,59 @@
+"""Likely sizes of small errors by linear estimates."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from groundwalk.arrays import BoolArray, FloatArray
+
+
+def likeliest(
+    changes: FloatArray,
+    left: FloatArray,
+    sizes: FloatArray,
+    free: BoolArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> FloatArray:
+    """(k,) sizes between `low` and `high` that are likeliest; 0 where not `free`.
+
+    Args:
+      changes: (k, N) changes of a residual [noise] by one standard deviation of each.
+      left: (N,) residual [noise] beside errors of the present (k,) `sizes`.
+      sizes: in standard deviations.
+      free: (k,) whether each may have a size.
+      low: (k,) smallest ones.
+      high: (k,) largest ones.
+    """
+    own, found = changes[free], np.zeros(len(free))
+    if len(own):
+        root = np.linalg.cholesky(own @ own.T + np.eye(len(own)))
+        wanted = own @ (left - sizes[free] @ own)
+        ends = low[free] - 1e-9, high[free] + 1e-9
+        found[free] = lsq_linear(root.T, -np.linalg.solve(root, wanted), ends).x
+    return found
+
+
+def gain_of(
+    changes: FloatArray,
+    left: FloatArray,
+    sizes: FloatArray,
+    own: Sequence[int],
+    fixed: BoolArray,
+) -> float:
+    """What is gained [nats] by other values of some errors, to first order.
+
+    Args:
+      changes: (k, N) changes of a residual [noise] by one standard deviation of each.
+      left: (N,) residual [noise] beside the errors.
+      sizes: (k,) present ones, in standard deviations.
+      own: indices of those that may have any size.
+      fixed: (k,) whether each of the others stays as it is.
+    """
+    free = np.union1d(np.flatnonzero(~fixed), own)
+    prior = np.where(np.isin(free, own), 0.0, 1.0)
+    changes = changes[free]
+    slope = changes @ left + prior * sizes[free]
+    power = np.linalg.pinv(changes @ changes.T + np.diag(prior), hermitian=True)
+    return 0.5 * float(slope @ power @ slope)

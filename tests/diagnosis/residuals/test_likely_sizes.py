@@ -1,0 +1,48 @@
+"""Likely sizes of small errors against closed forms."""
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+from diagnosis.residuals.likely_sizes import gain_of, likeliest
+
+ALL = np.ones(2, bool)
+
+
+def test_sizes_are_drawn_to_zero_as_by_a_ridge():
+    changes = np.array([[3.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    left = -np.array([6.0, 2.0, 5.0])  # sizes of 2 explain it but for the last entry
+    ends = np.full(2, -9.0), np.full(2, 9.0)
+    found = likeliest(changes, left, np.zeros(2), ALL, *ends)
+    assert found == pytest.approx([2 * 9 / 10, 2 * 1 / 2])
+    # the same from a residual that has some of them
+    begun = np.array([1.0, -1.0])
+    found = likeliest(changes, left + begun @ changes, begun, ALL, *ends)
+    assert found == pytest.approx([1.8, 1.0])
+
+
+def test_bounds_hold_and_the_others_take_over():
+    changes = np.array([[1.0, 0.0], [1.0, 0.1]])
+    left = -np.array([10.0, 0.0])
+    low, high = np.zeros(2), np.array([2.0, 9.0])
+    found = likeliest(changes, left, np.zeros(2), ALL, low, high)
+    rest = minimize(lambda x: (8 - x) ** 2 + (0.1 * x) ** 2 + x**2, 1.0, method="BFGS")
+    assert found == pytest.approx([2.0, rest.x[0]], abs=1e-4)
+    only = likeliest(changes, left, np.zeros(2), np.array([True, False]), low, high)
+    assert only == pytest.approx([2.0, 0.0], abs=1e-6)
+
+
+def test_a_gain_is_the_energy_that_falls():
+    rng = np.random.default_rng(3)
+    changes, sizes = rng.standard_normal((3, 40)), np.array([3.0, 0.5, 1.0])
+    left = rng.standard_normal(40) - 4 * changes[0]
+    fixed = np.array([True, False, True])
+
+    def energy(x):
+        other = np.array([x[0], x[1], 1.0])
+        rest = left + (other - sizes) @ changes
+        return 0.5 * (rest @ rest + other[1] ** 2)
+
+    least = minimize(energy, [3.0, 0.5], method="BFGS").fun
+    gain = gain_of(changes, left, sizes, [0], fixed)
+    assert gain == pytest.approx(energy([3.0, 0.5]) - least, rel=1e-4)

@@ -1,0 +1,135 @@
+"""Small mismatch of the nominal model: likely values, also beside effects."""
+
+import numpy as np
+import pytest
+from made_up_traces import arm
+from scipy.optimize import lsq_linear
+
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.nuisance import Nuisance
+from diagnosis.residuals.nuisance_fit import ENOUGH_NATS, NuisanceFit
+from diagnosis.residuals.usual_errors import USUAL
+
+PLANT = arm()
+ROWS = 300
+GAIN = "servo_gain@elbow"
+
+
+class Linear:
+    """Residuals that are linear in how far values are from the usual, in its units."""
+
+    def __init__(self, true, noise=1.0, reach=30.0, seed=0, alike=()):
+        """Where the errors `true`, by "effect@place", are missing in the model.
+
+        What one of `alike` changes is nearly the sum of what the others do.
+        """
+        random = np.random.default_rng(seed)
+        self.nuisance = Nuisance.of(PLANT, (), ROWS)
+        keys = [self.nuisance.key(i) for i in range(len(self.nuisance.units))]
+        self.changes = reach * random.standard_normal((len(keys), ROWS)) / ROWS**0.5
+        if alike:
+            first, *others = [keys.index(key) for key in alike]
+            self.changes[first] *= 0.1
+            self.changes[first] += self.changes[others].sum(axis=0)
+        self.true = np.array([true.get(key, 0.0) for key in keys])
+        self.noise = noise * random.standard_normal(ROWS)
+        self.index = {key: keys.index(key) for key in keys}
+
+    def far(self, model):
+        """(k,) how far a model's values are from neutral ones."""
+        far = np.zeros(len(self.true))
+        for placed in model:
+            neutral = self.nuisance.parameters[self.index[placed.key]]
+            for unit, own in zip(self.nuisance.units, [placed] * 99, strict=False):
+                if unit.key != placed.key:
+                    continue
+                k = self.nuisance.units.index(unit)
+                i = int(
+                    np.argmax(
+                        [
+                            a != p.neutral
+                            for a, p in zip(unit.values, neutral, strict=True)
+                        ]
+                    )
+                )
+                one = neutral[i]
+                log = (lambda v: np.log(v)) if one.logarithmic else (lambda v: v)
+                size = log(unit.values[i]) - log(one.neutral)
+                far[k] = (log(own.values[i]) - log(one.neutral)) / size
+        return far
+
+    def ask(self, models):
+        return np.stack(
+            [self.noise + (self.true - self.far(m)) @ self.changes for m in models]
+        )
+
+    def at(self, sizes, found):
+        """The small mismatch found, with other sizes of some."""
+        some = found.sizes.copy()
+        for key, size in sizes.items():
+            some[self.index[key]] = size
+        return found.at(some).beside(())
+
+
+def test_errors_are_found():
+    world = Linear(
+        {GAIN: 1.5, "servo_gain@shoulder": -1.2, "coulomb_friction@elbow": 2.0}
+    )
+    found = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    np.testing.assert_allclose(found.sizes, world.true, atol=0.3)
+
+
+def test_they_are_what_is_likeliest():
+    """As ridge regression within bounds, in which each is worth its own square."""
+    world = Linear({GAIN: 1.5}, reach=1.0)
+    found = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    changes = -found.changes
+    left = world.ask([()])[0]
+    rows = np.vstack([changes.T, np.eye(len(changes))])
+    low, high = found.bounds()
+    wanted = lsq_linear(
+        rows, np.append(left, np.zeros(len(changes))), (low - 1e-9, high)
+    )
+    energies = [
+        np.sum((left + (sizes - found.sizes) @ found.changes) ** 2) + np.sum(sizes**2)
+        for left in world.ask([found.beside(())])
+        for sizes in (found.sizes, wanted.x)
+    ]
+    assert energies[0] < energies[1] + 2 * ENOUGH_NATS
+
+
+def test_no_error_is_larger_than_usual_and_friction_is_never_negative():
+    world = Linear({GAIN: 9.0, "coulomb_friction@elbow": -2.0}, reach=3.0)
+    found = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    sizes = found.sizes
+    assert sizes[world.index[GAIN]] == pytest.approx(USUAL)
+    assert sizes[world.index["coulomb_friction@elbow"]] == pytest.approx(0.0, abs=1e-6)
+    (left,) = world.ask([found.beside(())])
+    gains = {one.key: gain for one, gain in found.unusual(left)}
+    assert list(gains) == [GAIN]
+    right = world.at({GAIN: 9.0}, found)
+    both = [0.5 * float(np.sum(one**2)) for one in (left, *world.ask([right]))]
+    assert gains[GAIN] == pytest.approx(both[0] - both[1], rel=0.3)
+
+
+def test_what_a_model_has_is_no_small_error_too():
+    world = Linear({GAIN: 9.0})
+    true = (PlacedEffect("servo_gain", "elbow", (float(np.exp(9 * 0.03)),)),)
+    found = NuisanceFit(world.ask, true).fitted(world.nuisance)
+    assert found.sizes[world.index[GAIN]] == 0.0
+    assert GAIN not in {one.key for one in found.beside({GAIN})}
+    (left,) = world.ask([(*found.beside({GAIN}), *true)])
+    assert not found.unusual(left)
+    # what a value of its own would change is known all the same
+    assert np.abs(found.changes[world.index[GAIN]]).max() > 0
+
+
+def test_small_errors_move_when_the_model_does():
+    world = Linear({GAIN: 9.0})
+    before = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    true = (PlacedEffect("servo_gain", "elbow", (float(np.exp(9 * 0.03)),)),)
+    after = NuisanceFit(world.ask, true).moved(before)
+    (left,) = world.ask([(*after.beside({GAIN}), *true)])
+    assert np.mean(left**2) < 1.5
+    (wrong,) = world.ask([(*before.beside({GAIN}), *true)])
+    assert np.mean(wrong**2) > np.mean(left**2)
