@@ -10,7 +10,7 @@ from diagnosis.conclude.answer import verdict_kind
 from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
 from diagnosis.residuals.data_sets import DataSets
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
@@ -19,7 +19,7 @@ from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.reference import learn_reference, reference_checks
-from diagnosis.search.result import MORE_THAN_NOISE, SearchResult
+from diagnosis.search.result import SearchResult
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.verdict import VerdictKind

@@ -12,11 +12,11 @@ from diagnosis.conclude.answer import alike
 from diagnosis.conclude.flexible_regression import flexible_regression_errors
 from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.channels import channel_unit
+from diagnosis.residuals.channels import MORE_THAN_NOISE, channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.chance import independent_blocks
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.result import MORE_THAN_NOISE, MOST_LEFT, SearchResult
+from diagnosis.search.result import MOST_LEFT, SearchResult
 from diagnosis.search.ties import groups_of, without_each
 from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray

@@ -16,6 +16,11 @@ FINEST = 1e-7
 """Smallest noise assumed, as a share of a channel's range: what rounding numbers for a
 file makes. The accuracy of the simulation itself is added later, see `precise`."""
 
+MORE_THAN_NOISE = 2.0
+"""If the best model leaves this multiple of the noise, more is missing than noise: no
+model of this robot is exact, what is left is taken as noise, and effects are shared by
+joints first."""
+
 LEAST_TORQUE = 0.02
 """Smallest noise assumed for measured torques, as a share of their rms: the accuracy to
 which the constants of a motor are known."""

@@ -5,15 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.nuisance import Nuisance
 from diagnosis.residuals.replays import Model
 from groundwalk.arrays import FloatArray
 
 NUDGE = 0.5
 """Step of finite differences, in standard deviations."""
-
-MORE_THAN_NOISE = 2.0
-"""Multiple of the noise from which on so much is left that more is missing."""
 
 NEAR = 1.0
 """Distance from where changes were simulated, in standard deviations, up to which they

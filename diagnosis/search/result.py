@@ -49,10 +49,6 @@ class Judged:
         return keys_of(self.model)
 
 
-MORE_THAN_NOISE = 2.0
-"""If the best model leaves this multiple of the noise, no model of this robot is exact:
-what it leaves is taken as noise, and effects are shared by joints first."""
-
 MOST_LEFT = 0.5
 """If the error energy that remains exceeds that of the noise by at most this share of
 it, hardly more than noise remains, and the verdict is not `unknown`."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.result import MORE_THAN_NOISE
 
 FEWEST = 2
 """A single joint is never most of them."""

@@ -7,13 +7,14 @@ then the values that joints share come first. What chance may explain is taken o
 again. The extended Bayesian information criterion decides (`ebic.py`).
 """
 
+from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.each_joint import each_joint
 from diagnosis.search.many.fits import Fits
 from diagnosis.search.many.pruning import pruned, shared
 from diagnosis.search.many.shared_first import shared_first
-from diagnosis.search.result import MORE_THAN_NOISE, Judged, SearchResult
+from diagnosis.search.result import Judged, SearchResult
 from diagnosis.search.ties import without_each
 
 MUCH_BETTER = 0.25

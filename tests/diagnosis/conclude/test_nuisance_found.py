@@ -5,7 +5,7 @@ import pytest
 from known_arms import CHANNELS, NOISE_RAD
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.nuisance_found import sure_nuisance
+from diagnosis.conclude.nuisance_found import sure_nuisance, with_unusual_ones
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
@@ -13,7 +13,7 @@ RUBS, WEAK = ("coulomb_friction", "elbow", 0.05), ("servo_gain", "shoulder", 0.9
 LEAST = 8.0
 
 
-def said(*effects, model=(), least_gain=LEAST, noise_rad=NOISE_RAD):
+def calibrated(*effects, model=(), noise_rad=NOISE_RAD):
     traces = [
         recorded(arm(), *effects, duration_s=2.0, seed=seed, noise_rad=noise_rad)
         for seed in range(2)
@@ -21,7 +21,27 @@ def said(*effects, model=(), least_gain=LEAST, noise_rad=NOISE_RAD):
     noise = Channels(CHANNELS.names, np.full(2, noise_rad))
     predictor = Predictor(arm(), traces, noise)
     predictor.calibrate(model)
+    return predictor
+
+
+def said(*effects, model=(), least_gain=LEAST, noise_rad=NOISE_RAD):
+    predictor = calibrated(*effects, model=model, noise_rad=noise_rad)
     return sure_nuisance(predictor, model, least_gain)
+
+
+@pytest.mark.parametrize(("torque_nm", "is_added"), [(0.05, False), (0.2, True)])
+def test_an_error_that_is_larger_than_usual_is_missing_physics(torque_nm, is_added):
+    """Weak friction is 0.04 N m here, three times as much is unusual."""
+    rubs = "coulomb_friction", "elbow", torque_nm
+
+    class Data:
+        def calibrated(self, model):
+            return (calibrated(rubs, model=model),) * 2
+
+    model, *_ = with_unusual_ones(Data(), (), LEAST)
+    assert [one.key for one in model] == ["coulomb_friction@elbow"] * is_added
+    if is_added:
+        assert model[0].values[0] == pytest.approx(torque_nm, rel=0.1)
 
 
 def test_what_a_model_states_is_small_and_dry_friction_is_not():
