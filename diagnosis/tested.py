@@ -18,6 +18,7 @@ from diagnosis.effects.library import effect
 from diagnosis.learned import Learned
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel
+from diagnosis.search.judging import gain_of_noise
 from diagnosis.verdict import Fit
 
 NOTHING = "The values of all effects found may as well be those of no effect."
@@ -88,6 +89,8 @@ def _test_of(
     explain what no model does.
     """
     data, least_gain = learned.data, learned.search.judge.least_gain
+    if learned.inexact:  # what the search compared with was another noise
+        least_gain = gain_of_noise(1)
     nominal = data.learned, data.test
     if learned.noise is None and not learned.inexact and may_be_more:
         model, *sims = with_unusual_ones(data, model, least_gain)
