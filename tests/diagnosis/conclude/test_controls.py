@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.held_out_errors import FAINT, controls_of, held_out_errors
+from diagnosis.conclude.controls import controls_of
+from diagnosis.conclude.held_out_errors import FAINT, held_out_errors
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
