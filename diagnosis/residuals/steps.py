@@ -14,7 +14,7 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
-from diagnosis.residuals.clock import speeds, with_clock
+from diagnosis.residuals.clock import clock_noise, speeds, with_clock
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import shortened
@@ -93,8 +93,8 @@ def precise(
     """The channels, whose noise includes the error of the simulation itself.
 
     That is what integration leaves at the shortest time step, see `Predictor`. The
-    jitter of the clock is measured as well, unless small mismatch of the model leaves
-    much more than noise in most channels: then fast errors are the model's, too.
+    jitter of the clock is measured as well, unless it and small mismatch of the model
+    leave much more than noise in most channels: then fast errors are the model's, too.
     """
     some = shortened(traces, PRECISE_S)
     for step_s in STEPS_S[plant.base]:
@@ -112,7 +112,10 @@ def precise(
     beside = predictor.moved_to(()).without_tolerances()
     left = beside.residuals([()]).reshape(-1, len(wider))
     scored = predictor.scored.reshape(left.shape)
+    timed = with_clock(found, left, speeds(some, found), scored)
+    clock, left = clock_noise(some, timed, scored), left * found.noise / timed.noise
+    if clock is not None:
+        (left,) = clock.without(left[None])
     square = np.sum(left**2, axis=0) / np.maximum(scored.sum(axis=0), 1)
-    if np.sum(square > MORE_THAN_NOISE**2) >= max(len(wider) / 2, 2):
-        return found
-    return with_clock(found, left, speeds(some, found), scored)
+    far_off = np.sum(square > MORE_THAN_NOISE**2) >= max(len(wider) / 2, 2)
+    return found if far_off else timed
