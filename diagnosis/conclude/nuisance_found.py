@@ -63,9 +63,11 @@ def sure_nuisance(
 def with_unusual_ones(
     data: DataSets, model: Model, least_gain: float
 ) -> tuple[Model, Predictor, Predictor]:
-    """A model with errors that are larger than usual ones, one after the other.
+    """A model with friction that is larger than usual, one joint after the other.
 
-    Also returns the predictors of learned and of held-out data, calibrated at it.
+    It may be at more joints than a search has effects. What a model states and has very
+    wrong is left to the search, whose selection data must agree. Also returns the
+    predictors of learned and of held-out data, calibrated at the model.
     """
     found, sims = model, data.calibrated(model)
     for _ in range(MOST_UNUSUAL):
@@ -79,12 +81,17 @@ def with_unusual_ones(
 
 
 def _with_unusual_one(both: Predictor, model: Model, least_gain: float) -> Model | None:
-    """The model with the error that gains most by being larger than usual, if any."""
+    """The model with friction that gains most by being larger than usual, if any."""
     if both.nuisance is None:
         return None
     (left,) = both.without_tolerances().residuals([model])
     taken = {one.key for one in model}
-    options = [one for one in both.nuisance.unusual(left) if one[0].key not in taken]
+    options = [
+        (placed, gain)
+        for placed, gain in both.nuisance.unusual(left)
+        if placed.key not in taken
+        and not effect(placed.name).tolerance(both.plant, placed.place)
+    ]
     options.sort(key=lambda one: -one[1])
     for placed, gain in options[:MOST_UNUSUAL]:
         if gain < least_gain:
