@@ -26,11 +26,11 @@ STRETCHES = (0.4, 1.0, 2.5)
 """Factors on a guessed size of an effect that are tried before the size is fitted."""
 
 LIMITS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3)
-"""The same for a torque or speed limit. They are close, since gradients are useless
-where a joint too weak for its load collapses."""
+"""Factors on a guessed torque or speed limit that are tried before it is fitted. They
+are close: where a joint too weak for its load collapses, gradients are useless."""
 
 STIFFNESSES = (0.3, 0.6, 1.0, 1.7, 3.0, 5.0, 8.0)
-"""The same for a stiffness: between two resonances the gradient points to neither."""
+"""Factors on a guessed stiffness: between resonances the gradient points to none."""
 
 LEAST_STRETCH = 1e-3
 """Smallest factor by which a value is divided, where infinity stands for no effect."""

@@ -26,7 +26,7 @@ class IntegrationError:
     extrapolated: FloatArray
 
     def part(self, rows: slice) -> "IntegrationError":
-        """That of some rows."""
+        """The integration error in some rows."""
         return IntegrationError(
             self.whole[rows], self.half[rows], self.extrapolated[rows]
         )

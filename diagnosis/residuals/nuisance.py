@@ -66,7 +66,7 @@ class Nuisance:
         return cls(plant, units, own, *none)
 
     def part(self, entries: BoolArray) -> "Nuisance":
-        """The same errors, for some of a residual's entries: where (N,) is true."""
+        """These errors, with what they change in some entries: where (N,) is true."""
         return replace(self, changes=self.changes[:, entries])
 
     def key(self, index: int) -> str:

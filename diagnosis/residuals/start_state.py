@@ -76,7 +76,7 @@ class StartUncertainty:
         return some
 
     def evenly(self) -> "StartUncertainty":
-        """That for residuals which were not whitened for a clock."""
+        """The start uncertainty of residuals that were not whitened for a clock."""
         return StartUncertainty(self._changes, self._ends)
 
     @property

@@ -55,8 +55,8 @@ class Judge:
         """Judge the nominal sim, with which all models are compared.
 
         Predictors are calibrated and have the same channels; `healthy` are those of
-        recordings of the healthy robot: on a floating base, a gain there, too, is no
-        evidence of a change.
+        recordings of the healthy robot: what gains there, too, is no evidence of a
+        change (on a fixed base that is asked after a search, see `old_effects.py`).
         """
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.healthy, self.hooks = healthy, hooks or Hooks()

@@ -50,7 +50,7 @@ def test_what_is_fitted_is_not_uncertain_as_well():
 
 
 def test_what_is_known_together_is_whitened_together():
-    """Of the others alone when one of them is fitted, and beside independent ones."""
+    """One is fitted, of others the covariance is known, and one is independent."""
     random = np.random.default_rng(3)
     signatures, residual = random.standard_normal((4, 20)), random.standard_normal(20)
     root = random.standard_normal((3, 3))

@@ -34,7 +34,7 @@ class Known:
 
 
 class Keyed(Known):
-    """The same for models of placed effects, by their names."""
+    """A predictor of eight moments with gains by the names of placed effects."""
 
     def residuals(self, models):
         """See `Known.residuals`; effects without a given gain gain nothing."""

@@ -136,7 +136,7 @@ def test_what_explains_the_reference_too_gains_nothing():
 
 
 def test_with_a_fixed_base_what_was_learned_leaves_little():
-    """And what is still unknown of small mismatch is less than what is usual."""
+    """What is still unknown of small mismatch is less than what is usual, too."""
     plant, traces = arm(), of_arm(0)[:2]
     channels = shared_channels(plant, traces)
     friction = (PlacedEffect("viscous_friction", "elbow", (0.6,)),)
