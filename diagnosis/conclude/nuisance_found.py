@@ -17,8 +17,8 @@ from diagnosis.verdict import Estimate, Found
 from groundwalk.arrays import FloatArray
 
 MOST_UNUSUAL = 3
-"""Most errors that are larger than usual and were not found by a search, and most that
-are tried for each."""
+"""Most joints with unusual friction that a search did not find, and most that are tried
+for each."""
 
 LITTLE = 0.03
 """Share of weak friction up to which friction that is found may be the error of the

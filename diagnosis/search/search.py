@@ -49,9 +49,8 @@ class Search:
         intervals = push_intervals(self._bare, self._bare.residuals([()])[0])
         self.signatures = signatures(self._fit, (), self._usage, intervals)
         starts = Candidates(self._fit, self.signatures, self._rules)
-        best = {
-            1: self._round(1, self._with_promising(1, starts.alone(judge.residual)))
-        }
+        alone = self._with_promising(1, starts.alone(judge.residual))
+        best = {1: self._round(1, alone)}
         chosen, size = 0, 1
         before: Judged | None = None
         while best.get(size):
@@ -76,9 +75,7 @@ class Search:
             replaced = starts.swapped(best[chosen][0])
             swapped = self._round(chosen, replaced, "replacements of ")
             best[chosen] = distinct(judge.ranked(best[chosen] + swapped))
-        for smaller in range(
-            1, chosen
-        ):  # by what small mismatch beside the best leaves
+        for smaller in range(1, chosen):  # beside small mismatch as the best has it
             some = best[smaller][: self._rules.compared]
             best[smaller] = judge.ranked(judge.again(some))
         return SearchResult(
