@@ -47,9 +47,12 @@ _INNER = 0.1
 a share of its width, so that the bracket shrinks."""
 
 
-def drawn_nats(rng: np.random.Generator) -> float:
-    """Draw an information [nats per recording]: a level, then log-uniform within it."""
-    ends = [MOST_NATS, *LEVELS.values()]
+def drawn_nats(rng: np.random.Generator, most_nats: float = MOST_NATS) -> float:
+    """Draw an information [nats per recording]: a level, then log-uniform within it.
+
+    `most_nats` is the largest that is drawn.
+    """
+    ends = [most_nats, *LEVELS.values()]
     level = int(rng.choice(len(LEVELS), p=[SHARES[name] for name in LEVELS]))
     high, low = ends[level], ends[level + 1]
     return float(math.exp(rng.uniform(math.log(low), math.log(high))))

@@ -10,11 +10,11 @@ import numpy as np
 
 from experiments.concealed.motion import CaseMotion
 from experiments.concealed.second.draw import Slot, drawn_slots
-from experiments.concealed.second.information import Teller, drawn_nats_2
+from experiments.concealed.second.information import MOST_NATS_2, Teller
 from experiments.concealed.second.motion import SecondMotion
 from experiments.concealed.second.nuisance import EXACT, Nuisance
 from experiments.concealed.second.plan import CasePlan, planned
-from experiments.concealed.size_by_information import ease_that_tells
+from experiments.concealed.size_by_information import drawn_nats, ease_that_tells
 from experiments.concealed.written import SOURCE, MadeCase
 from groundwalk.errors import GroundwalkError
 from worlds.hidden import KINDS, Hidden
@@ -107,7 +107,9 @@ class _Maker:
         sized = list[Hidden]()
         for slot in slots:
             told = partial(tells, slot=slot)
-            ease = ease_that_tells(drawn_nats_2(rng), told, float(rng.uniform()))
+            ease = ease_that_tells(
+                drawn_nats(rng, MOST_NATS_2), told, float(rng.uniform())
+            )
             if ease is None:
                 return False
             sized.append(

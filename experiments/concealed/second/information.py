@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from experiments.concealed.size_by_information import KEPT, LEVELS
+from experiments.concealed.size_by_information import KEPT
 from groundwalk.arrays import FloatArray
 from worlds.hidden import Hidden, HiddenPlant
 from worlds.hidden.recorded import HiddenSensors
@@ -17,14 +17,6 @@ from worlds.hidden.run import Run
 
 MOST_NATS_2 = 1e4
 """Largest information [nats per recording] that is drawn, in the easiest level, L1."""
-
-
-def drawn_nats_2(rng: np.random.Generator) -> float:
-    """Draw an information [nats]: each level as often, log-uniform within it."""
-    ends = [MOST_NATS_2, *LEVELS.values()]
-    level = int(rng.integers(len(LEVELS)))
-    high, low = ends[level], ends[level + 1]
-    return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
 LASTS_S = 0.25

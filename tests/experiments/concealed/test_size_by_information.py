@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from experiments.concealed.second.information import MOST_NATS_2
 from experiments.concealed.size_by_information import (
     FAR,
     KEPT,
@@ -92,15 +93,16 @@ def test_what_tells_nothing_when_small_does_not_mislead(wanted, first):
     assert abs(math.log(told(ease) / wanted)) < FAR
 
 
-def test_levels_come_as_often_as_they_should():
+@pytest.mark.parametrize("most", [MOST_NATS, MOST_NATS_2])
+def test_levels_come_as_often_as_they_should(most):
     rng = np.random.default_rng(0)
-    drawn = np.array([drawn_nats(rng) for _ in range(4000)])
+    drawn = np.array([drawn_nats(rng, most) for _ in range(4000)])
     levels = [level_of(nats) for nats in drawn]
     for name, share in SHARES.items():
         assert levels.count(name) / len(drawn) == pytest.approx(share, abs=0.03)
     assert SHARES.keys() == LEVELS.keys()
     assert sum(SHARES.values()) == pytest.approx(1.0)
-    assert 1.0 <= drawn.min() < drawn.max() <= MOST_NATS
+    assert 1.0 <= drawn.min() < drawn.max() <= most
 
 
 @pytest.mark.parametrize(

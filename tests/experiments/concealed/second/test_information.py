@@ -6,13 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from experiments.concealed.second.information import (
-    LASTS_S,
-    MOST_NATS_2,
-    Teller,
-    drawn_nats_2,
-)
-from experiments.concealed.size_by_information import KEPT, level_of
+from experiments.concealed.second.information import LASTS_S, Teller
+from experiments.concealed.size_by_information import KEPT
 from worlds.hidden import Hidden, hidden_plant
 from worlds.hidden.recorded import HiddenSensors
 from worlds.hidden.run import Clock, Run
@@ -97,12 +92,3 @@ def test_wrong_readings_count_as_they_are_written_down():
     told = teller().nats([run()], [run()], [outliers])
     count = 2 * ROWS / HZ
     assert told == pytest.approx(KEPT * 0.5 * count * 100, rel=0.6)
-
-
-def test_all_levels_are_drawn_alike():
-    rng = np.random.default_rng(1)
-    drawn = [drawn_nats_2(rng) for _ in range(4000)]
-    assert 1.0 <= min(drawn) < max(drawn) <= MOST_NATS_2
-    for level in ("L1", "L2", "L3", "L4"):
-        share = np.mean([level_of(nats) == level for nats in drawn])
-        assert share == pytest.approx(0.25, abs=0.03)
