@@ -97,9 +97,13 @@ def _write_fields(
             value[...] = values[0]
         else:
             setattr(target, last, type(value)(values[0]))
-    mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
+    data = mujoco.MjData(compiled)
+    mujoco.mj_setConst(compiled, data)
     # code for a batch writes to the fields of one model, as views (1, ...)
-    one = SimpleNamespace(expand=lambda name: np.asarray(getattr(compiled, name))[None])
+    one = SimpleNamespace(
+        expand=lambda name: np.asarray(getattr(compiled, name))[None],
+        bind=lambda name: np.asarray(getattr(data, name))[None],
+    )
     joints = vars(variants.joints)
     servos = BatchServos(one, variants.plant, [servo], joints, step_s)
     damping = servos.damping_nm_s_rad

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.plant.servo import Servo, servo_torque
+from diagnosis.plant.servo import Servo
 from diagnosis.replay.transmission import ElasticJoints
 from groundwalk.arrays import FloatArray
 
@@ -19,6 +19,10 @@ LEAST_KP = 1e-9
 JUMP = 0.3
 """A target that changes in one physics step by more than this share of the position
 error at which the servo saturates counts as a jump."""
+
+MOST_OF_STEP = 0.6
+"""Share of a physics step that is most of it. Half would be the phase of many a jump,
+as of each second one where a step takes two thirds of a tick."""
 
 Columns = slice | list[int]
 """Index of the joints' columns in an array of MuJoCo."""
@@ -82,16 +86,25 @@ class BatchServos:
         self._set_range(self._limit)
         self._dofs = columns(plant.dofs)
         self._damping[:, self._dofs] += self.law["emf"] - plant.servo.back_emf_nm_s_rad
-        inertia = np.asarray(batch.expand("dof_M0"))[:, self._dofs]
-        inertia = inertia + step_s * self._damping[:, self._dofs]
-        # a servo whose torque is below this leaves saturation within the step
-        self._held_from = self._limit * (1 + step_s * self.law["kd"] / inertia)
-        self._relaxed = False  # whether some actuator's range exceeds the limit
+        model = plant.model
+        diagonal = model.M_rowadr + model.M_rownnz - 1
+        self._mass = np.asarray(batch.bind("M")), diagonal[self._dofs]
+        # limits of the next step, and whether actuators' present ones are not `_limit`
+        self._least_limit, self._changed = self._limit, False
 
     @property
     def damping_nm_s_rad(self) -> FloatArray:
         """(rows, j) sum of servo damping, back-EMF and the joint's own damping."""
         return np.asarray(self.law["kd"] + self._damping[:, self._dofs])
+
+    def held_from_nm(self) -> FloatArray:
+        """(rows, j) torque [N m] from which on a servo saturates in all of a step.
+
+        One whose torque is below leaves saturation within the step: see `limit`.
+        """
+        mass, diagonal = self._mass
+        inertia = mass[:, diagonal] + self._step_s * self._damping[:, self._dofs]
+        return np.asarray(self._limit * (1 + self._step_s * self.law["kd"] / inertia))
 
     def equal(
         self, mean_rad: FloatArray, ends: Ends, angle: FloatArray, velocity: FloatArray
@@ -99,20 +112,34 @@ class BatchServos:
         """(rows, j) constant targets with the same mean torque as targets that jump.
 
         A target that jumps within a physics step may saturate the servo for a part of
-        the step only. With the mean target MuJoCo would saturate it for all of it.
+        the step only. With the mean target MuJoCo would saturate it for all of it. What
+        saturates is not damped. So where a servo saturates in most of a step, it gets
+        the mean torque as its limit in the next call of `limit`; otherwise that torque
+        for a part of the step from which on it would saturate in all of it.
         Angles [rad] are those that the servos control.
         """
         kp, kd, limit = (self.law[name] for name in ("kp", "kd", "limit"))
+        held_from = self.held_from_nm()
         share = first_share(mean_rad, ends)
-        first, last = (
-            servo_torque(kp, kd, limit, end - angle, velocity) for end in ends
+        parts = share, 1 - share
+        asked = [kp * (end - angle) - kd * velocity for end in ends]
+        mean_nm, damped_nm = (
+            sum(
+                part * np.clip(one, -most, most)
+                for part, one in zip(parts, asked, strict=True)
+            )
+            for most in (limit, held_from)
         )
-        torque = share * first + (1 - share) * last
-        target = angle + (torque + kd * velocity) / np.maximum(kp, LEAST_KP)
         jumps = np.abs(ends[1] - ends[0]) > self.least_jump_rad
-        # where the servo saturates in the whole step, the mean target is right, too
-        within = (share > 0) & (share < 1) & (np.abs(torque) < limit) & (kp > 0)
-        return np.where(jumps & within, target, mean_rad)
+        within = jumps & (share > 0) & (share < 1) & (kp > 0)
+        target = angle + (damped_nm + kd * velocity) / np.maximum(kp, LEAST_KP)
+        target = np.where(within & (np.abs(damped_nm) < held_from), target, mean_rad)
+        for part, one, end in zip(parts, asked, ends, strict=True):
+            long = within & (part > MOST_OF_STEP) & (np.abs(one) > held_from)
+            target = np.where(long, end, target)
+            if long.any():
+                self._least_limit = np.where(long, np.abs(mean_nm), self._least_limit)
+        return np.asarray(target)
 
     def limit(
         self, asked_rad: FloatArray, angle: FloatArray, velocity: FloatArray
@@ -127,11 +154,13 @@ class BatchServos:
         """
         kp, kd = self.law["kp"], self.law["kd"]
         torque = np.abs(kp * (asked_rad - angle) - kd * velocity)  # without a limit
-        free = (torque > self._limit) & (torque < self._held_from)
-        relaxed = bool(free.any())
-        if relaxed or self._relaxed:
-            self._set_range(np.where(free, UNLIMITED_NM, self._limit))
-        self._relaxed = relaxed
+        free = torque > self._limit
+        if free.any():
+            free &= torque < self.held_from_nm()
+        changed = bool(free.any()) or self._least_limit is not self._limit
+        if changed or self._changed:
+            self._set_range(np.where(free, UNLIMITED_NM, self._least_limit))
+        self._changed, self._least_limit = changed, self._limit
 
     def _set_range(self, limit: FloatArray) -> None:
         """Set torque limits (rows, j) [N m] of all actuators."""
@@ -174,6 +203,7 @@ class BatchServos:
             old = field[:, self._actuators, column]
             field[:, self._actuators, column] = np.where(elastic.soft, value, old)
         self._limit = np.where(elastic.soft, UNLIMITED_NM, self._limit)
+        self._least_limit = self._limit
         self._set_range(self._limit)
         self._damping[:, self._dofs] -= np.where(elastic.soft, self.law["emf"], 0.0)
 

@@ -102,3 +102,15 @@ def test_what_is_just_above_the_limit_moves_as_what_is_just_below():
 def test_strong_damping_at_the_limit(asked):
     found, wanted = strongly_damped(asked * LIMIT_NM / KP)
     assert abs(found - wanted).max() < 0.006 * abs(wanted).max()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.9])
+def test_a_damped_servo_at_its_limit_moves_alike_wherever_in_a_step_it_jumps(share):
+    """A jump that is a little later moves the joint a little later, and not another."""
+    plant = plant_of(WHEEL, kp=200.0, kd=6.0, limit=LIMIT_NM)
+    at_s = 0.02 + share * STEP_S
+    runs = [jumping(plant, at_s + late, 1.0) for late in (0.0, 1e-7)]
+    first, second = (exact(plant, run, step_s=STEP_S)[:, 0] for run in runs)
+    np.testing.assert_allclose(first, second, atol=1e-5)
+    wanted = 0.5 * LIMIT_NM / INERTIA * np.clip(TIME_S - at_s, 0, None) ** 2
+    np.testing.assert_allclose(first[3:6], wanted[3:6], rtol=0.05, atol=2e-4)
