@@ -77,6 +77,8 @@ class Effect(ABC):
     """Whether the effect acts only beyond its first value, as a limit or a stop does.
     If so, its size cannot be extrapolated from a first try."""
 
+    stiffens: ClassVar[bool] = False
+    """Whether the first value is a factor on the stiffness of servos."""
     stiff: ClassVar[bool] = False
     """Whether the effect is a spring in the drive, whose stiffness is the first value.
     If so, it is simulated at half the usual time step."""

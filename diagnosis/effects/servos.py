@@ -43,6 +43,7 @@ class ServoGain(NumberEffect, ServoEffect):
 
     name = "servo_gain"
     native = True
+    stiffens = True
     quantity = "kp_factor"
     combined = np.multiply
     usual = (Parameter("factor", "1", 0.1, 5.0, 1.0, 0.8, logarithmic=True),)

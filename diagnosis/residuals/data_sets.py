@@ -111,12 +111,14 @@ def _learned_and_test(
 ) -> tuple[Predictor, Predictor]:
     """Predictors of the first traces and of the others, calibrated at a model.
 
-    Small mismatch of the nominal model is fitted to the first ones only.
+    Small mismatch of the nominal model is fitted to the first ones only. What wrong
+    start states change is known of the `whole`.
     """
-    learned, test = whole.part(0, last), whole.part(last, len(whole.traces))
-    learned.doubt(model)
-    test.doubt_beside(learned.nuisance, model)
-    for part in (learned, test):
+    parts = whole.part(0, last), whole.part(last, len(whole.traces))
+    learned, test = parts
+    learned.fit_nuisance(model)
+    test.take_nuisance(learned.nuisance, model)
+    for part in parts:
         part.correct(model)
     return learned, test
 

@@ -62,6 +62,7 @@ class Predictor:
         on_replay: Callable[[int], None] | None = None,
         window_s: float = 0.0,
         finest_s: float | None = None,
+        replays: Replays | None = None,
     ) -> None:
         """Estimate the states from which the simulations of the traces start.
 
@@ -78,13 +79,16 @@ class Predictor:
             simulated.
           finest_s: shortest of the time steps with which the integration error is
             measured; None for a quarter of `step_s`, which is the longest.
+          replays: replays of these traces; None to prepare them.
         """
         self.plant, self.traces = plant, list(traces)
         self.step_s, self._threads = step_s or STEPS_S[plant.base][0], threads
         self.finest_s = finest_s or self.step_s / 4
         self.channels = channels or shared_channels(plant, traces)
         self._window_s = window_s
-        self._replays = Replays(plant, traces, self.channels, threads, window_s)
+        self._replays = replays or Replays(
+            plant, traces, self.channels, threads, window_s
+        )
         rows = [trace.ticks for trace in traces]
         c = len(self.channels.names)
         self._measured = np.concatenate(
@@ -109,7 +113,8 @@ class Predictor:
 
     def part(self, first: int, last: int) -> "Predictor":
         """A predictor of traces `first` to `last - 1`, with the same calibration."""
-        some = self.stepped(self.step_s, self.finest_s, self.traces[first:last])
+        replays = self._replays.part(first, last)
+        some = self._of(self.traces[first:last], self.step_s, self.finest_s, replays)
         ends = [0, *self._ends]
         own = slice(ends[first], ends[last])
         some._error = self._error.part(own)
@@ -124,6 +129,11 @@ class Predictor:
         some = copy(self)
         some._doubts = replace(self._doubts, **changes)
         return some
+
+    @property
+    def steps_s(self) -> list[float]:
+        """Time step [s] of the simulations of each trace."""
+        return [self.step_s / finer for finer in self._replays.finer]
 
     @property
     def noise_energy(self) -> float:
@@ -179,15 +189,29 @@ class Predictor:
         self,
         step_s: float,
         finest_s: float | None = None,
-        traces: Sequence[Trace] | None = None,
+        finer: Sequence[int] | None = None,
     ) -> "Predictor":
         """An uncalibrated predictor with other time steps, see the constructor.
 
-        It is of given or its own traces.
+        For each trace as many steps are taken for one as `finer` says; as many as
+        before for None.
         """
+        replays = self._replays
+        if finer is not None:
+            replays = replays.with_finer(finer)
+        return self._of(self.traces, step_s, finest_s, replays)
+
+    def _of(
+        self,
+        traces: Sequence[Trace],
+        step_s: float,
+        finest_s: float | None,
+        replays: Replays,
+    ) -> "Predictor":
+        """An uncalibrated predictor of some traces."""
         own = self.channels, step_s, self._threads, self._doubts.noise, self._on_replay
-        some = self.traces if traces is None else traces
-        return type(self)(self.plant, some, *own, self._window_s, finest_s)
+        more = self._window_s, finest_s, replays
+        return type(self)(self.plant, traces, *own, *more)
 
     def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.
@@ -205,26 +229,37 @@ class Predictor:
     def doubt(self, model: Model = (), tolerances: bool = True) -> None:
         """Find what wrong start states change, and small mismatch of the nominal model.
 
-        Without `tolerances` these stay as they were found before. Where recordings of
-        the healthy robot tell it small mismatch is taken as it is.
+        Without `tolerances` the latter stays as it was found before.
         """
-        if tolerances and self._doubts.is_known:
-            self.doubt_beside(no_nuisance(self), model)
-            return
         self._doubts = replace(self._doubts, start=self._start_doubt(model))
-        if tolerances and self.plant.base == "fixed":  # contacts outdo these by far
+        if tolerances:
+            self.fit_nuisance(model)
+
+    def doubt_beside(self, errors: Nuisance | None, model: Model) -> None:
+        """Find what wrong start states change; take small mismatch as it is given."""
+        self._doubts = replace(self._doubts, start=self._start_doubt(model))
+        self.take_nuisance(errors, model)
+
+    def fit_nuisance(self, model: Model) -> None:
+        """Find the nominal model's small mismatch that is likeliest beside a model.
+
+        Where recordings of the healthy robot tell it, it is taken as it is.
+        """
+        if self._doubts.is_known:
+            self.take_nuisance(no_nuisance(self), model)
+        elif self.plant.base == "fixed":  # contacts outdo small mismatch by far
             start = self.nuisance or no_nuisance(self)
             found = self.nuisance_fit(model).fitted(start)
             self._doubts = self._doubts.taking(found, self._beyond())
 
-    def doubt_beside(self, errors: Nuisance | None, model: Model) -> None:
-        """Take small mismatch as it is given; find what other sizes would change.
+    def take_nuisance(self, errors: Nuisance | None, model: Model) -> None:
+        """Take small mismatch as it is given, and find what other sizes would change.
 
         So it is not fitted to traces that are held out.
         """
-        self._doubts = replace(self._doubts, start=self._start_doubt(model))
         if errors is not None:
-            found = self.nuisance_fit(model).seen(errors)
+            own = self.nuisance or no_nuisance(self)
+            found = self.nuisance_fit(model).seen(own.at(errors.sizes))
             self._doubts = self._doubts.taking(found, self._beyond())
 
     def doubt_as(self, other: "Predictor") -> None:

@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Iterator, Sequence
+from copy import copy
 
 import numpy as np
 
@@ -28,12 +29,18 @@ MOST_ROWS = 192
 """Most simulations in one batch; more would need more memory and save no time."""
 
 
+SHORTEST_S = 2.5e-4
+"""Shortest step [s] of recordings whose steps are finer than others': a servo that
+saturates lasts longer."""
+
+
 class Replays:
     """Simulates models on all windows of some recordings, limb by limb.
 
     Attributes:
       runs: the windows of all recordings, one after the other.
       first_run: index of each recording's first window, and the number of windows.
+      finer: for each recording the number of steps that are taken for one.
     """
 
     def __init__(
@@ -52,41 +59,70 @@ class Replays:
         self.first_run = np.cumsum([0, *(len(runs) for runs in per_trace)]).tolist()
         ticks = [trace.ticks for trace in traces]
         self._recording = np.repeat([trace.recording for trace in traces], ticks)
+        self._trace = np.repeat(np.arange(len(traces)), ticks)
+        self.finer = [1] * len(traces)
+
+    def part(self, first: int, last: int) -> "Replays":
+        """The replays of traces `first` to `last - 1`."""
+        some = copy(self)
+        ends = self.first_run[first : last + 1]
+        some.runs = self.runs[ends[0] : ends[-1]]
+        some.first_run = [end - ends[0] for end in ends]
+        own = (self._trace >= first) & (self._trace < last)
+        some._recording, some._trace = self._recording[own], self._trace[own] - first
+        some.finer = self.finer[first:last]
+        return some
+
+    def with_finer(self, finer: Sequence[int]) -> "Replays":
+        """Replays that take several steps for one, for each trace a number."""
+        some = copy(self)
+        some.finer = list(finer)
+        return some
 
     def values(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values of c channels with a time step [s]."""
         shape = len(models), len(self._recording), len(self._channels.names)
         predicted = np.empty(shape)
-        for rows, runs, acting in self.together(models):
+        for rows, runs, acting, finer in self.together(models):
             for limb in self._limbs:
                 felt = [limb.felt(model) for model in acting]
                 number = {model: i for i, model in enumerate(dict.fromkeys(felt))}
                 own, columns = limb.channels(self._channels)
-                found = self._of_limb(limb, runs, list(number), step_s, own)
+                fine_s = max(step_s / finer, min(step_s, SHORTEST_S))
+                found = self._of_limb(limb, runs, list(number), fine_s, own)
                 place = np.ix_(np.arange(len(models)), rows, np.array(columns))
                 predicted[place] = found[[number[model] for model in felt]]
         return predicted
 
     def together(
         self, models: Sequence[Model]
-    ) -> Iterator[tuple[BoolArray, list[Run], list[Model]]]:
+    ) -> Iterator[tuple[BoolArray, list[Run], list[Model], int]]:
         """Yield groups of recordings, and the effects of the models that act in them.
 
-        Recordings are simulated together unless an effect acts in one of them only. A
-        group is given by its rows (rows,) and windows.
+        Recordings are simulated together unless an effect acts in one of them only, or
+        steps must be finer in some. A group is given by its rows (rows,) and windows;
+        the last item is by how much its steps are finer.
         """
         alone = {one.recording for model in models for one in model} - {None}
         rest = {str(name) for name in np.unique(self._recording)} - alone
-        for group in (rest, *({one} for one in sorted(map(str, alone)))):
-            runs = [run for run in self.runs if run.trace.recording in group]
+        groups = (rest, *({one} for one in sorted(map(str, alone))))
+        windows = np.repeat(self.finer, np.diff(self.first_run)).tolist()
+        rows = np.array(self.finer)[self._trace]
+        for group, finer in itertools.product(groups, sorted(set(self.finer))):
+            runs = [
+                run
+                for run, own in zip(self.runs, windows, strict=True)
+                if run.trace.recording in group and own == finer
+            ]
             if runs:
                 yield (
-                    np.isin(self._recording, list(group)),
+                    np.isin(self._recording, list(group)) & (rows == finer),
                     runs,
                     [
                         tuple(one for one in model if one.recording in (None, *group))
                         for model in models
                     ],
+                    finer,
                 )
 
     def warming(self) -> BoolArray:

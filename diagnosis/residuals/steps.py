@@ -31,6 +31,9 @@ DISTORTED = 0.1
 long. Fits are repeated with the integration error of the model that they found, so that
 the values that they end with do not have this error."""
 
+STIFF = 3.0
+"""Factor by which servos are stiffer than the model's in the choice of a time step."""
+
 PRECISE_S = 20.0
 """Most seconds of the recordings on which the error of the simulation is measured."""
 
@@ -57,34 +60,55 @@ def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
 
 
 def _showing_changes(whole: Predictor) -> Predictor:
-    """The predictor with the longest step with which effects change what they should.
+    """The predictor with the longest steps with which effects change what they should.
 
-    Those that jump, such as dry friction, are taken for all: no others suffer more from
-    long steps. The shortest step says what they should change.
+    Effects that jump, such as dry friction, suffer most from long steps, and servos
+    much stiffer than the model's oscillate with them: these are taken for all. The
+    shortest step says what they should change. Steps are finer in recordings that need
+    it, such as those in which servos saturate.
     """
-    plant, (*longer_s, shortest_s) = whole.plant, STEPS_S[whole.plant.base]
-    if whole.by_torque or not longer_s:
+    longest_s, *shorter_s = STEPS_S[whole.plant.base]
+    if whole.by_torque or not shorter_s:
         return whole
+    models = _demanding(whole)
+    right = _changes(whole.stepped(shorter_s[-1]), models)
+    finer = np.full(len(whole.traces), round(longest_s / shorter_s[-1]))
+    for step_s in (*reversed(shorter_s[:-1]), longest_s):
+        wrong = _changes(whole.stepped(step_s), models) - right
+        for k in range(len(finer)):
+            own = whole.trace == k
+            size, error = (
+                np.linalg.norm(one[:, own], axis=1) for one in (right, wrong)
+            )
+            usual = np.linalg.norm(right, axis=1) * np.sqrt(np.mean(own))
+            if np.all(error < DISTORTED * np.maximum(size, usual)):
+                finer[k] = round(longest_s / step_s)
+    return whole.stepped(longest_s, finer=finer.tolist())
+
+
+def _demanding(whole: Predictor) -> list[Model]:
+    """Models that need short steps: dry friction, and stiff servos, everywhere."""
+    plant, usage = whole.plant, Usage.of(whole.plant, whole.traces)
     rubbing = tuple(
         PlacedEffect(kind.name, place, values)
         for kind in all_effects().values()
         if kind.jumps
         for place in kind.places(plant, whole.traces)
-        for values in kind.first_tries(plant, place, Usage.of(plant, whole.traces))[:1]
+        for values in kind.first_tries(plant, place, usage)[:1]
     )
-    right = _change(whole.stepped(shortest_s), rubbing)
-    for step_s in longer_s:
-        some = whole.stepped(step_s)
-        wrong = _change(some, rubbing) - right
-        if np.linalg.norm(wrong) < DISTORTED * np.linalg.norm(right):
-            return some
-    return whole.stepped(shortest_s)
+    stiff = tuple(
+        PlacedEffect(kind.name, place, (STIFF,))
+        for kind in all_effects().values()
+        if kind.stiffens
+        for place in kind.places(plant, whole.traces)
+    )
+    return [one for one in (rubbing, stiff) if one]
 
 
-def _change(some: Predictor, model: Model) -> FloatArray:
-    """(N,) what a model changes in the residual of a predictor."""
-    nominal, changed = some.residuals([(), model])
-    return np.asarray(changed - nominal)
+def _changes(some: Predictor, models: Sequence[Model]) -> FloatArray:
+    """(n, N) what n models change in the residual of a predictor."""
+    nominal, *changed = some.residuals([(), *models])
+    return np.asarray(np.array(changed).reshape(len(models), -1) - nominal)
 
 
 def precise(

@@ -76,7 +76,7 @@ class TorquePredictor(Predictor):
         """(n, rows, c) torques that the motion needs by n models, for all traces."""
         torque = np.empty((len(models), *self._measured.shape))
         given = [self._doubts.given(model) for model in models]
-        for rows, _, acting in self._replays.together(given):
+        for rows, _, acting, _ in self._replays.together(given):
             torque[:, rows] = self._needed.of(variants_of(self.plant, acting))[:, rows]
         if self._on_replay is not None:
             self._on_replay(len(models))

@@ -53,6 +53,21 @@ def test_another_step_is_of_the_same_traces():
     assert rms(finer) == pytest.approx(rms(predictor) / 4, rel=0.1)
 
 
+def test_steps_may_be_finer_in_some_traces():
+    plant, trace = measured(8.0, 0.2, noise_rad=0.0)
+    other = recorded(plant, duration_s=2.0, seed=1)
+    predictor = Predictor(plant, [trace, other], CHANNELS, step_s=0.004)
+    some = predictor.stepped(0.004, finer=[1, 2])
+    assert some.steps_s == [0.004, 0.002]
+    assert some.part(1, 2).steps_s == [0.002]
+    coarse, mixed, fine = (
+        one.residuals([()])[0] for one in (predictor, some, predictor.stepped(0.002))
+    )
+    second = predictor.trace == 1
+    np.testing.assert_array_equal(mixed, np.where(second, fine, coarse))
+    assert np.abs(mixed - fine).max() > 1
+
+
 def test_of_a_right_model_only_noise_is_left():
     plant, trace = measured(8.0, 1.0, NOISE_RAD)
     predictor = Predictor(plant, [trace], CHANNELS)

@@ -1,5 +1,8 @@
 """Long steps show a little less than short ones, and fits in them end at the same."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 from known_arms import CHANNELS
 from made_up_traces import arm, recorded
@@ -47,12 +50,21 @@ def test_fits_in_long_steps_end_at_the_values_of_short_ones(trace):
 
 
 def stiff():
-    plant = arm(kp=300.0, kd=3.0)
+    plant = arm(kp=60.0, kd=1.5)
     return Predictor(plant, [recorded(plant, duration_s=1.0)], CHANNELS)
 
 
 def test_steps_are_shortened_where_effects_would_be_distorted(monkeypatch):
     monkeypatch.setattr(steps, "DISTORTED", 1.0)
-    assert steps.with_best_steps(stiff()).step_s == LONG_S
+    assert steps.with_best_steps(stiff()).steps_s == [LONG_S]
     monkeypatch.setattr(steps, "DISTORTED", 1e-4)
-    assert steps.with_best_steps(stiff()).step_s == SHORT_S
+    assert steps.with_best_steps(stiff()).steps_s == [SHORT_S]
+
+
+def test_only_recordings_that_need_it_take_short_steps():
+    """Servos saturate, and leave saturation within a step, where commands jump."""
+    plant = arm(kp=60.0, kd=1.5, limit=4.0)
+    slow = recorded(plant, duration_s=2.0)
+    fast = replace(slow, command_rad=0.5 * np.sign(slow.command_rad))
+    whole = steps.with_best_steps(Predictor(plant, [slow, fast], CHANNELS))
+    assert whole.steps_s[0] > whole.steps_s[1]
