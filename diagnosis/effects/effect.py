@@ -79,6 +79,7 @@ class Effect(ABC):
 
     stiffens: ClassVar[bool] = False
     """Whether the first value is a factor on the stiffness of servos."""
+
     stiff: ClassVar[bool] = False
     """Whether the effect is a spring in the drive, whose stiffness is the first value.
     If so, it is simulated at half the usual time step."""

@@ -18,7 +18,6 @@ from worlds.hidden.run import Run
 MOST_NATS_2 = 1e4
 """Largest information [nats per recording] that is drawn, in the easiest level, L1."""
 
-
 LASTS_S = 0.25
 """Time [s] for which the error that small mismatch causes stays alike, about that of a
 slow motion's quarter turn."""
