@@ -145,7 +145,8 @@ def drawn_names(
     names: list[str] = []
     if kind in ("pair", "triple") and rng.uniform() < _CONFUSABLE_SHARE:
         pairs = [pair for pair in CONFUSABLE if set(pair) <= set(inside)]
-        names += pairs[int(rng.integers(len(pairs)))]
+        if pairs:  # torques alone show none of them at some robots
+            names += pairs[int(rng.integers(len(pairs)))]
     while len(names) < _COUNT[kind]:
         name = str(rng.choice(inside))
         if name not in names and _compatible([*names, name], plant):
