@@ -30,6 +30,7 @@ if TYPE_CHECKING:  # `as` says that a name is public
     from diagnosis.search.rules import Rules as Rules
     from diagnosis.traces.read import read_reference as read_reference
     from diagnosis.traces.read import read_traces as read_traces
+    from diagnosis.traces.reference import Reference as Reference
     from diagnosis.traces.trace import Trace as Trace
     from diagnosis.verdict.verdict import Verdict as Verdict
 
@@ -43,6 +44,7 @@ _HOMES = {
     "search.hooks": ("Hooks",),
     "search.rules": ("Rules",),
     "traces.read": ("read_reference", "read_traces"),
+    "traces.reference": ("Reference",),
     "traces.trace": ("Trace",),
     "verdict.verdict": ("Verdict",),
 }

@@ -83,8 +83,9 @@ class Learned:
             return first
         if soft:
             limits = (*material.limits, CREEPS)
-            plant = softly(material.plant)
-            material = replace(material, plant=plant, limits=limits)
+            both = (softly(one) for one in (material.plant, material.before))
+            plant, before = both
+            material = replace(material, plant=plant, before=before, limits=limits)
         wide = channels.widened(wider)
         if first.everywhere and not soft:
             data, *_ = _divided(material, wide, given, threads, hooks)
@@ -148,14 +149,14 @@ def _divided(
 
     The search also tries the models `promising`.
     """
-    plant, reference = material.plant, material.reference
+    plant, before, reference = material.plant, material.before, material.reference
     noise, healthy = None, list[Predictor]()
     if reference:
-        noise = learn_reference(plant, reference, channels, rules, threads, hooks)
+        noise = learn_reference(before, reference, channels, rules, threads, hooks)
     hooks.stage("fit", FIT_REPLAYS)
     data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
     if noise:
-        healthy = reference_checks(plant, reference, channels, noise, threads, hooks)
+        healthy = reference_checks(before, reference, channels, noise, threads, hooks)
     judge = Judge(data.fit, data.select, rules, healthy, hooks)
     return data, noise, Search(judge, promising)
 

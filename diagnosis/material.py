@@ -21,6 +21,7 @@ from diagnosis.residuals.torque_evidence import (
 )
 from diagnosis.traces.outliers import without_outliers
 from diagnosis.traces.pulses import pulses_of, without_pulses
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.stalls import said_of_stalls, steady
 from diagnosis.traces.trace import DriveBy, Trace, driven_by_torques, with_motor_torques
 from diagnosis.verdict import Pulse
@@ -39,11 +40,13 @@ class Material:
         of `traces` and `reference` was smoothed to compare those that it needs.
       pulses: torques found in `traces` that no servo asked for.
       plant: the nominal robot model, without ranges that the recordings contradict.
+      before: that of the healthy robot; often the same.
       limits: sentences about wrong samples and stalls of `traces`, and about compared
         torques, for the report.
     """
 
     plant: Plant
+    before: Plant
     audited: Audit
     traces: tuple[Trace, ...]
     reference: tuple[Trace, ...]
@@ -56,7 +59,7 @@ class Material:
         cls,
         plant: Plant,
         traces: Sequence[Trace],
-        reference: Sequence[Trace],
+        reference: Reference | None,
         drive: DriveBy,
     ) -> "Material":
         """Audit and prepare recordings of a robot, and of the healthy robot if any.
@@ -66,26 +69,30 @@ class Material:
             lacks the torques that are to drive the joints.
         """
         traces, said = _without_outliers(traces)
-        reference, _ = _without_outliers(reference)
+        healthy, _ = _without_outliers(reference.traces if reference else ())
         audited = audit(traces, plant)
         if audited.refused:
             raise BadRecordingError(audited.refused[0])
-        plant = plant.without_ranges(contradicted_ranges([*traces, *reference], plant))
+        before = reference.plant if reference else plant
+        gone = contradicted_ranges([*traces, *healthy], plant)
+        plant, before = plant.without_ranges(gone), before.without_ranges(gone)
+        held = any(not trace.unheld for trace in (*traces, *healthy))
         ready, pulses = _prepared(plant, traces, drive)
-        before, _ = _prepared(plant, reference, drive)
-        held = any(not trace.unheld for trace in (*traces, *reference))
-        why = torques_tell(plant, (*ready, *before), held)
+        healthy, _ = _prepared(before, healthy, drive)
+        why = torques_tell(plant, (*ready, *healthy), held)
         if why:
-            plant = with_used_torques(plant, (*ready, *before))
-            every = with_motions(plant, (*ready, *before))
-            ready, before = tuple(every[: len(ready)]), tuple(every[len(ready) :])
+            both = (*ready, *healthy)
+            plant, before = (with_used_torques(one, both) for one in (plant, before))
+            every = with_motions(plant, both)
+            ready, healthy = tuple(every[: len(ready)]), tuple(every[len(ready) :])
             said = (*said, why)
         return cls(
             plant,
+            before,
             audited,
             traces=ready,
-            reference=before,
-            channels=shared_channels(plant, [*ready, *before]),
+            reference=healthy,
+            channels=shared_channels(plant, [*ready, *healthy]),
             pulses=pulses,
             limits=(*said, *(text for one in traces for text in said_of_stalls(one))),
         )

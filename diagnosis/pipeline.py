@@ -37,6 +37,7 @@ from diagnosis.search.reference import (
 )
 from diagnosis.search.rules import Rules
 from diagnosis.tested import Tested, tested_effects
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import DriveBy, Trace
 from diagnosis.verdict import Amount, Fit, Found, Unexplained, Verdict
 from groundwalk.blas import one_blas_thread
@@ -98,7 +99,7 @@ def diagnose(
     seed: np.random.SeedSequence,
     rules: Rules | None = None,
     threads: int = 1,
-    reference: Sequence[Trace] = (),
+    reference: Reference | None = None,
     drive: DriveBy = "servos",
     hooks: Hooks | None = None,
 ) -> Diagnosis:
@@ -110,7 +111,8 @@ def diagnose(
       seed: seed of the flexible regression and of the random control.
       rules: settings of the search; None for the default ones.
       threads: number of threads that simulate.
-      reference: recordings of the healthy robot; what they show is not looked for.
+      reference: recordings of the healthy robot, with its model at that time; what
+        they show is not looked for. None without.
       drive: "servos": simulated servos follow the recorded commands; "torques": the
         measured torques act on the joints.
       hooks: progress display and checkpoint; None for neither.

@@ -17,6 +17,7 @@ from diagnosis import (
     Diagnosis,
     Hooks,
     Plant,
+    Reference,
     Rules,
     Trace,
     Verdict,
@@ -66,6 +67,8 @@ class Diagnose(RunOptions):
       recordings: Parquet or CSV files (docs/recordings.md), or folders of them.
       reference: recordings of the same robot while it was healthy. What they show is
         taken as given; the question is then what has changed since.
+      reference_robot: model of the robot as it was then, if it has another tool or
+        another model now; in the form of `robot`.
       robot: name of a robot, a model file (.xml or .urdf), or a robot of
         example-robot-data.
       kp: stiffness of all servos [N m/rad], for recordings that do not state it.
@@ -88,6 +91,7 @@ class Diagnose(RunOptions):
     ] = ()
     robot: str = ""
     reference: Annotated[tuple[Path, ...], tyro.conf.arg(metavar="RECORDING...")] = ()
+    reference_robot: str = ""
     kp: float | None = None
     kd: float | None = None
     max_torque: float | None = None
@@ -103,6 +107,8 @@ class Diagnose(RunOptions):
             raise BadValueError("no recording is given; give one at least")
         if self.resume is None and not self.robot:
             raise BadValueError("no robot is given; give one with --robot")
+        if self.reference_robot and not self.reference:
+            raise BadValueError("reference_robot is given without a reference")
         for name in ("kp", "kd", "max_torque"):
             value = getattr(self, name)
             if value is not None and not 0 <= value < np.inf:
@@ -142,7 +148,8 @@ def main(config: Diagnose) -> None:
 def print_audit(config: Diagnose) -> None:
     """Print the check of the recordings with which a diagnosis begins."""
     plant, traces, reference = _read(config)
-    found = audit([*traces, *reference], plant)
+    healthy = reference.traces if reference else ()
+    found = audit([*traces, *healthy], plant)
     if config.json:
         print(found.to_json())
         return
@@ -183,14 +190,15 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
     return folder, found.verdict
 
 
-Read = tuple[Plant, list[Trace], list[Trace]]
+Read = tuple[Plant, list[Trace], Reference | None]
 """The robot model, the recordings, and the reference recordings (healthy robot)."""
 
 
 def _read(config: Diagnose) -> Read:
     """Read the robot model, its recordings and the reference recordings."""
     plant, traces = read_traces(config.recordings, config.robot, config.gains)
-    reference = read_reference(config.reference, config.robot, plant, config.gains)
+    then = config.reference_robot or config.robot
+    reference = read_reference(config.reference, then, plant, config.gains)
     return plant, traces, reference
 
 

@@ -9,12 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 
 from diagnosis.baselines import bic, ebic, sparse, sysid
 from diagnosis.plant.plant import Plant
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 
 __all__ = ["BASELINES"]
 
-Baseline = Callable[[Plant, Sequence[Trace], Sequence[Trace]], Verdict]
+Baseline = Callable[[Plant, Sequence[Trace], Reference | None], Verdict]
 
 BASELINES: Mapping[str, Baseline] = {
     "sysid": sysid.answer,

@@ -12,6 +12,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict
@@ -27,7 +28,7 @@ too; larger ones are "very strong" evidence (Kass and Raftery 1995)."""
 
 
 def answer(
-    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+    plant: Plant, traces: Sequence[Trace], reference: Reference | None = None
 ) -> Verdict:
     """Name the effect with the least BIC = 2 energy + p ln n, or no effect.
 

@@ -17,6 +17,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import signatures
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.screening import Screen
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import Verdict
@@ -51,7 +52,7 @@ class Step:
 
 
 def answer(
-    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+    plant: Plant, traces: Sequence[Trace], reference: Reference | None = None
 ) -> Verdict:
     """Add effects while the extended BIC falls, then drop some while it falls.
 

@@ -7,13 +7,14 @@ from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Model, Predictor, no_nuisance
 from diagnosis.residuals.steps import with_best_steps
 from diagnosis.search.reference import learn_reference
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
 
 
 def exact_replays(
     plant: Plant,
     traces: Sequence[Trace],
-    reference: Sequence[Trace],
+    reference: Reference | None,
     explained: Callable[[Predictor], Model],
 ) -> Predictor:
     """Calibrated replays of recordings of a robot, in time steps as of a diagnosis.
@@ -22,13 +23,14 @@ def exact_replays(
     by which the baseline itself explains them (`explained`) are taken as given; the
     rest counts as noise.
     """
-    channels = shared_channels(plant, [*traces, *reference])
-    if not reference:
+    healthy = reference.traces if reference else ()
+    channels = shared_channels(plant, [*traces, *healthy])
+    if reference is None:
         return _ready(Predictor(plant, traces, channels))
     known: Model = ()
     if plant.base == "fixed":
-        known = explained(_ready(Predictor(plant, reference, channels)))
-    noise = learn_reference(plant, reference, channels, known=known)
+        known = explained(_ready(Predictor(reference.plant, healthy, channels)))
+    noise = learn_reference(reference.plant, healthy, channels, known=known)
     return _ready(Predictor(plant, traces, channels, noise=noise))
 
 

@@ -13,6 +13,7 @@ from diagnosis.effects.parts import JointMotion, PlacedEffect
 from diagnosis.plant.plant import Plant, inverse_dynamics
 from diagnosis.replay.inverse import model_with
 from diagnosis.residuals.replays import variants_of
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.smoothing import smooth_columns
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
@@ -199,7 +200,7 @@ sum of columns."""
 
 
 def answer(
-    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+    plant: Plant, traces: Sequence[Trace], reference: Reference | None = None
 ) -> Verdict:
     """Name the effects that sequential thresholding leaves in a regression, or none.
 
@@ -218,7 +219,7 @@ def answer(
     columns = torque_columns(plant, traces, torques)
     table = np.stack([column.values for column in columns], axis=1)
     given = (
-        torques.missing if not reference else _changed(plant, reference, torques, table)
+        torques.missing if reference is None else _changed(reference, torques, table)
     )
     kept, size, error = sequential_threshold(table, given)
     ranked = _placed(plant, columns, kept, size, error)
@@ -230,15 +231,14 @@ def answer(
     return verdict_of(traces, begun_s, effects)
 
 
-def _changed(
-    plant: Plant, reference: Sequence[Trace], torques: Torques, table: FloatArray
-) -> FloatArray:
+def _changed(reference: Reference, torques: Torques, table: FloatArray) -> FloatArray:
     """(N,) missing torque less what a regression on the healthy robot explains.
 
     `table` (N, k) has the columns of the recordings that are to be explained.
     """
-    before = Torques.of(plant, reference)
-    columns = torque_columns(plant, reference, before)
+    plant, traces = reference.plant, reference.traces
+    before = Torques.of(plant, traces)
+    columns = torque_columns(plant, traces, before)
     healthy = np.stack([column.values for column in columns], axis=1)
     kept, size, _ = sequential_threshold(healthy, before.missing)
     return np.asarray(torques.missing - table[:, kept] @ size)

@@ -26,6 +26,7 @@ from diagnosis.baselines.sysid_models import (
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.replays import WARM_UP_S
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Verdict
 from groundwalk.arrays import FloatArray
@@ -63,7 +64,7 @@ those of simulations that diverge."""
 
 
 def answer(
-    plant: Plant, traces: Sequence[Trace], reference: Sequence[Trace] = ()
+    plant: Plant, traces: Sequence[Trace], reference: Reference | None = None
 ) -> Verdict:
     """Fit all parameters and name the one that changed most, or no effect.
 
@@ -80,8 +81,9 @@ def answer(
         return verdict_of(traces, begun_s, limits=("it needs position commands",))
     free = free_parameters(plant, traces)
     change, half = fitted(plant, _beginnings(plant, traces), free)
-    if reference:
-        before, spread = fitted(plant, _beginnings(plant, reference), free)
+    if reference is not None:
+        then = reference.plant
+        before, spread = fitted(then, _beginnings(then, reference.traces), free)
         change, half = change - before, np.hypot(half, spread)
     moved = (np.abs(change) >= LEAST_CHANGE) & (np.abs(change) > half)
     size = np.where(moved, np.abs(change), 0.0)

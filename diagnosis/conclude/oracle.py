@@ -15,6 +15,7 @@ from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.reference import learn_reference
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.split import split
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
@@ -40,7 +41,7 @@ class StructureFit:
 def fit_structure(
     plant: Plant,
     traces: Sequence[Trace],
-    reference: Sequence[Trace],
+    reference: Reference | None,
     structure: Model,
     others: Sequence[Model] = (),
 ) -> StructureFit:
@@ -51,8 +52,9 @@ def fit_structure(
     `reference` are recordings of the healthy robot, if any.
     """
     parts = split(traces)
-    channels = shared_channels(plant, [*traces, *reference])
-    noise = learn_reference(plant, reference, channels) if reference else None
+    healthy = reference.traces if reference else ()
+    channels = shared_channels(plant, [*traces, *healthy])
+    noise = learn_reference(reference.plant, healthy, channels) if reference else None
     fitting = Predictor(plant, parts.fit, channels, noise=noise)
     fitting.calibrate(structure)
     model = fit_all(fitting, [structure])[0].model

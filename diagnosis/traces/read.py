@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.plant.load import load_plant
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.plant.servo import Gains, with_gains
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.trace import JOINT_FIELDS, VECTOR_FIELDS, Trace
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
@@ -60,11 +61,12 @@ def read_traces(
 
 def read_reference(
     paths: Sequence[Path], source: str | Path, plant: Plant, servo: Gains | None = None
-) -> list[Trace]:
+) -> Reference | None:
     """Read reference recordings: those of the same robot while it was healthy.
 
-    Arguments and errors are those of `read_traces`; `plant` is the robot model of the
-    recordings that are diagnosed. No paths give an empty list.
+    Arguments and errors are those of `read_traces`; `source` is the model of the robot
+    as it was then, `plant` that of the recordings that are diagnosed. None without
+    paths.
 
     Raises:
       BadRecordingError: one has other joints or another base than the plant.
@@ -74,7 +76,7 @@ def read_reference(
       >>> healthy = read_reference([Path("last_year.parquet")], "nao", plant)
     """
     if not paths:
-        return []
+        return None
     own, traces = read_traces(paths, source, servo)
     if own.base != plant.base:
         raise BadRecordingError(
@@ -87,7 +89,12 @@ def read_reference(
             f"{paths[0]}: only one of the reference and the recordings has joint "
             f"{differing[0]!r}"
         )
-    return traces
+    if own.joints != plant.joints:
+        raise BadRecordingError(
+            f"{paths[0]}: the joints of the reference are in another order than those "
+            "of the recordings"
+        )
+    return Reference(own, traces)
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from diagnosis import Plant, Trace, read_reference, read_traces
+from diagnosis import Plant, Reference, Trace, read_reference, read_traces
 from groundwalk.errors import RunFolderError
 
 CASES, SEALED, TRUTH, HASH = "cases", "sealed", "truth.json", "sealed.sha256"
@@ -19,7 +19,7 @@ FORMAT = 1
 """Version of the format of the file with the sealed truth."""
 
 
-def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
+def read_case(folder: Path) -> tuple[Plant, list[Trace], Reference | None]:
     """Robot model, recordings and reference recordings of a test case, not its truth.
 
     Not all cases have reference recordings.
@@ -27,8 +27,11 @@ def read_case(folder: Path) -> tuple[Plant, list[Trace], list[Trace]]:
     path = folder / PLANT_FILE
     if not path.is_file():
         raise RunFolderError(f"{folder} holds no case: there is no {PLANT_FILE}")
-    robot = json.loads(path.read_text())["robot"]
-    source = folder / robot if (folder / robot).exists() else robot
+    told = json.loads(path.read_text())
+    source, then = (
+        folder / robot if (folder / robot).exists() else robot
+        for robot in (told["robot"], told.get(REFERENCE, told["robot"]))
+    )
     plant, traces = read_traces(sorted((folder / RECORDINGS).glob("*.parquet")), source)
     healthy = sorted((folder / REFERENCE).glob("*.parquet"))
-    return plant, traces, read_reference(healthy, source, plant)
+    return plant, traces, read_reference(healthy, then, plant)

@@ -31,10 +31,10 @@ def error(material):
 
 def test_a_range_that_the_recording_contradicts_is_lifted():
     trace = recorded(arm())
-    narrow = Material.of(with_range(-0.2, 0.2), [trace], (), "servos")
+    narrow = Material.of(with_range(-0.2, 0.2), [trace], None, "servos")
     assert error(narrow) < 6
     assert any("without that range" in text for text in narrow.audited.limits)
-    wide = Material.of(with_range(-2.0, 2.0), [trace], (), "servos")
+    wide = Material.of(with_range(-2.0, 2.0), [trace], None, "servos")
     assert wide.plant.model.jnt_limited[1]
     assert not narrow.plant.model.jnt_limited[1]
 
@@ -43,10 +43,10 @@ def test_wrong_samples_are_left_out_and_said():
     trace = recorded(arm())
     position = trace.position_rad.copy()
     position[[80, 140], 1] = 0.9
-    spoilt = Material.of(arm(), [replace(trace, position_rad=position)], (), "servos")
+    spoilt = Material.of(arm(), [replace(trace, position_rad=position)], None, "servos")
     assert error(spoilt) < 6
     assert any("2 values jump away" in text for text in spoilt.limits)
-    assert Material.of(arm(), [trace], (), "servos").limits == ()
+    assert Material.of(arm(), [trace], None, "servos").limits == ()
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_a_joint_without_motor_is_replayed_in_windows(half_driven):
     trace = replace(recorded(half_driven), servo=half_driven.servo)
     command = np.where([True, False], arm_command(trace.time_s), np.nan)
     material = Material.of(
-        half_driven, [replace(trace, command_rad=command)], (), "servos"
+        half_driven, [replace(trace, command_rad=command)], None, "servos"
     )
     assert error(material) < 8
     assert len(runs_of(material.plant, material.traces[0])) > 4
@@ -74,9 +74,9 @@ def test_torques_drive_a_joint_beside_servos(half_driven):
     trace = recorded(arm())
     torque = np.tile([7.0, 0.3], (trace.ticks, 1))
     driven = replace(trace, servo=half_driven.servo, command_torque_nm=torque)
-    (ready,) = Material.of(half_driven, [driven], (), "servos").traces
+    (ready,) = Material.of(half_driven, [driven], None, "servos").traces
     np.testing.assert_array_equal(ready.added_nm, torque * [0, 1])
     (as_it_is,) = Material.of(
-        arm(), [replace(driven, servo=servo_of(2, 40, 2))], (), "servos"
+        arm(), [replace(driven, servo=servo_of(2, 40, 2))], None, "servos"
     ).traces
     assert as_it_is.added_nm is None

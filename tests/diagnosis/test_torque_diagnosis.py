@@ -1,10 +1,13 @@
 """Arms that an unknown controller moves: what their torques say, from end to end."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from torque_arm import arm, loaded, moved, rubbing
+from torque_arm import LOWER_KG, arm, loaded, moved, rubbing
 
 from diagnosis.pipeline import diagnose
+from diagnosis.traces.reference import Reference
 
 COULOMB_NM, VISCOUS = (1.0, 2.0, 0.8), (1.5, 3.0, 0.7)
 
@@ -84,8 +87,22 @@ def test_only_what_has_changed_since_is_named():
         rubbing(COULOMB_NM, VISCOUS)(model)
         loaded(0.7, "lower")(model)
 
-    verdict = verdict_of(moved(change), reference=[healthy])
+    verdict = verdict_of(moved(change), reference=Reference(arm(), [healthy]))
     assert verdict.kind == "effects"
     ((place, (mass_kg,)),) = found(verdict).items()
     assert place == ("payload_mass", "lower")
     assert mass_kg == pytest.approx(0.7, rel=0.1)
+
+
+@pytest.mark.slow
+def test_a_reference_may_have_a_model_of_its_own():
+    """A tool was changed, and the new model says 0.7 kg too little of it."""
+    then = Reference(arm(LOWER_KG + 0.3), [moved(loaded(0.3, "lower"), seed=3)])
+    verdict = verdict_of(moved(loaded(0.7, "lower")), reference=then)
+    ((place, (mass_kg,)),) = found(verdict).items()
+    assert place == ("payload_mass", "lower")
+    assert mass_kg == pytest.approx(0.7, rel=0.1)
+    wrong = replace(then, plant=arm())
+    verdict = verdict_of(moved(loaded(0.7, "lower")), reference=wrong)
+    ((_, (mass_kg,)),) = found(verdict).items()
+    assert mass_kg == pytest.approx(0.4, rel=0.1)

@@ -32,9 +32,11 @@ XML = f"""<mujoco>
 }</actuator></mujoco>"""
 
 
-def arm():
+def arm(lower_kg=LOWER_KG):
     """The nominal model, of whose servos nothing is known."""
-    return Plant("arm", mujoco.MjSpec.from_string(XML), JOINTS, servo_of(3))
+    spec = mujoco.MjSpec.from_string(XML)
+    spec.body("lower").mass = lower_kg
+    return Plant("arm", spec, JOINTS, servo_of(3))
 
 
 def wanted(time_s, seed):

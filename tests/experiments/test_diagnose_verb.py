@@ -194,6 +194,12 @@ def test_a_reference_of_another_robot_is_refused(recording, tmp_path):
         main(Diagnose((recording,), str(model), reference=(other,)))
 
 
+def test_a_model_of_no_reference_is_refused(recording):
+    model = str(recording.with_name("swing.nominal.xml"))
+    with pytest.raises(BadValueError, match="without a reference"):
+        Diagnose((recording,), model, reference_robot=model)
+
+
 def test_a_recording_of_another_robot_is_refused_and_nothing_is_written(
     recording, tmp_path
 ):

@@ -73,7 +73,7 @@ def consult(
     """
     plant, traces, reference = read_case(folder)
     if plant.base == "fixed":  # else effects would be searched for, as in a diagnosis
-        reference = []
+        reference = None
     true = tuple(_placed(plant, e.name, e.place, e.parameters) for e in case.effects)
     found_effects = [
         tuple(

@@ -126,6 +126,6 @@ def test_without_a_position_command_or_with_a_free_base_sparse_abstains(plant, d
 
 
 def test_answers_survive_being_written(plant, dry):
-    verdict = BASELINES["sparse"](plant, dry, [])
+    verdict = BASELINES["sparse"](plant, dry, None)
     assert Verdict.from_json(verdict.to_json()) == verdict
     assert verdict.seconds > 0

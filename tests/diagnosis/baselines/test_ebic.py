@@ -12,6 +12,7 @@ from diagnosis.baselines.replays import exact_replays
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import STEPS_S, Predictor
 from diagnosis.search.fitting import fit_all
+from diagnosis.traces.reference import Reference
 
 RUBS = {"coulomb_friction", "viscous_friction", "stribeck_friction", "load_friction"}
 
@@ -52,7 +53,7 @@ def test_it_names_two_effects_where_there_are_two(plant, stiff_and_dry):
 @pytest.mark.slow
 def test_it_stops_where_nothing_more_pays(plant, clean, stiff_and_dry):
     assert ebic.answer(plant, noisy(clean)).kind == "none"
-    predictor = exact_replays(plant, stiff_and_dry, [], ebic.explained)
+    predictor = exact_replays(plant, stiff_and_dry, None, ebic.explained)
     steps = ebic.stepwise(predictor)
     sizes = [len(step.fit.model) for step in steps]
     assert sizes == list(range(1, len(steps) + 1))
@@ -74,7 +75,7 @@ def test_each_effect_costs_the_logarithm_of_the_candidates(plant, clean):
 
 
 def test_baselines_take_the_same_steps_as_a_diagnosis(plant, clean):
-    predictor = exact_replays(plant, clean, [], ebic.explained)
+    predictor = exact_replays(plant, clean, None, ebic.explained)
     assert predictor.step_s in STEPS_S["fixed"]
     coarse = Predictor(plant, clean)
     left = [np.std(one.residuals([()])[0]) for one in (predictor, coarse)]
@@ -103,10 +104,10 @@ def test_what_the_healthy_robot_shows_is_taken_as_given(
     options = {"dry": dry_nm, "gain": 1.4, "seconds": seconds}
     now = [swing(plant, seed, **options) for seed in (0, 1)]
     before, now = noisy(before, noise_rad), noisy(now, noise_rad)
-    changed = named(BASELINES[name](plant, now, before))
+    changed = named(BASELINES[name](plant, now, Reference(plant, before)))
     assert {effect for effect, _ in changed} <= RUBS | {"servo_damping"}
     assert {effect for effect, _ in changed} & RUBS
-    alone = named(BASELINES[name](plant, now, []))
+    alone = named(BASELINES[name](plant, now, None))
     assert not {effect for effect, _ in alone} <= RUBS
 
 

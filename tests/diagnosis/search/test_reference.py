@@ -17,6 +17,7 @@ from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.judging import Judge
 from diagnosis.search.reference import learn_reference, reference_checks
+from diagnosis.traces.reference import Reference
 from diagnosis.traces.windows import runs_of
 from groundwalk.errors import BadRecordingError
 
@@ -49,13 +50,16 @@ def of_swinger(first, **options):
 
 
 def verdict_of(plant, traces, reference, rules=SINGLE):
-    return diagnose(plant, traces, SEED, rules, reference=reference).verdict
+    healthy = Reference(plant, reference) if reference else None
+    return diagnose(plant, traces, SEED, rules, reference=healthy).verdict
 
 
 @pytest.mark.slow
 def test_what_an_arm_lacked_before_is_part_of_it():
     plant, before = arm(), of_arm(0)
-    found = diagnose(plant, of_arm(10), SEED, SINGLE, reference=before)
+    found = diagnose(
+        plant, of_arm(10), SEED, SINGLE, reference=Reference(plant, before)
+    )
     (given,) = [one for one in found.given if not is_usual(plant, one)]
     assert given.place == "elbow"
     assert given.name in ("viscous_friction", "servo_damping")

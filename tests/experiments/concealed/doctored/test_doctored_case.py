@@ -71,7 +71,7 @@ def read_one(folder, made):
 
 def errors(plant, trace, *models):
     """Rms error [noise] of a recording as a diagnosis prepares it, for each model."""
-    ready = Material.of(plant, [trace], (), "servos")
+    ready = Material.of(plant, [trace], None, "servos")
     for one in models:
         for placed in one:
             places = effect(placed.name).places(ready.plant, ready.traces)

@@ -1,0 +1,25 @@
+"""Recordings of a robot while it was healthy, and its model at that time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """Recordings of a robot while it was healthy, and its model at that time.
+
+    What they differ in is there before anything changed. A robot that has another tool
+    or another model since has another `plant` here than in its later recordings, with
+    the same joints in the same order.
+
+    Example:
+      >>> plant, before = read_traces(["last_year.parquet"], "nao")
+      >>> diagnose(plant, today, np.random.SeedSequence(1), reference=Reference(
+      ...     plant, before))
+    """
+
+    plant: Plant
+    traces: Sequence[Trace]
