@@ -13,6 +13,9 @@ from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
+MOST = 5.0
+"""Largest payload, as a multiple of the robot model's mass: a small robot may carry
+more than it weighs, and a model may state far too little."""
 _ABOUT_ITS_CENTRE = 1
 """MuJoCo's `body_simple` for a simple body that can rotate; 2 is for one that only
 slides."""
@@ -37,9 +40,9 @@ class PayloadMass(NumberEffect, BodyEffect):
     )
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
-        """The mass [kg], at most that of the whole robot."""
+        """The mass [kg], at most `MOST` times that of the whole robot."""
         own = float(plant.model.body(place).mass[0])
-        high = mass_kg(plant)
+        high = MOST * mass_kg(plant)
         return (Parameter("mass", "kg", 0.0, high, 0.0, 0.2 * own),)
 
     def tolerance(self, plant: Plant, place: str) -> float:

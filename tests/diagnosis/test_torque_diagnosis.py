@@ -34,13 +34,14 @@ def test_a_right_model_lacks_nothing(noise_rad):
     )
 
 
-@pytest.mark.parametrize("noise_rad", [1e-5, 1e-4])
-def test_a_payload_is_found_at_its_link(noise_rad):
-    verdict = verdict_of(moved(loaded(1.0, "lower"), noise_rad=noise_rad))
+@pytest.mark.parametrize(("noise_rad", "kg"), [(1e-5, 1.0), (1e-4, 1.0), (1e-4, 12.0)])
+def test_a_payload_is_found_at_its_link(noise_rad, kg):
+    """The last one is heavier than the whole arm."""
+    verdict = verdict_of(moved(loaded(kg, "lower"), noise_rad=noise_rad))
     assert verdict.kind == "effects"
     ((place, (mass_kg,)),) = found(verdict).items()
     assert place == ("payload_mass", "lower")
-    assert mass_kg == pytest.approx(1.0, rel=0.1)
+    assert mass_kg == pytest.approx(kg, rel=0.1)
 
 
 @pytest.mark.slow

@@ -238,9 +238,8 @@ def test_viscous_friction_is_measured_by_how_joints_are_used():
     assert slide.high == pytest.approx(10 * hinge.high)
 
 
-def test_a_payload_may_be_heavier_than_the_link_it_hangs_on():
+def test_a_payload_may_be_heavier_than_the_robot_that_carries_it():
     plant = plant_of(LINKS)
     own = [float(plant.model.body(name).mass[0]) for name in ("upper", "lower")]
     (mass,) = effect("payload_mass").parameters(plant, "lower")
-    assert mass.high == pytest.approx(sum(own))
-    assert mass.high > 2 * own[1]
+    assert mass.high > 3 * sum(own)
