@@ -23,6 +23,7 @@ class MadeCase:
     Attributes:
       robot: name of the robot.
       model: name and text of its model file; None for a robot that its name tells.
+      before: the same of the reference, if that has a model of its own.
       base: "fixed" or "floating".
       recordings: by name without ending, in the order of the names.
       reference: recordings of the healthy robot in the same form; may be empty.
@@ -35,6 +36,7 @@ class MadeCase:
     recordings: Mapping[str, Recording]
     reference: Mapping[str, Recording]
     truth: Mapping[str, Any]
+    before: tuple[str, str] | None = None
 
 
 def case_name(number: int) -> str:
@@ -54,7 +56,11 @@ def write_case(cases: Path, truths: Path, name: str, made: MadeCase) -> None:
     if made.model is not None:
         robot, text = made.model
         write_text(unfinished / robot, text)
-    content = json.dumps({"robot": robot, "base": made.base}, indent=1)
+    told = {"robot": robot, "base": made.base}
+    if made.before is not None:
+        told[REFERENCE], text = made.before
+        write_text(unfinished / made.before[0], text)
+    content = json.dumps(told, indent=1)
     write_text(unfinished / PLANT_FILE, content + "\n")
     for part, recordings in (
         (RECORDINGS, made.recordings),

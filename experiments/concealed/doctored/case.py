@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from experiments.concealed.doctored import labels
+from experiments.concealed.doctored.information import nats_of
 from experiments.concealed.doctored.models import ATTRIBUTES, RealModel, published
 from experiments.concealed.doctored.parts import Parts, drawn_parts
 from experiments.concealed.doctored.plan import planned_real
@@ -25,15 +26,20 @@ from experiments.concealed.doctored.robots import (
     RealSet,
 )
 from experiments.concealed.doctored.sizes import TIME_FACTOR, drawn_size
+from experiments.concealed.size_by_information import LEVELS
 from experiments.concealed.written import MadeCase
 from groundwalk.errors import BadRecordingError
 from worlds.recordings import Recording
 
 ENGINE = "real"
 """The engine that made the recordings: none."""
-_ATTEMPTS = 50
-"""Largest number of times that recordings are drawn until a joint moves that may be
-doctored."""
+BEFORE = "before"
+"""Name, without ending, of the model file of the reference."""
+LEAST_NATS = LEVELS["L2"]
+"""Least information [nats per recording] on what is doctored: less is rarely seen."""
+_ATTEMPTS = 200
+"""Largest number of times that recordings, joint and size are drawn until what is
+doctored shows."""
 _ALIKE = 0.5
 """Joints are only swapped if the difference of their motions has at least this share of
 the smaller motion's rms: otherwise nothing would be wrong."""
@@ -60,8 +66,8 @@ def doctored_case(data: Path, seed: int, number: int, count: int) -> MadeCase:
     """Make case `number` of `count` from the real recordings in a folder of data.
 
     Raises:
-      BadRecordingError: there are no recordings, or no joint moves that the planned
-        doctoring could be done at.
+      BadRecordingError: there are no recordings, or none in which the planned
+        doctoring would show.
     """
     name, what = planned_real(data, seed, count, number)
     real = REAL_SETS[name]
@@ -71,41 +77,54 @@ def doctored_case(data: Path, seed: int, number: int, count: int) -> MadeCase:
         parts = drawn_parts(data, real, model.file, rng)
         if what in IN_MODEL and real.published is not None:
             model.give(published(data / real.published))
-        done = _doctored(real, what, model, parts, rng)
+        before = model.text
+        doctored = _doctored(real, what, model, parts, rng)
+        if doctored is None:
+            continue
+        own, done = doctored
+        nats = None
         if done is not None:
-            return _made(name, what, model, *done)
+            nats = nats_of((before, parts), (model.text, own), real.by_torque)
+        if nats is None or what in OUTSIDE or real.is_passive or nats >= LEAST_NATS:
+            return _made(name, what, (before, model), own, done, nats)
     raise BadRecordingError(
-        f"{data / real.folder}: no joint moves at which {what} could be doctored"
+        f"{data / real.folder}: there is no joint at which {what} would show"
     )
 
 
 def _made(
-    name: str, what: str, model: RealModel, parts: Parts, done: Doctoring | None
+    name: str,
+    what: str,
+    models: tuple[str, RealModel],
+    parts: Parts,
+    done: Doctoring | None,
+    nats: float | None,
 ) -> MadeCase:
-    """The case with its truth. A model that is wrong has no reference.
+    """The case with its truth.
 
-    A diagnosis has one model for recordings and reference, so that what is missing in
-    the model would be missing in both.
+    `models` are the text of the reference's model file, and the model of the case; nats
+    is the information on what was doctored.
     """
-    real, in_model = REAL_SETS[name], what in IN_MODEL
+    before, model = models
+    real = REAL_SETS[name]
     effects = [] if done is None else [_plain(done)]
     kind = "outside" if what in OUTSIDE else "none" if what == NOTHING else "single"
     rate_hz = 1 / labels.tick_s(next(iter(parts.reference.values())))
-    torques = "command" in real.unused
     truth = {
         "plant": name,
         "engine": ENGINE,
         "kind": kind,
         "effects": effects,
-        "drive": "torques" if torques else "servos",
+        "nats": [] if nats is None or real.is_passive else [nats],
+        "drive": "torques" if real.by_torque else "servos",
         "rate_hz": round(rate_hz, 1),
-        "reference": not in_model,
-        "else_missing": in_model and not real.exact,
+        "reference": True,
         "refusal": [] if done is None else list(done.refusal),
     }
-    reference = {} if in_model else parts.reference
     file = model.file, model.text
-    return MadeCase(name, file, "fixed", parts.recordings, reference, truth)
+    then = f"{BEFORE}{Path(model.file).suffix}", before
+    case = parts.recordings, parts.reference, truth
+    return MadeCase(name, file, "fixed", *case, then)
 
 
 def _plain(done: Doctoring) -> dict[str, Any]:

@@ -12,7 +12,6 @@ from groundwalk.errors import BadModelError
 from robots.from_urdf.mesh_files import example_robots
 
 ATTRIBUTES = {
-    "armature": ("armature", "inertia"),
     "viscous_friction": ("damping", "coefficient"),
     "coulomb_friction": ("frictionloss", "torque"),
 }
@@ -112,7 +111,7 @@ class RealModel:
 
 def published(path: Path) -> dict[str, dict[str, float]]:
     """Published armature, damping and dry friction of joints, from a truth.json."""
-    names = [attribute for attribute, _ in ATTRIBUTES.values()]
+    names = ["armature", *(attribute for attribute, _ in ATTRIBUTES.values())]
     return {
         one["place"]: {name: float(one["published"][name]) for name in names}
         for one in json.loads(path.read_text())["effects"]

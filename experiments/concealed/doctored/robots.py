@@ -10,7 +10,7 @@ NOTHING = "nothing"
 """What is doctored in the cases in which nothing is."""
 OUTSIDE = ("joints_swapped", "time_scale")
 """What a diagnosis has no effect for."""
-IN_MODEL = ("payload_mass", "armature", "viscous_friction", "coulomb_friction")
+IN_MODEL = ("payload_mass", "viscous_friction", "coulomb_friction")
 """What is taken out of the model; all else is made wrong in the recordings."""
 _LABELS = ("servo_gain", "command_latency", "encoder_offset")
 
@@ -24,7 +24,8 @@ class RealSet:
       model: model file from the same folder, or the name of a robot of
         example-robot-data.
       share: share of the cases, before sets that are not there are left out.
-      doctorings: what may be made wrong, by the names of the effects that follow.
+      doctorings: what may be made wrong, by the names of the effects that follow; none
+        that would hardly show even if it were large.
       gains: of all servos, where neither model nor recordings state them.
       files: pattern of the files that are used.
       pieces: number of pieces that each recording is cut into; 1 where there are enough
@@ -36,7 +37,7 @@ class RealSet:
         (or, without gravity, its mass).
       published: file with published armature, damping and friction of the joints, which
         the model is given before something is taken out of it; None for none.
-      exact: whether the model is known to lack nothing else.
+      is_passive: whether nothing drives it: its swing tells more than any torque.
     """
 
     folder: str
@@ -50,7 +51,12 @@ class RealSet:
     turned: tuple[str, ...] = ()
     links: Mapping[str, str] = field(default_factory=dict)
     published: str | None = None
-    exact: bool = False
+    is_passive: bool = False
+
+    @property
+    def by_torque(self) -> bool:
+        """Whether measured torques drive the model, and not servos."""
+        return "command" in self.unused
 
     def there(self, data: Path) -> bool:
         """Whether a folder of data holds recordings of this set."""
@@ -66,17 +72,16 @@ _LEG_LINKS = {
     for leg in _LEGS
     for part in ("thigh", "calf")
 }
-_IDENTIFIED = ("armature", "viscous_friction", "coulomb_friction")
+_FRICTIONS = ("viscous_friction", "coulomb_friction")
 
 REAL_SETS: Mapping[str, RealSet] = {
     "so101": RealSet(
         folder="so101",
         model="so101",
         share=0.28,
-        doctorings=(*_LABELS, "payload_mass", *OUTSIDE),
+        doctorings=("servo_gain", "command_latency", "payload_mass", *OUTSIDE),
         # data sheet of the servo (Feetech STS3215) at 12 V, as in docs/diagnosis.md
         gains=ServoGains(7.8, 0.62, 2.94),
-        turned=("shoulder_lift", "elbow_flex", "wrist_flex"),
         links={
             "upper_arm_link": "shoulder_lift",
             "lower_arm_link": "elbow_flex",
@@ -98,7 +103,7 @@ REAL_SETS: Mapping[str, RealSet] = {
         folder="labelled/aliengo_air",
         model="labelled/aliengo_air/model.xml",
         share=0.20,
-        doctorings=(*_LABELS, "payload_mass", *_IDENTIFIED, *OUTSIDE),
+        doctorings=(*_LABELS, "payload_mass", *_FRICTIONS, *OUTSIDE),
         files="recordings/*.parquet",
         pieces=2,
         turned=_LEG_JOINTS,
@@ -109,10 +114,15 @@ REAL_SETS: Mapping[str, RealSet] = {
         folder="labelled/z1_arm",
         model="labelled/z1_arm/model.xml",
         share=0.20,
-        doctorings=(*_LABELS, "payload_mass", *_IDENTIFIED, *OUTSIDE),
+        doctorings=(
+            "servo_gain",
+            "command_latency",
+            "payload_mass",
+            *_FRICTIONS,
+            *OUTSIDE,
+        ),
         files="recordings/*.parquet",
         pieces=2,
-        turned=("joint2", "joint3", "joint4"),
         links={
             "link02": "joint2",
             "link03": "joint3",
@@ -140,7 +150,7 @@ REAL_SETS: Mapping[str, RealSet] = {
         doctorings=("encoder_offset", "viscous_friction"),
         files="recordings/*.parquet",
         turned=("axis",),
-        exact=True,
+        is_passive=True,
     ),
     "pendulum_viscous": RealSet(
         folder="labelled/pendulum_viscous",
@@ -149,6 +159,7 @@ REAL_SETS: Mapping[str, RealSet] = {
         doctorings=("encoder_offset",),
         files="recordings/*.parquet",
         turned=("axis",),
+        is_passive=True,
     ),
 }
 """The real robots by the name that the truth calls them. A passive pendulum is left out

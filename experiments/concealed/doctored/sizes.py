@@ -10,7 +10,6 @@ SIZES = {
     "command_latency": (0.005, 0.1),
     "encoder_offset": (0.01, 0.2),
     "payload_mass": (0.1, 0.8),
-    "armature": (0.25, 1.0),
     "viscous_friction": (0.25, 1.0),
     "coulomb_friction": (0.25, 1.0),
 }

@@ -84,12 +84,11 @@ class Mark:
         match self.case.kind:
             case "none":
                 return nothing
-            case "outside" if self.case.engine == REAL:
-                said = self.kind in ("unknown", "not_identifiable")
-                return said or self.tells_why
             case "outside":
-                faint = self.level not in _CLEAR
-                return self.kind == "unknown" or (faint and nothing)
+                said = self.kind == "unknown" or self.tells_why
+                if self.case.engine == REAL:
+                    said |= self.kind == "not_identifiable"
+                return said or (self.level not in _CLEAR and nothing)
             case "unexcited":
                 return exact or self.kind in ("none", "not_identifiable")
             case _:
@@ -142,15 +141,10 @@ def case_level(case: TrueCase, oracle: Oracle | None) -> str | None:
 
 
 def _named(answer: Answer, case: TrueCase) -> list[Named]:
-    """The effects that an answer names, without small mismatch that is there.
-
-    Where more is missing than is known, the true ones alone if any of them is named.
-    """
+    """The effects that an answer names, without small mismatch that is there."""
     if answer.kind != "effects":
         return []
-    found = [each for each in answer.effects if not _is_small_mismatch(each, case)]
-    true = [each for each in found if _at(each) in set(map(_at, case.effects))]
-    return true if case.else_missing and true else found
+    return [each for each in answer.effects if not _is_small_mismatch(each, case)]
 
 
 def _tells_why(answer: Answer, case: TrueCase) -> bool:

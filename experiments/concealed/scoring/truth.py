@@ -49,8 +49,6 @@ class TrueCase:
       rate_hz: ticks per second; None if not told.
       gains: number of different servo gains in the recordings; None if not told.
       reference: whether there are recordings of the healthy robot; None if not told.
-      else_missing: whether more is missing than `effects`, nobody knows what: where
-        these are named, other named effects count nowhere.
       refusal: words that the refusal of a recording must hold to be right; () where
         none is.
       name: name of the case, such as "case_000"; not part of the file.
@@ -68,7 +66,6 @@ class TrueCase:
     rate_hz: float | None = None
     gains: int | None = None
     reference: bool | None = None
-    else_missing: bool = False
     refusal: tuple[str, ...] = ()
     name: str = ""
 

@@ -31,7 +31,8 @@ def marked(kind, effects, verdict, **more):
     ],
 )
 def test_outside_the_library_a_doubt_or_the_right_refusal_is_right(answer, right):
-    assert marked("outside", (SWAPPED,), answer, refusal=WORDS).right == right
+    case = {"refusal": WORDS, "nats": (300.0,)}
+    assert marked("outside", (SWAPPED,), answer, **case).right == right
 
 
 def test_a_refusal_is_not_right_where_the_truth_names_no_words():
@@ -40,17 +41,12 @@ def test_a_refusal_is_not_right_where_the_truth_names_no_words():
     assert not marked("none", (), answer, refusal=WORDS).right
 
 
-def test_what_else_is_missing_counts_nowhere_beside_the_true_effect():
-    both = names(ELSE, RIGHT)
-    one = marked("single", (DRY,), both, else_missing=True)
-    assert (one.right, one.top1, one.hits, one.extra) == (True, True, 1, 0)
-    strict = marked("single", (DRY,), both)
-    assert (strict.right, strict.top1, strict.extra) == (False, False, 1)
+def test_of_what_hardly_shows_nothing_need_be_said():
+    faint = {"refusal": WORDS, "nats": (3.0,)}
+    for answer, right in ((NOTHING, True), (UNKNOWN, True), (names(RIGHT), False)):
+        assert marked("outside", (SWAPPED,), answer, **faint).right == right
 
 
-def test_other_effects_alone_stay_wrong_where_more_is_missing():
-    one = marked("single", (DRY,), names(ELSE), else_missing=True)
-    assert (one.right, one.top1, one.extra, one.missed) == (False, False, 1, 1)
-    elsewhere = names(found("coulomb_friction", HIP))
-    one = marked("single", (DRY,), elsewhere, else_missing=True)
-    assert (one.right, one.places) == (False, (False,))
+def test_what_is_named_beside_the_true_effect_is_wrong():
+    one = marked("single", (DRY,), names(ELSE, RIGHT))
+    assert (one.right, one.top1, one.hits, one.extra) == (False, False, 1, 1)

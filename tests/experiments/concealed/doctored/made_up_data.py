@@ -29,10 +29,10 @@ ARM = """<mujoco model="arm"><compiler angle="radian"/>
  </body>
 </worldbody></mujoco>"""
 PUBLISHED = {
-    joint: {"armature": "0.0001", "frictionloss": "0.003", "damping": "0.002"}
+    joint: {"armature": "0.0001", "frictionloss": "0.4", "damping": "0.4"}
     for joint in ("joint2", "joint3")
 }
-"""Hardly anything: the simulated arm has none of it."""
+"""What the simulated arm has."""
 GAINS = ServoGains(60.0, 1.5, 30.0)
 SWINGS = {"joint2": (0.4, 0.7), "joint3": (0.5, 1.6)}
 """Amplitude [rad] and frequency [Hz] of each joint's command."""
@@ -56,7 +56,8 @@ def arm_recording(duration_s, begin_s):
     """The arm of `ARM`, driven by servos with `GAINS`, as noisy encoders see it."""
     spec = mujoco.MjSpec.from_string(ARM)
     for joint in spec.joints:  # damping of the servos, implicit as in a real one
-        joint.damping = [GAINS.kd, 0, 0]
+        joint.damping = [GAINS.kd + float(PUBLISHED[joint.name]["damping"]), 0, 0]
+        joint.frictionloss = float(PUBLISHED[joint.name]["frictionloss"])
     model = spec.compile()
     data = mujoco.MjData(model)
     rows = round(duration_s / TICK_S)
@@ -89,7 +90,22 @@ def waving(joints, duration_s, tick_s, quantities, number=0):
     for j, joint in enumerate(joints):
         wave = 0.3 * np.sin((1 + 0.7 * j + 0.1 * number) * time_s)
         columns |= {f"{quantity}.{joint}": wave for quantity in quantities}
+        if "command" in quantities:  # what a servo needs to follow
+            columns[f"command.{joint}"] = 1.2 * wave
     return Recording(columns, RecordingMetadata("m.xml", "fixed", f"wave {number}"))
+
+
+def carriage_recording(duration_s):
+    """The carriage of `CARRIAGE`, shaken, with the force that this takes."""
+    time_s = np.arange(round(duration_s / 0.001)) * 0.001
+    wave, faster = np.sin(9 * time_s), np.sin(23 * time_s)
+    columns = {
+        "time": time_s,
+        "position.carriage": 0.1 * wave + 0.02 * faster,
+        "command.carriage": 0.1 * wave + 0.02 * faster,
+        "torque.carriage": -95.11 * (81 * 0.1 * wave + 529 * 0.02 * faster),
+    }
+    return Recording(columns, RecordingMetadata("m.xml", "fixed", "shaken"))
 
 
 def write_arm(data):
@@ -113,6 +129,5 @@ def write_data(data):
         duration_s = 40.0 if k else 15.0
         one = waving(SO101_JOINTS, duration_s, 0.02, ("position", "command"), k)
         write_recording(one, data / "so101" / f"wave{k}.parquet")
-    one = waving(("carriage",), 6.0, 0.001, ("position", "command", "torque"))
-    write_recording(one, data / "emps" / "sweep.parquet")
+    write_recording(carriage_recording(6.0), data / "emps" / "sweep.parquet")
     (data / "emps" / "emps.xml").write_text(CARRIAGE)

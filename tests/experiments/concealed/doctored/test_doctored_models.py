@@ -56,8 +56,8 @@ def test_a_joint_gets_published_values_and_loses_some(tmp_path):
     model.give(values)
     model.give({"joint3": {"damping": 0.05}})
     found = mujoco.MjModel.from_xml_string(model.text)
-    assert found.dof_damping.tolist() == [0.002, 0.05]
-    assert found.dof_frictionloss.tolist() == [0.003, 0.003]
+    assert found.dof_damping.tolist() == [0.4, 0.05]
+    assert found.dof_frictionloss.tolist() == [0.4, 0.4]
     assert found.dof_armature.tolist() == [0.0001, 0.0001]
 
 
