@@ -65,7 +65,8 @@ class _Torques:
     def most_nm(self) -> FloatArray:
         """(j,) rms of the joints' driving torques, or of those needed if larger."""
         both = self.drive_nm**2, self.needed_nm**2
-        return np.sqrt(np.max([one.mean(axis=0) for one in both], axis=0))
+        most = np.max([one.mean(axis=0) for one in both], axis=0)
+        return np.asarray(np.sqrt(most))
 
 
 def nats_of(
@@ -115,7 +116,8 @@ def _means(values: FloatArray, seconds: float) -> FloatArray:
     """(blocks, j) means of (T, j) values over stretches of `LASTS_S`."""
     rows = max(1, round(LASTS_S / seconds))
     count = len(values) // rows
-    return values[: count * rows].reshape(count, rows, -1).mean(axis=1)
+    parts = values[: count * rows].reshape(count, rows, -1)
+    return np.asarray(parts.mean(axis=1))
 
 
 def _torques(model: mujoco.MjModel, one: Recording, by_torque: bool) -> _Torques:
@@ -175,7 +177,7 @@ def _needed(
         data.qpos[angles], data.qvel[dofs], data.qacc[dofs] = q[k], v[k], a[k]
         mujoco.mj_inverse(model, data)
         found[k] = data.qfrc_inverse[dofs]
-    return found + rubs
+    return np.asarray(found + rubs)
 
 
 def _model(text: str) -> mujoco.MjModel:

@@ -14,7 +14,7 @@ NOISE_N = 40.0
 
 
 def shaken(seed):
-    """A shaken carriage whose force is off by a random amount in each quarter second."""
+    """A shaken carriage whose force is off, by chance, in each quarter second."""
     one = carriage_recording(10.0)
     blocks = round(10.0 / LASTS_S)
     off = np.random.default_rng(seed).normal(0, NOISE_N, blocks)
