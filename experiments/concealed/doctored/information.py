@@ -6,17 +6,16 @@ It shows if that change is large beside what is left of the difference once ever
 is taken out of it that a regression learns from the reference.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 from scipy.signal import savgol_filter
 
 from experiments.concealed.doctored.labels import tick_s
 from experiments.concealed.doctored.parts import Parts
 from groundwalk.arrays import FloatArray
-from robots.engine_models.mjcf import quiet_mujoco
+from robots.engine_models.needed_torques import NeededTorques
 from worlds.recordings import Recording
 
 LASTS_S = 0.25
@@ -79,9 +78,9 @@ def nats_of(
       doctored: the same afterwards, with the same names of recordings.
       driven_by_torque: whether measured torques drive the joints, not servos.
     """
-    models = [_model(text) for text, _ in (real, doctored)]
+    models = [NeededTorques.of_text(text) for text, _ in (real, doctored)]
 
-    def torques(model: mujoco.MjModel, one: Recording) -> _Torques:
+    def torques(model: NeededTorques, one: Recording) -> _Torques:
         return _torques(model, one, driven_by_torque)
 
     parts = real[1]
@@ -120,7 +119,7 @@ def _means(values: FloatArray, seconds: float) -> FloatArray:
     return np.asarray(parts.mean(axis=1))
 
 
-def _torques(model: mujoco.MjModel, one: Recording, by_torque: bool) -> _Torques:
+def _torques(model: NeededTorques, one: Recording, by_torque: bool) -> _Torques:
     """The torques of a recording, its motion being smoothed."""
     q, v, a = _motion(one)
     drive = np.zeros_like(q)
@@ -132,7 +131,7 @@ def _torques(model: mujoco.MjModel, one: Recording, by_torque: bool) -> _Torques
             wanted = _whole(one.columns[f"command.{joint}"])
             pulled = servo.kp * (wanted - q[:, j]) - servo.kd * v[:, j]
             drive[:, j] = np.clip(pulled, -servo.max_torque, servo.max_torque)
-    return _Torques(drive, _needed(model, one.joints, q, v, a), q, v, a)
+    return _Torques(drive, model.of(one.joints, q, v, a), q, v, a)
 
 
 def _motion(one: Recording) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -152,39 +151,3 @@ def _whole(values: FloatArray) -> FloatArray:
     there = np.isfinite(values)
     rows = np.arange(len(values))
     return np.asarray(np.interp(rows, rows[there], values[there]))
-
-
-def _needed(
-    model: mujoco.MjModel,
-    joints: Sequence[str],
-    q: FloatArray,
-    v: FloatArray,
-    a: FloatArray,
-) -> FloatArray:
-    """(T, j) torques that a model needs for a motion, with dry friction."""
-    data, found = mujoco.MjData(model), np.zeros_like(q)
-    at: Mapping[str, tuple[int, int]] = {
-        joint: (
-            int(model.joint(joint).qposadr[0]),
-            int(model.joint(joint).dofadr[0]),
-        )
-        for joint in joints
-    }
-    angles = [at[joint][0] for joint in joints]
-    dofs = [at[joint][1] for joint in joints]
-    rubs = model.dof_frictionloss[dofs] * np.sign(v)
-    for k in range(len(q)):
-        data.qpos[angles], data.qvel[dofs], data.qacc[dofs] = q[k], v[k], a[k]
-        mujoco.mj_inverse(model, data)
-        found[k] = data.qfrc_inverse[dofs]
-    return np.asarray(found + rubs)
-
-
-def _model(text: str) -> mujoco.MjModel:
-    """The model of a file, without contacts, limits and MuJoCo's own friction."""
-    quiet_mujoco()
-    spec = mujoco.MjSpec.from_string(text)
-    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-    for actuator in list(spec.actuators):
-        spec.delete(actuator)
-    return spec.compile()
