@@ -62,6 +62,11 @@ class Channels:
         """(c,) the noise as a multiple of that of the sensors, both without jitter."""
         return np.asarray(self.noise / (self.floor * self.share_at_rest))
 
+    @property
+    def jitter_s(self) -> float:
+        """Rms error of the time stamps [s], that of a row included."""
+        return float(np.hypot(self.own_jitter_s, self.common_jitter_s))
+
     def widened(self, left: FloatArray) -> "Channels":
         """The channels with their noise (c,) times as large, and the same floor."""
         return replace(self, noise=self.noise * left)

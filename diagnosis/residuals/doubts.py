@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.residuals.clock import ClockNoise
+from diagnosis.residuals.command_timing import CommandTiming
 from diagnosis.residuals.nuisance import Nuisance
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise
 from diagnosis.residuals.replays import Model
@@ -25,6 +26,7 @@ class Doubts:
 
     Attributes:
       clock: jitter of the time stamps.
+      commands: when commands jump, if that is not known for the same reason.
       start: wrong start states.
       noise: errors that recordings of the healthy robot show, in the rows of `blocks`.
       nuisance: likely small mismatch of the nominal model, which is in simulations.
@@ -32,6 +34,7 @@ class Doubts:
     """
 
     clock: ClockNoise | None = None
+    commands: CommandTiming | None = None
     start: StartUncertainty | None = None
     noise: ReferenceNoise | None = None
     blocks: Sequence[Block] = ()
@@ -47,7 +50,8 @@ class Doubts:
 
     def timed(self, wrong: FloatArray) -> FloatArray:
         """(n, rows, c) errors, whitened with those of the clock."""
-        return wrong if self.clock is None else self.clock.without(wrong)
+        wrong = wrong if self.clock is None else self.clock.without(wrong)
+        return wrong if self.commands is None else self.commands.without(wrong)
 
     def without(self, wrong: FloatArray, models: Sequence[Model]) -> FloatArray:
         """(n, N) errors (n, rows, c) of n models without what is no evidence."""
@@ -74,17 +78,23 @@ class Doubts:
     @property
     def taken(self) -> float:
         """Number of a residual's squares that whitening takes out of noise."""
-        return sum(one.taken for one in (self.start, self.tolerance) if one is not None)
+        every = self.commands, self.start, self.tolerance
+        return sum(one.taken for one in every if one is not None)
 
-    def part(self, whole: "Doubts", entries: BoolArray, runs: slice) -> "Doubts":
-        """What is taken out of the `entries` (N,) of a `whole`, in some of its windows.
+    def part(
+        self, whole: "Doubts", entries: BoolArray, traces: slice, runs: slice
+    ) -> "Doubts":
+        """What is taken out of the `entries` (N,) of a `whole`.
 
+        These are of some of its recordings (`traces`), in some of its windows (`runs`).
         Clock, noise and blocks are one's own.
         """
+        commands = whole.commands and whole.commands.part(traces)
         start = whole.start and whole.start.part(runs.start, runs.stop)
         nuisance = whole.nuisance and whole.nuisance.part(entries)
         tolerance = whole.tolerance and whole.tolerance.part(entries)
-        return replace(self, start=start, nuisance=nuisance, tolerance=tolerance)
+        some = replace(self, commands=commands, start=start)
+        return replace(some, nuisance=nuisance, tolerance=tolerance)
 
     def taking(self, nuisance: Nuisance, beyond: Tolerance) -> "Doubts":
         """With likely small mismatch, and what is possible around it or `beyond`."""

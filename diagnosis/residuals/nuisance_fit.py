@@ -20,6 +20,11 @@ still count: no error is out of proportion over so little."""
 MOST_STEPS = 6
 """Most steps of a fit before changes are simulated again."""
 
+OFTEN, ONCE_MORE = 6, 2
+"""Most times that changes are simulated in a fit: of a robot that may be healthy, and
+elsewhere, where small mismatch that is fitted too well would stand for what is
+missing."""
+
 SHARES = (1.0, 0.5, 0.25)
 """Shares of a linear step that are tried, of which the best is taken."""
 
@@ -40,8 +45,8 @@ class NuisanceFit:
     ask: Callable[[list[Model]], FloatArray]
     model: Model
 
-    def fitted(self, start: Nuisance) -> Nuisance:
-        """The likeliest errors.
+    def fitted(self, start: Nuisance, most_seen: int = ONCE_MORE) -> Nuisance:
+        """The likeliest errors; what each changes is simulated `most_seen` times.
 
         Their values minimise the energy of the residual and of the errors themselves
         (maximum a posteriori) by Gauss-Newton steps, from those of `start`. What each
@@ -55,7 +60,10 @@ class NuisanceFit:
         if not self._was_seen(begun):
             begun = self._linear(begun, left)
         now, left = self._descended(begun, left)
-        if not _is_near(now) and _mean_square(left) < MORE_THAN_NOISE**2:
+        for _ in range(most_seen - 1):
+            far_off = _mean_square(left) >= MORE_THAN_NOISE**2
+            if _is_near(now) or (far_off and most_seen == ONCE_MORE):
+                break
             now, left = self._descended(self._linear(now, left), left)
         if _mean_square(left) < MORE_THAN_NOISE**2:
             return now

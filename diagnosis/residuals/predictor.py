@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 
 from diagnosis.effects.library import effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, measured_of, shared_channels
 from diagnosis.residuals.clock import clock_noise
+from diagnosis.residuals.command_timing import CommandTiming, jumps_of
 from diagnosis.residuals.doubts import Doubts
 from diagnosis.residuals.integration_error import IntegrationError
 from diagnosis.residuals.nuisance import Nuisance
-from diagnosis.residuals.nuisance_fit import NuisanceFit
+from diagnosis.residuals.nuisance_fit import ONCE_MORE, NuisanceFit
 from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
 from diagnosis.residuals.replays import Model as Model
 from diagnosis.residuals.replays import Replays, time_blocks
@@ -116,12 +118,13 @@ class Predictor:
         replays = self._replays.part(first, last)
         some = self._of(self.traces[first:last], self.step_s, self.finest_s, replays)
         ends = [0, *self._ends]
-        own = slice(ends[first], ends[last])
-        some._error = self._error.part(own)
+        rows = slice(ends[first], ends[last])
+        some._error = self._error.part(rows)
         within = np.zeros_like(self._scored)
-        within[own] = True
+        within[rows] = True
         runs = slice(self._replays.first_run[first], self._replays.first_run[last])
-        some._doubts = some._doubts.part(self._doubts, within.reshape(-1), runs)
+        own = within.reshape(-1), slice(first, last), runs
+        some._doubts = some._doubts.part(self._doubts, *own)
         return some
 
     def _with(self, **changes: Any) -> "Predictor":
@@ -152,7 +155,7 @@ class Predictor:
         """A copy with residuals in one unit at all speeds; nothing is tolerated."""
         start = self._doubts.start
         start = start.evenly() if start else None
-        return self._with(clock=None, start=start, tolerance=None)
+        return self._with(clock=None, commands=None, start=start, tolerance=None)
 
     def nominal(self) -> "Predictor":
         """A copy without small mismatch of the model, neither likely nor tolerated."""
@@ -213,43 +216,49 @@ class Predictor:
         more = self._window_s, finest_s, replays
         return type(self)(self.plant, traces, *own, *more)
 
-    def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
+    def calibrate(
+        self, model: Model = (), tolerances: bool = True, most_seen: int = ONCE_MORE
+    ) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.
 
         Both are then taken out of the residuals of all models. Small mismatch that the
         nominal model may have are fitted, and what others would change is found.
         Returns (c,) the rms, in units of noise, of the integration error that remains
-        in each channel. Without `tolerances` those stay that were found before.
+        in each channel. Without `tolerances` those stay that were found before. What
+        small mismatch changes is simulated `most_seen` times.
         """
         first = self.nuisance is None
         error = self.correct(model)
-        self.doubt(model, tolerances)
+        self.doubt(model, tolerances, most_seen)
         return self.correct(model) if first and self.nuisance else error
 
-    def doubt(self, model: Model = (), tolerances: bool = True) -> None:
+    def doubt(
+        self, model: Model = (), tolerances: bool = True, most_seen: int = ONCE_MORE
+    ) -> None:
         """Find what wrong start states change, and small mismatch of the nominal model.
 
         Without `tolerances` the latter stays as it was found before.
         """
-        self._doubts = replace(self._doubts, start=self._start_doubt(model))
+        self._doubt_times(model)
         if tolerances:
-            self.fit_nuisance(model)
+            self.fit_nuisance(model, most_seen)
 
     def doubt_beside(self, errors: Nuisance | None, model: Model) -> None:
         """Find what wrong start states change; take small mismatch as it is given."""
-        self._doubts = replace(self._doubts, start=self._start_doubt(model))
+        self._doubt_times(model)
         self.take_nuisance(errors, model)
 
-    def fit_nuisance(self, model: Model) -> None:
+    def fit_nuisance(self, model: Model, most_seen: int = ONCE_MORE) -> None:
         """Find the nominal model's small mismatch that is likeliest beside a model.
 
-        Where recordings of the healthy robot tell it, it is taken as it is.
+        What it changes is simulated `most_seen` times. Where recordings of the healthy
+        robot tell it, it is taken as it is.
         """
         if self._doubts.is_known:
             self.take_nuisance(no_nuisance(self), model)
         elif self.plant.base == "fixed":  # contacts outdo small mismatch by far
             start = self.nuisance or no_nuisance(self)
-            found = self.nuisance_fit(model).fitted(start)
+            found = self.nuisance_fit(model).fitted(start, most_seen)
             self._doubts = self._doubts.taking(found, self._beyond())
 
     def take_nuisance(self, errors: Nuisance | None, model: Model) -> None:
@@ -306,6 +315,24 @@ class Predictor:
         left = np.nan_to_num(left / self.channels.noise, nan=WORST)
         return np.asarray(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2, axis=0)))
 
+    def _doubt_times(self, model: Model) -> None:
+        """Find what commands that jump early or late change, and wrong start states."""
+        self._doubts = replace(self._doubts, commands=self._command_doubt(model))
+        self._doubts = replace(self._doubts, start=self._start_doubt(model))
+
+    def _command_doubt(self, model: Model) -> CommandTiming | None:
+        """How late commands change simulations; None if clocks do not jitter."""
+        clock = self._doubts.clock
+        if clock is None or any(trace.command_rad is None for trace in self.traces):
+            return None
+        late_s = self.channels.jitter_s
+        late = PlacedEffect("command_latency", "commands", (late_s,))
+        given = self._doubts.given(model)
+        one, other = self._replays.values([given, (*given, late)], self.step_s)
+        changes = np.where(self._scored, one - other, 0.0) / self.channels.noise
+        jumps = jumps_of(self.traces, self.channels)
+        return CommandTiming(np.nan_to_num(changes), jumps, self._ends, clock)
+
     def _start_doubt(self, model: Model) -> StartUncertainty | None:
         """How wrong start states change simulations; None if noise includes that."""
         # with a floating base the reference noise contains the errors of wrong starts
@@ -314,8 +341,8 @@ class Predictor:
         changes = self._replays.start_errors(self._doubts.given(model), self.step_s)
         changes = np.where(self._scored, changes, 0.0) / self.channels.noise
         ends = np.cumsum([run.trace.ticks for run in self._replays.runs])
-        clock = self._doubts.clock
-        return StartUncertainty(np.nan_to_num(changes), ends.tolist(), clock)
+        whiten = self._doubts.timed
+        return StartUncertainty(np.nan_to_num(changes), ends.tolist(), whiten)
 
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) values of c channels as n models predict them, for all traces.

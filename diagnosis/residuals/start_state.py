@@ -7,13 +7,12 @@ and residuals are whitened with it: start states are marginalised, not fitted.
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.residuals.clock import ClockNoise
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
@@ -51,17 +50,17 @@ class StartUncertainty:
         self,
         changes: FloatArray,
         ends: Sequence[int],
-        clock: ClockNoise | None = None,
+        whiten: Callable[[FloatArray], FloatArray] | None = None,
     ) -> None:
         """Prepare the whitening.
 
         `changes` (k, rows, c) of the simulated channels, in units of noise and 0 where
         errors do not count, are those by start positions, then by start velocities that
         are wrong by one standard deviation; `ends` are the rows after each window.
-        Residuals have been whitened for the errors of a `clock` before.
+        What whitens residuals before, such as for errors of the clock, is `whiten`.
         """
         self._changes, self._ends = changes, list(ends)
-        timed = changes if clock is None else clock.without(changes)
+        timed = changes if whiten is None else whiten(changes)
         self._windows = [
             (last - first, Tolerance(timed[:, first:last].reshape(len(timed), -1)))
             for first, last in itertools.pairwise([0, *ends])

@@ -14,7 +14,8 @@ from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
-from diagnosis.residuals.clock import clock_noise, speeds, with_clock
+from diagnosis.residuals.clock import clock_noise, speeds
+from diagnosis.residuals.jitter import with_clock, with_shared_clock
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import shortened
@@ -33,6 +34,11 @@ the values that they end with do not have this error."""
 
 STIFF = 3.0
 """Factor by which servos are stiffer than the model's in the choice of a time step."""
+
+ROUNDS = 2
+"""Times that the jitter of a clock is measured: the second time with that of whole rows
+taken into account, as commands that jump early or late look like an error of the
+model."""
 
 PRECISE_S = 20.0
 """Most seconds of the recordings on which the error of the simulation is measured."""
@@ -117,8 +123,9 @@ def precise(
     """The channels, whose noise includes the error of the simulation itself.
 
     That is what integration leaves at the shortest time step, see `Predictor`. The
-    jitter of the clock is measured as well, unless it and small mismatch of the model
-    leave much more than noise in most channels: then fast errors are the model's, too.
+    jitter of the clock is measured as well: that of whole rows at once, that of single
+    channels unless it and small mismatch of the model leave much more than noise in
+    most channels. Then fast errors are the model's, too.
     """
     some = shortened(traces, PRECISE_S)
     for step_s in STEPS_S[plant.base]:
@@ -131,15 +138,34 @@ def precise(
     found = replace(channels, noise=noise, floor=floor)
     if predictor.by_torque or plant.base == "floating":
         return found
-    predictor = predictor_of(plant, some, found, threads=threads)
+    given = found
+    for _ in range(ROUNDS):
+        predictor = predictor_of(plant, some, given, threads=threads)
+        timed, is_far_off = _timed(predictor, found)
+        if not (is_far_off and timed.jitter_s):
+            break
+        given = timed
+    return timed
+
+
+def _timed(predictor: Predictor, found: Channels) -> tuple[Channels, bool]:
+    """The channels with the jitter that small mismatch of the model leaves.
+
+    Also returns whether much more than noise is left in most channels even with it.
+    """
     predictor.calibrate()
-    beside = predictor.moved_to(()).without_tolerances()
-    left = beside.residuals([()]).reshape(-1, len(wider))
-    scored = predictor.scored.reshape(left.shape)
-    timed = with_clock(found, left, speeds(some, found), scored)
-    clock, left = clock_noise(some, timed, scored), left * found.noise / timed.noise
-    if clock is not None:
-        (left,) = clock.without(left[None])
-    square = np.sum(left**2, axis=0) / np.maximum(scored.sum(axis=0), 1)
-    far_off = np.sum(square > MORE_THAN_NOISE**2) >= max(len(wider) / 2, 2)
-    return found if far_off else timed
+    given, beside = predictor.channels, predictor.moved_to(())
+    shape = -1, len(found.names)
+    left = beside.evenly().residuals([()]).reshape(shape) * given.noise / found.noise
+    scored, speed = predictor.scored.reshape(shape), speeds(predictor.traces, found)
+    timed = with_clock(found, left, speed, scored)
+    white = beside.without_tolerances().residuals([()]).reshape(shape)
+    if not given.jitter_s:
+        clock = clock_noise(predictor.traces, timed, scored)
+        white = white * given.noise / timed.noise
+        white = white if clock is None else clock.without(white[None])[0]
+    square = np.sum(white**2, axis=0) / np.maximum(scored.sum(axis=0), 1)
+    count = np.sum(square > MORE_THAN_NOISE**2)
+    if count < max(len(square) / 2, 2):
+        return timed, False
+    return with_shared_clock(found, left, speed, scored), True

@@ -126,7 +126,7 @@ def test_errors_of_a_clock_are_whitened_before_those_of_a_start():
     changes, speed = 40 * random.standard_normal((2, 60, 2)), np.zeros((60, 2))
     speed[:30] = 3000.0
     clock = ClockNoise(speed, 5e-4, 3e-4)
-    start = StartUncertainty(changes, [40, 60], clock)
+    start = StartUncertainty(changes, [40, 60], clock.without)
     wrong = changes[:1] + 0.0 * changes[1:]
     timed = start.without(clock.without(wrong))
     assert np.abs(timed).max() < 0.1 * np.abs(clock.without(wrong)).max()
