@@ -10,6 +10,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import longest_window_s
 from diagnosis.residuals.left_out import left_out
+from diagnosis.residuals.nuisance_fit import OFTEN
 from diagnosis.residuals.predictor import Model, Predictor, no_nuisance
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.torque_predictor import predictor_of
@@ -77,7 +78,7 @@ class _Simulations(NamedTuple):
         """
         predictor = self.uncalibrated(traces, noise)
         if noise is None:
-            predictor.calibrate()
+            predictor.calibrate(most_seen=OFTEN)
             return predictor
         predictor.correct()
         errors = no_nuisance(predictor) if self.plant.base == "fixed" else None
@@ -170,8 +171,7 @@ def _left_out(sims: _Simulations, predictor: Predictor, model: Model) -> FloatAr
         others.calibrate(found, tolerances=False)
         (fitted,) = fit_all(others, [found], 1)
         changes = np.vstack([changes, fitted.jacobian.T])
-    whole = left_out(left, changes, _parts(predictor))
-    return whole if nuisance is None else nuisance.tolerance().without(whole[None])[0]
+    return left_out(left, changes, _parts(predictor))
 
 
 def _parts(predictor: Predictor) -> IntArray:
@@ -249,7 +249,7 @@ def _with_small_mismatch(
 ) -> Model:
     """A model, and the small mismatch that is likely beside it in recordings."""
     predictor = sims.uncalibrated(traces, None)
-    predictor.calibrate(model)
+    predictor.calibrate(model, most_seen=OFTEN)
     if predictor.nuisance is None:
         return model
     return (*predictor.nuisance.beside({one.key for one in model}), *model)
