@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import shared_channels
-from diagnosis.residuals.predictor import Model, Predictor, no_nuisance
+from diagnosis.residuals.doubted import no_nuisance
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.steps import with_best_steps
 from diagnosis.search.reference import learn_reference
 from diagnosis.traces.reference import Reference

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.traces.trace import filled
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
 
 FEATURES = 150
 """Number of random cosines of the inputs that serve as features of the regression."""
@@ -95,7 +95,7 @@ def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatAr
     return np.asarray(np.linalg.solve(gram, features.T @ wanted))
 
 
-def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, FloatArray]:
+def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, BoolArray]:
     """For each recording its (T, c + j + 1) simulated channels, commands and time.
 
     Where torques are compared, positions and velocities take the place of the first

@@ -9,9 +9,10 @@ from diagnosis.audit.audit import audit
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import longest_window_s
+from diagnosis.residuals.doubted import no_nuisance
 from diagnosis.residuals.left_out import left_out
 from diagnosis.residuals.nuisance_fit import OFTEN
-from diagnosis.residuals.predictor import Model, Predictor, no_nuisance
+from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.residuals.usual_errors import is_usual
