@@ -11,6 +11,7 @@ import numpy as np
 
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects.scales import mass_kg
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
@@ -59,6 +60,8 @@ def free_parameters(plant: Plant, traces: Sequence[Trace]) -> list[FreeParameter
             parameter, *others = kind.parameters(plant, place)
             if others:
                 break
+            if kind.place_kind == "body":  # a mass, which users bound by the robot's
+                parameter = replace(parameter, high=mass_kg(plant))
             size = abs(parameter.typical - parameter.neutral)
             low, high = (
                 (bound - parameter.neutral) / size

@@ -300,3 +300,8 @@ class CommandLatency(NumberEffect):
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) servo torque lost per second of delay: kp times command rate."""
         return motion.kp_nm_rad * motion.command_rate_rad_s
+
+
+def late_commands(delay_s: float) -> PlacedEffect:
+    """Commands that all take effect later than their rows say [s]."""
+    return PlacedEffect(CommandLatency.name, "commands", (delay_s,))

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.effects.parts import PlacedEffect
+from diagnosis.effects.servos import late_commands
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels, measured_of, shared_channels
 from diagnosis.residuals.clock import clock_noise
@@ -197,9 +197,9 @@ class Predictor(Doubted):
         if clock is None or any(trace.command_rad is None for trace in self.traces):
             return None
         late_s = self.channels.jitter_s
-        late = PlacedEffect("command_latency", "commands", (late_s,))
         given = self._doubts.given(model)
-        one, other = self._replays.values([given, (*given, late)], self.step_s)
+        late = *given, late_commands(late_s)
+        one, other = self._replays.values([given, late], self.step_s)
         changes = np.where(self._scored, one - other, 0.0) / self.channels.noise
         jumps = jumps_of(self.traces, self.channels)
         return CommandTiming(np.nan_to_num(changes), jumps, self._ends, clock)

@@ -71,7 +71,7 @@ def test_recorded_times_are_even_and_two_gains_are_known(made):
     assert max(gains) == pytest.approx(2 * min(gains))
     assert len(list((folder / "reference").iterdir())) == 2
     plant, traces, reference = read_case(folder)
-    assert (len(traces), len(reference)) == (4, 2)
+    assert (len(traces), len(reference.traces)) == (4, 2)
     assert plant.joints == ("J1", "J2")
 
 
