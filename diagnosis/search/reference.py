@@ -19,7 +19,7 @@ from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.hooks import Hooks
-from diagnosis.search.judging import Judge
+from diagnosis.search.judging import Judge, gain_of_noise
 from diagnosis.search.result import pack_noise, unpack_noise
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
@@ -39,6 +39,9 @@ gains there, too, is no change."""
 SHIFTS = 3
 """Number of time offsets at which recordings on a floating base are cut into windows,
 to get more windows from which to learn noise."""
+
+MOST_FREED = 4
+"""Most times that small mismatch which is larger than usual is given free bounds."""
 
 REPLAYS = 40
 """Rough number of simulations for learning noise from recordings of the healthy robot;
@@ -248,11 +251,29 @@ def _explained(
 def _with_small_mismatch(
     sims: _Simulations, traces: Sequence[Trace], model: Model
 ) -> Model:
-    """A model, and the small mismatch that is likely beside it in recordings."""
+    """A model, and the small mismatch that is likely beside it in recordings.
+
+    What is larger than usual becomes an effect without bounds: the rest would look new.
+    """
     predictor = sims.uncalibrated(traces, None)
-    predictor.calibrate(model, most_seen=OFTEN)
-    if predictor.nuisance is None:
-        return model
+    for _ in range(MOST_FREED):
+        predictor.calibrate(model, most_seen=OFTEN)
+        if predictor.nuisance is None:
+            return model
+        (left,) = predictor.without_tolerances().residuals([model])
+        taken = {one.key for one in model}
+        least = gain_of_noise(len(predictor.nuisance.units))
+        larger = [
+            placed
+            for placed, gain in predictor.nuisance.unusual(left)
+            if gain > least and placed.key not in taken
+        ]
+        if not larger:
+            break
+        model = (*model, *larger)
+        own = predictor.with_tolerances_beside(model)
+        model = fit_all(own, [model])[0].model
+    assert predictor.nuisance is not None
     return (*predictor.nuisance.beside({one.key for one in model}), *model)
 
 
