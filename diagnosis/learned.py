@@ -83,8 +83,7 @@ class Learned:
             return first
         if soft:
             limits = (*material.limits, CREEPS)
-            both = (softly(one) for one in (material.plant, material.before))
-            plant, before = both
+            plant, before = softly(material.plant), softly(material.before)
             material = replace(material, plant=plant, before=before, limits=limits)
         wide = channels.widened(wider)
         if first.everywhere and not soft:

@@ -63,8 +63,7 @@ class Effect(ABC):
     """Words for reports; made from the effect's name and class docstring by default."""
 
     components: ClassVar[int] = 1
-    """Number of the effect's first values that are components of one vector. Each
-    component is tried alone; their effects add up."""
+    """Number of first values that form a vector; its parts are tried one by one."""
 
     timed: ClassVar[bool] = False
     """Whether the effect's last two values are start [s] and duration [s]. If so, it is

@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.clock import ClockNoise
-from diagnosis.residuals.tolerance import Tolerance
+from diagnosis.residuals.tolerance import Tolerance, without_each
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray, IntArray
 
@@ -42,8 +42,7 @@ class CommandTiming:
         Args:
           changes: (rows, c) change of residuals by commands that are late by one
             standard deviation, in units of noise and 0 where errors do not count.
-          jumps: (rows, c) number of the jump that each entry follows, see `jumps_of`;
-            until the next jump of another joint it follows the last one as well.
+          jumps: (rows, c) number of the jump that each entry follows, see `jumps_of`.
           ends: rows after each recording.
           clock: residuals have been whitened for its errors before.
         """
@@ -65,13 +64,7 @@ class CommandTiming:
 
     def without(self, residual: FloatArray) -> FloatArray:
         """(n, rows, c) residuals, whitened."""
-        cleaned, first = [], 0
-        for rows, tolerance in self._parts:
-            part = residual[:, first : first + rows]
-            flat = tolerance.without(part.reshape(len(part), -1))
-            cleaned.append(flat.reshape(part.shape))
-            first += rows
-        return np.concatenate(cleaned, axis=1)
+        return without_each(self._parts, residual)
 
 
 def jumps_of(traces: Sequence[Trace], channels: Channels) -> IntArray:

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.residuals.tolerance import Tolerance
+from diagnosis.residuals.tolerance import Tolerance, without_each
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
 
@@ -85,10 +85,4 @@ class StartUncertainty:
 
     def without(self, residual: FloatArray) -> FloatArray:
         """(n, rows, c) residuals, whitened."""
-        cleaned, first = [], 0
-        for rows, tolerance in self._windows:
-            part = residual[:, first : first + rows]
-            flat = tolerance.without(part.reshape(len(part), -1))
-            cleaned.append(flat.reshape(part.shape))
-            first += rows
-        return np.concatenate(cleaned, axis=1)
+        return without_each(self._windows, residual)

@@ -99,3 +99,19 @@ class Tolerance:
     def without(self, residuals: FloatArray) -> FloatArray:
         """(n, N) residuals, whitened."""
         return np.asarray(residuals - (residuals @ self._axes.T) @ self._axes)
+
+
+def without_each(
+    parts: Sequence[tuple[int, Tolerance]], residual: FloatArray
+) -> FloatArray:
+    """(n, rows, c) residuals, whitened in successive parts.
+
+    Each part is its number of rows, and what is tolerated in them.
+    """
+    cleaned, first = [], 0
+    for rows, tolerance in parts:
+        part = residual[:, first : first + rows]
+        flat = tolerance.without(part.reshape(len(part), -1))
+        cleaned.append(flat.reshape(part.shape))
+        first += rows
+    return np.concatenate(cleaned, axis=1)

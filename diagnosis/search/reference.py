@@ -256,25 +256,31 @@ def _with_small_mismatch(
     What is larger than usual becomes an effect without bounds: the rest would look new.
     """
     predictor = sims.uncalibrated(traces, None)
+    predictor.calibrate(model, most_seen=OFTEN)
     for _ in range(MOST_FREED):
-        predictor.calibrate(model, most_seen=OFTEN)
-        if predictor.nuisance is None:
-            return model
-        (left,) = predictor.without_tolerances().residuals([model])
-        taken = {one.key for one in model}
-        least = gain_of_noise(len(predictor.nuisance.units))
-        larger = [
-            placed
-            for placed, gain in predictor.nuisance.unusual(left)
-            if gain > least and placed.key not in taken
-        ]
+        larger = _larger_than_usual(predictor, model)
         if not larger:
             break
-        model = (*model, *larger)
-        own = predictor.with_tolerances_beside(model)
-        model = fit_all(own, [model])[0].model
-    assert predictor.nuisance is not None
+        own = predictor.with_tolerances_beside((*model, *larger))
+        model = fit_all(own, [(*model, *larger)])[0].model
+        predictor.calibrate(model, most_seen=OFTEN)
+    if predictor.nuisance is None:
+        return model
     return (*predictor.nuisance.beside({one.key for one in model}), *model)
+
+
+def _larger_than_usual(predictor: Predictor, model: Model) -> Model:
+    """Small mismatch on a bound beside a model that would gain if it were larger."""
+    if predictor.nuisance is None:
+        return ()
+    (left,) = predictor.without_tolerances().residuals([model])
+    least = gain_of_noise(len(predictor.nuisance.units))
+    taken = {one.key for one in model}
+    return tuple(
+        placed
+        for placed, gain in predictor.nuisance.unusual(left)
+        if gain > least and placed.key not in taken
+    )
 
 
 def _shifted(trace: Trace) -> list[Trace]:

@@ -11,9 +11,9 @@ from diagnosis.traces.trace import Trace
 class Reference:
     """Recordings of a robot while it was healthy, and its model at that time.
 
-    What they differ in is there before anything changed. A robot that has another tool
-    or another model since has another `plant` here than in its later recordings, with
-    the same joints in the same order.
+    Their difference from that model was there before anything changed. If the robot has
+    another tool or another model since, `plant` is not that of its later recordings;
+    its joints are the same, in the same order.
 
     Example:
       >>> plant, before = read_traces(["last_year.parquet"], "nao")

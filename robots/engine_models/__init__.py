@@ -2,5 +2,5 @@
 
 `mujoco_spec` makes a robot's MuJoCo model, `urdf` the URDF for PyBullet. `model_urdf`
 turns a compiled MuJoCo model into a URDF, `heavier_bodies` changes its masses;
-`needed_torques` says what a motion takes.
+`inverse_dynamics` says what a motion takes.
 """

@@ -3,7 +3,8 @@
 Torques are compared, since they need no simulation: those that drive the joints, less
 those that the model needs for the recorded motion. A doctoring changes the difference.
 It shows if that change is large beside what is left of the difference once everything
-is taken out of it that a regression learns from the reference.
+is taken out of it that a regression learns from the reference. No code of the
+diagnosis is used: what is drawn must not change with what it judges.
 """
 
 from collections.abc import Sequence
@@ -15,7 +16,7 @@ from scipy.signal import savgol_filter
 from experiments.concealed.doctored.labels import tick_s
 from experiments.concealed.doctored.parts import Parts
 from groundwalk.arrays import FloatArray
-from robots.engine_models.needed_torques import NeededTorques
+from robots.engine_models.inverse_dynamics import InverseDynamics
 from worlds.recordings import Recording
 
 LASTS_S = 0.25
@@ -78,9 +79,9 @@ def nats_of(
       doctored: the same afterwards, with the same names of recordings.
       driven_by_torque: whether measured torques drive the joints, not servos.
     """
-    models = [NeededTorques.of_text(text) for text, _ in (real, doctored)]
+    models = [InverseDynamics.of_text(text) for text, _ in (real, doctored)]
 
-    def torques(model: NeededTorques, one: Recording) -> _Torques:
+    def torques(model: InverseDynamics, one: Recording) -> _Torques:
         return _torques(model, one, driven_by_torque)
 
     parts = real[1]
@@ -119,7 +120,7 @@ def _means(values: FloatArray, seconds: float) -> FloatArray:
     return np.asarray(parts.mean(axis=1))
 
 
-def _torques(model: NeededTorques, one: Recording, by_torque: bool) -> _Torques:
+def _torques(model: InverseDynamics, one: Recording, by_torque: bool) -> _Torques:
     """The torques of a recording, its motion being smoothed."""
     q, v, a = _motion(one)
     drive = np.zeros_like(q)

@@ -31,7 +31,7 @@ def test_a_part_is_predicted_by_the_others_and_whitened_with_their_doubt(parts):
 
 
 def drawn(differ, count=400):
-    """A residual of noise, in two parts in which 30 of 40 values differ or not."""
+    """A residual in two parts, in which 40 values differ or not."""
     random = np.random.default_rng(3)
     changes = random.standard_normal((40, count))
     sizes = random.standard_normal((2, 40))

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from known_arms import SINGLE, measured
-from made_up_traces import arm
+from made_up_traces import arm, recorded
 from swinger_rig import moved, swinger, with_speeds
 
 from diagnosis.effects.parts import PlacedEffect
@@ -15,6 +15,8 @@ from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.usual_errors import is_usual
+from diagnosis.search import reference as search_reference
+from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.reference import learn_reference, reference_checks
 from diagnosis.traces.reference import Reference
@@ -185,3 +187,17 @@ def test_measured_speeds_of_the_base_count_half():
     plain, mixed = (runs_of(plant, one)[1].base[7:] for one in (trace, told))
     expected = (plain + np.array([1.0, 0.0, -1.0, 0.0, 2.0, 0.0])) / 2
     np.testing.assert_allclose(mixed, expected, atol=1e-6)
+
+
+def test_what_is_larger_than_usual_is_taken_as_given_as_a_whole():
+    """On the bound of small mismatch, 0.12 N m, the rest of it would look new."""
+    traces = [
+        recorded(arm(), ("coulomb_friction", "elbow", 0.16), seed=seed, duration_s=3.0)
+        for seed in (0, 1)
+    ]
+    options = shared_channels(arm(), traces), 1, Hooks()
+    sims = search_reference._Simulations.of(arm(), traces, *options)
+    found = search_reference._with_small_mismatch(sims, traces, ())
+    (large,) = [one for one in found if not is_usual(arm(), one)]
+    assert large.key == "coulomb_friction@elbow"
+    assert large.values[0] == pytest.approx(0.16, rel=0.05)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from robots.engine_models.needed_torques import NeededTorques
+from robots.engine_models.inverse_dynamics import InverseDynamics
 
 MASS_KG, LENGTH_M, INERTIA, DAMPING, DRY_NM, ROTOR = 0.8, 0.3, 0.004, 0.05, 0.02, 0.003
 PENDULUM = f"""<mujoco><worldbody><body name="link">
@@ -18,7 +18,7 @@ PENDULUM = f"""<mujoco><worldbody><body name="link">
 def test_a_pendulum_needs_what_its_equation_says():
     random = np.random.default_rng(0)
     q, v, a = random.normal(size=(3, 20, 1))
-    found = NeededTorques.of_text(PENDULUM).of(("axis",), q, v, a)
+    found = InverseDynamics.of_text(PENDULUM).of(("axis",), q, v, a)
     inertia = INERTIA + MASS_KG * LENGTH_M**2 + ROTOR
     weight = MASS_KG * 9.81 * LENGTH_M
     wanted = inertia * a + weight * np.sin(q) + DAMPING * v + DRY_NM * np.sign(v)

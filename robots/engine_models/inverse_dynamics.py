@@ -11,11 +11,13 @@ from robots.engine_models.mjcf import quiet_mujoco
 
 
 @dataclass(frozen=True, eq=False)
-class NeededTorques:
+class InverseDynamics:
     """Inverse dynamics of a model, without contacts, limits and actuators.
 
+    What judges a diagnosis takes this and not the diagnosis' own.
+
     Example:
-      >>> needed = NeededTorques.of_text(path.read_text())
+      >>> needed = InverseDynamics.of_text(path.read_text())
       >>> needed.of(("hip", "knee"), angles, speeds, accelerations).shape
       (500, 2)
     """
@@ -23,8 +25,8 @@ class NeededTorques:
     model: mujoco.MjModel
 
     @classmethod
-    def of_text(cls, text: str) -> "NeededTorques":
-        """Of an MJCF or a URDF without meshes."""
+    def of_text(cls, text: str) -> "InverseDynamics":
+        """The inverse dynamics of an MJCF, or of a URDF without meshes, as text."""
         quiet_mujoco()
         spec = mujoco.MjSpec.from_string(text)
         spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
