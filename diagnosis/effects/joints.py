@@ -312,14 +312,14 @@ class EndStop(JointEffect):
         copies.field("jnt_solref")[row, joint] = _STIFF
 
     def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
-        """Stops that cut 5 % and 20 % of the joint's recorded range off either end."""
+        """Stops at either end of the joint's recorded range, and 5 and 20 % inside."""
         column = plant.joints.index(place)
         low, high = usage.low_rad[column], usage.high_rad[column]
         span = high - low
         return [
             (end + side * -share * span, side)
             for end, side in ((high, 1.0), (low, -1.0))
-            for share in (0.05, 0.2)
+            for share in (0.0, 0.05, 0.2)
         ]
 
     def sizes_to_scan(

@@ -10,6 +10,7 @@ from diagnosis.residuals.channels import LEAST_TORQUE, Channels
 from diagnosis.residuals.predictor import WORST, Model, Predictor
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise, waves
 from diagnosis.residuals.replays import variants_of
+from diagnosis.residuals.stop_contact import StopContact
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
@@ -59,6 +60,10 @@ class TorquePredictor(Predictor):
         self._scored[self._starts] = self._rows >= FEWEST * full
         self.scored = self._scored.reshape(-1)
         self.blocks = _blocks(self._starts, self._scored, len(self._counts))
+        largest = np.nanmax(np.abs(self._measured), axis=0, initial=0.0)
+        rows = [motion.block_rows for motion in motions]
+        noise = self.channels.noise
+        self._stops = StopContact.of(plant, traces, rows, largest, noise)
 
     @property
     def by_torque(self) -> bool:
@@ -88,7 +93,13 @@ class TorquePredictor(Predictor):
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less needed torques in means over blocks [noise]."""
-        return self._means(self._measured - self.predict(models))
+        wrong = self._means(self._measured - self.predict(models))
+        given = [self._doubts.given(model) for model in models]
+        own = self._starts
+        wrong[:, own] = self._stops.rested(
+            wrong[:, own], variants_of(self.plant, given)
+        )
+        return wrong
 
     def _means(self, torque_nm: FloatArray) -> FloatArray:
         """(n, rows, c) means of torques (n, rows, c) over blocks, in units of noise."""
