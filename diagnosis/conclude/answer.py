@@ -10,11 +10,11 @@ from diagnosis.effects.library import effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.ties import groups_of
 from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.many.pruning import gains_of_each
 from diagnosis.search.result import SearchResult
-from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Found, VerdictKind, When
 
 TIED_NATS = 10.0

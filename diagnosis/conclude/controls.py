@@ -12,8 +12,8 @@ import numpy as np
 from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import groups_of, without_each
 from diagnosis.search.fitting import FittedModel, fit_all
-from diagnosis.search.ties import groups_of, without_each
 
 MOST = 4
 """Number of wrong models that are fitted to find the best one: those with the smallest

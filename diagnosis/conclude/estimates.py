@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnosis.effects.library import effect
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
+from diagnosis.residuals.ties import groups_of
 from diagnosis.residuals.usual_errors import USUAL
-from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.fitting import FittedModel
-from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 

@@ -17,13 +17,13 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import (
     SECONDARY,
     FittedModel,
     fit_all,
     ran_into_bound,
 )
-from diagnosis.search.ties import groups_of
 from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5

@@ -11,7 +11,7 @@ import numpy as np
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.doubts import Doubts
 from diagnosis.residuals.nuisance import Nuisance
-from diagnosis.residuals.nuisance_fit import ONCE_MORE, NuisanceFit
+from diagnosis.residuals.nuisance_fit import NuisanceFit
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.trace import Trace
@@ -87,49 +87,43 @@ class Doubted(ABC):
             tolerance=tolerance and tolerance.beside({one.key for one in model})
         )
 
-    def calibrate(
-        self, model: Model = (), tolerances: bool = True, most_seen: int = ONCE_MORE
-    ) -> FloatArray:
+    def calibrate(self, model: Model = (), tolerances: bool = True) -> FloatArray:
         """Measure the integration error of a model, and what wrong start states change.
 
         Both are then taken out of the residuals of all models. Small mismatch that the
         nominal model may have are fitted, and what others would change is found.
         Returns (c,) the rms, in units of noise, of the integration error that remains
-        in each channel. Without `tolerances` those stay that were found before. What
-        small mismatch changes is simulated `most_seen` times.
+        in each channel. Without `tolerances` those stay that were found before.
         """
-        first = self.nuisance is None
         error = self.correct(model)
-        self.doubt(model, tolerances, most_seen)
-        return self.correct(model) if first and self.nuisance else error
+        self.doubt(model, tolerances)
+        return self.correct(model) if tolerances and self.nuisance else error
 
-    def doubt(
-        self, model: Model = (), tolerances: bool = True, most_seen: int = ONCE_MORE
-    ) -> None:
+    def doubt(self, model: Model = (), tolerances: bool = True) -> None:
         """Find what wrong start states change, and small mismatch of the nominal model.
 
         Without `tolerances` the latter stays as it was found before.
         """
         self._doubt_times(model)
         if tolerances:
-            self.fit_nuisance(model, most_seen)
+            self.fit_nuisance(model)
 
     def doubt_beside(self, errors: Nuisance | None, model: Model) -> None:
         """Find what wrong start states change; take small mismatch as it is given."""
         self._doubt_times(model)
         self.take_nuisance(errors, model)
 
-    def fit_nuisance(self, model: Model, most_seen: int = ONCE_MORE) -> None:
+    def fit_nuisance(self, model: Model) -> None:
         """Find the nominal model's small mismatch that is likeliest beside a model.
 
-        What it changes is simulated `most_seen` times. Where recordings of the healthy
-        robot tell it, it is taken as it is.
+        Where recordings of the healthy robot tell it, it is taken as it is. The
+        integration error is to be measured again after that.
         """
         if self._doubts.is_known:
             self.take_nuisance(no_nuisance(self), model)
         elif self.plant.base == "fixed":  # contacts outdo small mismatch by far
             start = self.nuisance or no_nuisance(self)
-            found = self.nuisance_fit(model).fitted(start, most_seen)
+            found = self.nuisance_fit(model).fitted(start)
             self._doubts = self._doubts.taking(found, self._beyond())
 
     def take_nuisance(self, errors: Nuisance | None, model: Model) -> None:
@@ -166,7 +160,7 @@ class Doubted(ABC):
     def nuisance_fit(self, model: Model) -> NuisanceFit:
         """Fits of small mismatch of the nominal model, beside a model."""
         some = self._with(nuisance=None, tolerance=self._beyond())
-        return NuisanceFit(some.residuals, model)
+        return NuisanceFit(some.residuals, some.correct, model)
 
     def _beyond(self) -> Tolerance:
         """What is tolerated beside small mismatch of the nominal model: nothing."""

@@ -16,7 +16,7 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.likely_sizes import gain_of, likeliest
+from diagnosis.residuals.likely_sizes import gain_of
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.residuals.usual_errors import (
@@ -145,22 +145,3 @@ class Nuisance:
         if spread is not None and len(spread) != len(keys):
             spread = None  # what is uncertain differs, as other joints have servos
         return Tolerance(self.changes, keys, self.sizes, spread)
-
-    def likeliest(self, left: FloatArray, free: BoolArray) -> FloatArray:
-        """(k,) the likeliest sizes of those `free` (k,), by linear estimates in bounds.
-
-        `left` (N,) is the residual beside these errors. Others are zero.
-        """
-        low, high = self.bounds()
-        found = likeliest(self.changes, left, self.sizes, free, low, high)
-        return np.clip(found, low, high)
-
-    def followed(self, sizes: FloatArray, changed: FloatArray) -> "Nuisance":
-        """Errors of other (k,) sizes, with changes that suit how a residual changed.
-
-        `changed` (N,) is the difference of the residuals at both.
-        """
-        step = sizes - self.sizes
-        missed = changed - step @ self.changes
-        changes = self.changes + np.outer(step / (step @ step), missed)
-        return replace(self, sizes=sizes, changes=changes)

@@ -6,6 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.residuals.channels import MORE_THAN_NOISE
+from diagnosis.residuals.coordinates import Coordinates
+from diagnosis.residuals.fit_point import FitPoint
+from diagnosis.residuals.likely_sizes import likeliest
 from diagnosis.residuals.nuisance import Nuisance
 from diagnosis.residuals.replays import Model
 from groundwalk.arrays import FloatArray
@@ -13,17 +16,24 @@ from groundwalk.arrays import FloatArray
 NUDGE = 0.5
 """Step of finite differences, in standard deviations."""
 
-NEAR = 1.0
-"""Distance from where changes were simulated, in standard deviations, up to which they
-still count: no error is out of proportion over so little."""
+NUDGE_X = 0.02
+"""The same for values of a model, in scaled coordinates, in which they are of order
+one."""
+
+FLAT = 100.0
+"""Standard deviation of values of a model before anything is measured, in scaled
+coordinates: so large that it says nothing."""
 
 MOST_STEPS = 6
 """Most steps of a fit before changes are simulated again."""
 
-OFTEN, ONCE_MORE = 6, 2
-"""Most times that changes are simulated in a fit: of a robot that may be healthy, and
-elsewhere, where small mismatch that is fitted too well would stand for what is
-missing."""
+MOST_SEEN = 6
+"""Most times that changes are simulated in a fit; two to four suffice mostly."""
+
+CLOSER = 0.5
+"""Share of the mean square that must be left after changes were simulated once more, as
+long as more than twice the noise is left: what falls slower does not end at the noise
+in a few rounds."""
 
 SHARES = (1.0, 0.5, 0.25)
 """Shares of a linear step that are tried, of which the best is taken."""
@@ -39,97 +49,157 @@ class NuisanceFit:
 
     Attributes:
       ask: computes the (n, N) residuals of n models.
+      correct: measures the integration error of a model, to be taken out of what `ask`
+        computes after that.
       model: what is fitted beside. At its places it replaces small mismatch.
     """
 
     ask: Callable[[list[Model]], FloatArray]
+    correct: Callable[[Model], object]
     model: Model
 
-    def fitted(self, start: Nuisance, most_seen: int = ONCE_MORE) -> Nuisance:
-        """The likeliest errors; what each changes is simulated `most_seen` times.
+    def fitted(self, start: Nuisance) -> Nuisance:
+        """The likeliest errors.
 
-        Their values minimise the energy of the residual and of the errors themselves
-        (maximum a posteriori) by Gauss-Newton steps, from those of `start`. What each
-        changes is simulated there, and again if they move far, and followed from step
-        to step in between (Broyden 1965, "A class of methods for solving nonlinear
-        simultaneous equations"). Where they leave more than twice the noise more is
-        missing than small mismatch, which would only stand for it: there they stay at
-        none.
+        They minimise the energy of the residual and of the errors themselves (maximum
+        a posteriori) by Gauss-Newton steps, from those of `start`. What each changes is
+        simulated, again if they move far, and followed from step to step in between.
+        Their own integration error is taken out: a little dry friction changes it by
+        more than noise.
+
+        Where they leave more than twice the noise, the values of the model are fitted
+        as well, but not returned: slightly wrong ones may have pulled at all errors.
+        If that does not help, more is missing than small mismatch, which would only
+        stand for it: there they stay at none.
         """
-        begun, left = self._begun(start)
-        if not self._was_seen(begun):
-            begun = self._linear(begun, left)
-        now, left = self._descended(begun, left)
-        for _ in range(most_seen - 1):
-            far_off = _mean_square(left) >= MORE_THAN_NOISE**2
-            if _is_near(now) or (far_off and most_seen == ONCE_MORE):
+        begun = self._begun(start)
+        none = self._begun(start.at(np.zeros(len(start.units))))
+        if none.goal < begun.goal:  # what stood for something else leads astray
+            begun = none
+        if not (self._was_seen(begun.errors) and begun.is_near):
+            begun = self._linear(begun)
+        now = self._converged(begun)
+        if _is_far_off(now.left) and self.model:
+            x = self._coordinates(start).of(self.model)
+            now = self._converged(self._sloped(self._placed(begun.errors, x)))
+        if not _is_far_off(now.left):
+            return now.errors
+        errors = begun.errors
+        assert errors.seen_at is not None
+        nothing = errors.at(np.zeros(len(errors.units)))
+        return self.seen(nothing) if errors.seen_at[0].any() else nothing
+
+    def _converged(self, now: FitPoint) -> FitPoint:
+        """The point after rounds of steps, as long as these approach the noise."""
+        for _ in range(MOST_SEEN):
+            before = _mean_square(now.left)
+            now = self._descended(now)
+            if _is_far_off(now.left) and _mean_square(now.left) > CLOSER * before:
                 break
-            now, left = self._descended(self._linear(now, left), left)
-        if _mean_square(left) < MORE_THAN_NOISE**2:
-            return now
-        assert begun.seen_at is not None
-        none = begun.at(np.zeros(len(begun.units)))
-        return self.seen(none) if begun.seen_at[0].any() else none
+            self.correct(self._beside(now.errors, now.x))
+            now = self._at(now)
+            if now.is_near:
+                return self._descended(now)
+            now = self._linear(now)
+        return now
 
     def moved(self, start: Nuisance) -> Nuisance:
         """The likeliest errors by what they changed where another fit ended."""
-        now, left = self._begun(start)
-        if now.seen_at is None:
-            now = self._linear(now, left)
-        return self._descended(now, left)[0]
+        now = self._begun(start)
+        if now.errors.seen_at is None:
+            now = self._linear(now)
+        return self._descended(now).errors
 
     def seen(self, errors: Nuisance) -> Nuisance:
         """Given errors, with what they change in these residuals."""
-        return self._linear(errors, self._left(errors))
+        return self._linear(self._placed(errors, np.zeros(0))).errors
 
-    def _begun(self, start: Nuisance) -> tuple[Nuisance, FloatArray]:
-        """Errors only where the model has no effects, and their residual (N,)."""
-        now = start.at(np.where(start.free_of(self._keys), start.sizes, 0.0))
-        return now, self._left(now)
+    def _coordinates(self, start: Nuisance) -> Coordinates:
+        return Coordinates(start.plant, self.model)
 
-    def _descended(
-        self, now: Nuisance, left: FloatArray
-    ) -> tuple[Nuisance, FloatArray]:
-        """The errors after steps as long as these help, and their residual (N,)."""
+    def _begun(self, start: Nuisance) -> FitPoint:
+        """Errors only where the model has no effects."""
+        sizes = np.where(start.free_of(self._keys), start.sizes, 0.0)
+        return self._placed(start.at(sizes), np.zeros(0))
+
+    def _placed(self, errors: Nuisance, x: FloatArray) -> FitPoint:
+        """A point whose changes by the (p,) values were not simulated."""
+        (left,) = self.ask([self._beside(errors, x)])
+        return FitPoint(errors, x, np.zeros((len(x), len(left))), x, left)
+
+    def _at(self, now: FitPoint) -> FitPoint:
+        """The point with the residual there, after another error is taken out."""
+        return replace(now, left=self.ask([self._beside(now.errors, now.x)])[0])
+
+    def _descended(self, now: FitPoint) -> FitPoint:
+        """The point after steps as long as these help."""
         for _ in range(MOST_STEPS):
-            before = _goal(left, now.sizes)
-            sizes, rest = self._step(now, left)
-            least = max(ENOUGH * before, 2 * ENOUGH_NATS)
-            if _goal(rest, sizes) > before - least:
+            other = self._step(now)
+            if other.goal > now.goal - max(ENOUGH * now.goal, 2 * ENOUGH_NATS):
                 break
-            now, left = now.followed(sizes, rest - left), rest
-        return now, left
+            now = now.followed(other)
+        return now
 
-    def _step(self, now: Nuisance, left: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The best (k,) sizes on the way to the likeliest ones, and the residual."""
-        wanted = now.likeliest(left, now.free_of(self._keys))
-        steps = [now.sizes + share * (wanted - now.sizes) for share in SHARES]
-        others = self.ask([self._beside(now.at(one)) for one in steps])
-        every = [(now.sizes, left), *zip(steps, others, strict=True)]
-        return min(every, key=lambda one: _goal(one[1], one[0]))
+    def _step(self, now: FitPoint) -> FitPoint:
+        """The best point on the way to the likeliest one."""
+        errors, k = now.errors, len(now.errors.units)
+        low, high = errors.bounds()
+        free = errors.free_of(self._keys)
+        changes, sizes = errors.changes, errors.sizes
+        if len(now.x):
+            ends = self._coordinates(errors).bounds()
+            far = [(np.clip(end, now.x - 1, now.x + 1)) / FLAT for end in ends]
+            low, high = np.append(low, far[0]), np.append(high, far[1])
+            free = np.append(free, np.ones(len(now.x), bool))
+            changes = np.vstack([changes, FLAT * now.slopes])
+            sizes = np.append(sizes, now.x / FLAT)
+        wanted = np.clip(
+            likeliest(changes, now.left, sizes, free, low, high), low, high
+        )
+        steps = [
+            (errors.at(one[:k]), FLAT * one[k:])
+            for share in SHARES
+            for one in [sizes + share * (wanted - sizes)]
+        ]
+        others = self.ask([self._beside(*one) for one in steps])
+        points = [
+            replace(now, errors=one, x=x, left=left)
+            for (one, x), left in zip(steps, others, strict=True)
+        ]
+        return min([now, *points], key=lambda point: point.goal)
 
-    def _linear(self, now: Nuisance, left: FloatArray) -> Nuisance:
-        """The errors, with what one standard deviation of each would change.
+    def _linear(self, now: FitPoint) -> FitPoint:
+        """The point, with what errors and values change there."""
+        return self._sloped(replace(now, errors=self._changing(now)))
 
-        `left` (N,) is the residual beside them.
-        """
-        tried, sizes = list[Model](), np.empty(len(now.units))
-        for i, unit in enumerate(now.units):
+    def _sloped(self, now: FitPoint) -> FitPoint:
+        """The point, with what values of the model change there."""
+        if not len(now.x):
+            return now
+        high = self._coordinates(now.errors).bounds()[1]
+        far = np.where(now.x + NUDGE_X <= high, NUDGE_X, -NUDGE_X)
+        others = self.ask([self._beside(now.errors, x) for x in now.x + np.diag(far)])
+        return replace(now, slopes=(others - now.left) / far[:, None], seen_x=now.x)
+
+    def _changing(self, now: FitPoint) -> Nuisance:
+        """The errors, with what one standard deviation of each would change."""
+        errors = now.errors
+        tried, sizes = list[Model](), np.empty(len(errors.units))
+        for i, unit in enumerate(errors.units):
             taken = unit.key in self._keys
             sizes[i] = 1.0 if taken else NUDGE
-            more = sizes[i] * (np.arange(len(now.units)) == i)
-            own = now if taken else now.at(now.sizes + more)
-            tried.append((*self._beside(own), *([unit] if taken else ())))
-        changes = (self.ask(tried) - left) / sizes[:, None] if tried else now.changes
-        return replace(now, changes=changes, seen_at=(now.sizes, self._keys))
+            more = sizes[i] * (np.arange(len(errors.units)) == i)
+            own = errors if taken else errors.at(errors.sizes + more)
+            tried.append((*self._beside(own, now.x), *([unit] if taken else ())))
+        changes = errors.changes
+        if tried:
+            changes = (self.ask(tried) - now.left) / sizes[:, None]
+        return replace(errors, changes=changes, seen_at=(errors.sizes, self._keys))
 
-    def _left(self, errors: Nuisance) -> FloatArray:
-        """(N,) residual of the model beside errors."""
-        return np.asarray(self.ask([self._beside(errors)])[0])
-
-    def _beside(self, errors: Nuisance) -> Model:
-        """The model, and effects that stand for errors where it has none."""
-        return (*errors.beside(self._keys), *self.model)
+    def _beside(self, errors: Nuisance, x: FloatArray) -> Model:
+        """The model, with other values if any, and errors where it has none."""
+        model = self._coordinates(errors).model_at(x) if len(x) else self.model
+        return (*errors.beside(self._keys), *model)
 
     def _was_seen(self, errors: Nuisance) -> bool:
         """Whether changes were simulated beside a model with such effects."""
@@ -140,18 +210,11 @@ class NuisanceFit:
         return frozenset(one.key for one in self.model)
 
 
-def _is_near(errors: Nuisance) -> bool:
-    """Whether changes were simulated near these errors."""
-    if errors.seen_at is None:
-        return False
-    far = np.abs(errors.sizes - errors.seen_at[0])
-    return bool(far.max(initial=0.0) < NEAR)
+def _is_far_off(left: FloatArray) -> bool:
+    """Whether a residual (N,) is more than twice the noise."""
+    return _mean_square(left) >= MORE_THAN_NOISE**2
 
 
 def _mean_square(left: FloatArray) -> float:
     """Mean square of the entries of a residual (N,) that count; others are 0."""
     return float(left @ left) / max(int(np.count_nonzero(left)), 1)
-
-
-def _goal(left: FloatArray, sizes: FloatArray) -> float:
-    return float(left @ left + sizes @ sizes)

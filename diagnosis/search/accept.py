@@ -12,11 +12,11 @@ from functools import partial
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.ties import without_each
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.old_effects import without_old_effects
 from diagnosis.search.result import Judged, SearchResult, keys_of
-from diagnosis.search.ties import without_each
 from groundwalk.arrays import FloatArray
 
 CLOSE_NATS = 100.0

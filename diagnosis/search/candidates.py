@@ -8,10 +8,10 @@ import numpy as np
 from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import Signature
+from diagnosis.residuals.ties import without_each
 from diagnosis.search.result import Judged, keys_of
 from diagnosis.search.rules import Rules
 from diagnosis.search.screening import Screen
-from diagnosis.search.ties import without_each
 from groundwalk.arrays import FloatArray
 
 FEW_JOINTS = 6

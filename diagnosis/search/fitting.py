@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep
-from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.nudges import Nudges, nudges_of
 from groundwalk.arrays import FloatArray
 

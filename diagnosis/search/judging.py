@@ -8,11 +8,11 @@ from scipy.stats import chi2
 
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import groups_of, number_of_values
 from diagnosis.search.fitting import MOST_STEPS, FittedModel, fit_all
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.result import VALUE_NATS, Judged, pack, ranked, unpack
 from diagnosis.search.rules import Rules
-from diagnosis.search.ties import groups_of, number_of_values
 from groundwalk.arrays import FloatArray
 
 CONTRADICTED = 3.0
@@ -171,9 +171,25 @@ class Judge:
             models = [fit.model for fit in rough[:count]]
             known = [fit.jacobian for fit in rough[:count]]
             fits = fit_all(self.fit, models, followed=True, jacobians=known)
+            fits = self._settled(fits)
             return distinct(self.ranked(self.judge([*fits, *rough[count:]])))
 
         return self.saved(work)
+
+    def _settled(self, fits: Sequence[FittedModel]) -> list[FittedModel]:
+        """Fits, single effects and the best one also with differences at each step.
+
+        A Jacobian that is only followed may lead nowhere: that of a spring with a wrong
+        rest angle does not lead to the right one.
+        """
+        best = min(fits, key=lambda fit: fit.energy, default=None)
+        some = [fit for fit in fits if len(fit.model) == 1 or fit is best]
+        again = fit_all(self.fit, [fit.model for fit in some])
+        settled = {
+            id(a): min(a, b, key=lambda fit: fit.energy)
+            for a, b in zip(some, again, strict=True)
+        }
+        return [settled.get(id(fit), fit) for fit in fits]
 
     def saved(self, work: Callable[[], list[Judged]]) -> list[Judged]:
         """Judged models from the checkpoint, or computed by `work` and stored there."""

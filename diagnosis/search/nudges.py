@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnosis.effects.library import effect
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.search.coordinates import Coordinates
 from groundwalk.arrays import BoolArray
 
 MANY = 3

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import without_each
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import SearchResult
-from diagnosis.search.ties import without_each
 from groundwalk.arrays import FloatArray
 
 SURE = 3.0

@@ -11,7 +11,6 @@ from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import longest_window_s
 from diagnosis.residuals.doubted import no_nuisance
 from diagnosis.residuals.left_out import left_out
-from diagnosis.residuals.nuisance_fit import OFTEN
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.torque_predictor import predictor_of
@@ -82,7 +81,7 @@ class _Simulations(NamedTuple):
         """
         predictor = self.uncalibrated(traces, noise)
         if noise is None:
-            predictor.calibrate(most_seen=OFTEN)
+            predictor.calibrate()
             return predictor
         predictor.correct()
         errors = no_nuisance(predictor) if self.plant.base == "fixed" else None
@@ -256,17 +255,22 @@ def _with_small_mismatch(
     What is larger than usual becomes an effect without bounds: the rest would look new.
     """
     predictor = sims.uncalibrated(traces, None)
-    predictor.calibrate(model, most_seen=OFTEN)
+    model = _calibrated(predictor, model)
     for _ in range(MOST_FREED):
         larger = _larger_than_usual(predictor, model)
         if not larger:
             break
         own = predictor.with_tolerances_beside((*model, *larger))
-        model = fit_all(own, [(*model, *larger)])[0].model
-        predictor.calibrate(model, most_seen=OFTEN)
+        model = _calibrated(predictor, fit_all(own, [(*model, *larger)])[0].model)
     if predictor.nuisance is None:
         return model
     return (*predictor.nuisance.beside({one.key for one in model}), *model)
+
+
+def _calibrated(predictor: Predictor, model: Model) -> Model:
+    """The model with the values that suit small mismatch, which is fitted beside it."""
+    predictor.calibrate(model)
+    return fit_all(predictor, [model])[0].model if model else ()
 
 
 def _larger_than_usual(predictor: Predictor, model: Model) -> Model:

@@ -7,12 +7,12 @@ from typing import Any
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.search.coordinates import Coordinates
+from diagnosis.residuals.ties import number_of_values
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.hooks import Saved
-from diagnosis.search.ties import number_of_values
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,14 +102,17 @@ class SearchResult:
         shares = (gained, excess), (gained + more[1], excess + more[0])
         return min(max((a / b for a, b in shares if b > 0), default=0.0), 1.0)
 
-    def leaves_much(self, least_closed: float) -> bool:
-        """Whether more than noise is left, and less than a share is removed."""
+    def leaves_much(self, least_closed: float, most_left: float = MOST_LEFT) -> bool:
+        """Whether more than noise is left, and less than a share is removed.
+
+        More than noise is its energy and that share of it, `most_left`.
+        """
         selected, fitted, closed = self.nothing, self.nothing_fit, 0.0
         if self.winner:
             selected, fitted = self.winner.selected, self.winner.fit.energy
             closed = self.closed(self.winner)
-        much = selected > (1 + MOST_LEFT) * self.floor
-        much |= fitted > (1 + MOST_LEFT) * self.floor_fit
+        much = selected > (1 + most_left) * self.floor
+        much |= fitted > (1 + most_left) * self.floor_fit
         return bool(much and closed < least_closed)
 
 

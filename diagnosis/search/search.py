@@ -19,6 +19,10 @@ from diagnosis.search.result import Judged, SearchResult, keys_of
 from diagnosis.search.spread import is_widespread
 from diagnosis.traces.usage import Usage
 
+ONE_MORE = 0.5
+"""Share of the energy above the noise beside a single effect that one more must promise
+to explain; elsewhere effects are looked for at all joints at once."""
+
 
 class Search:
     """One search for effects that explain the fitting and the selection data.
@@ -56,14 +60,16 @@ class Search:
         while best.get(size):
             left = best[size][0].fit.residual
             judge.least_gain = max(starts.gain_by_chance(left), gain_of_noise(1))
-            if size == 1 and not anyway and self._most_joints_are_off(best[1][0]):
-                self.widespread, chosen = True, int(judge.believes(best[1][0]))
-                break
-            if judge.believes(best[size][0], before):
-                chosen = size
+            believed = judge.believes(best[size][0], before)
+            if believed:
                 best[size] = self._refined(best[size])
-                before = best[size][0]
-                starts = self._starts_from(best[size][0])
+            leader = best[size][0] if believed else None
+            if size == 1 and not anyway and self._most_joints_are_off(leader):
+                self.widespread, chosen = True, int(believed)
+                break
+            if leader:
+                chosen, before = size, leader
+                starts = self._starts_from(leader)
             # two effects together may explain what neither explains alone, such as
             # backlash and the friction that damps it
             elif size > chosen + 1 or not self._much_is_left(before):
@@ -87,10 +93,17 @@ class Search:
         """Without tolerances: whitened with them a short error is no longer short."""
         return self._fit.without_tolerances()
 
-    def _most_joints_are_off(self, best: Judged) -> bool:
-        """Whether most joints are off beside the best single effect, if it is one."""
-        believed = self.judge.believes(best)
-        return is_widespread(self._fit, best.model if believed else ())
+    def _most_joints_are_off(self, leader: Judged | None) -> bool:
+        """Whether most joints are off beside a single effect that is believed, if any.
+
+        Unless one more effect, such as a delay, promises to explain most of that.
+        """
+        if not is_widespread(self._fit, leader.model if leader else ()):
+            return False
+        if leader is None or self._rules.largest == 1:
+            return True
+        left = leader.fit.energy - self.judge.floor_fit
+        return self._starts_from(leader).promised(leader) < ONE_MORE * left
 
     def _with_promising(self, size: int, starts: list[Model]) -> list[Model]:
         """The models to start from, if any, and the promising ones of their size."""
@@ -165,7 +178,8 @@ class Search:
         """Fit the best models again with the integration error of the best one.
 
         Dry friction and end stops change it. More general forms of the best model's
-        effects are fitted as well.
+        effects are fitted as well. Values and small mismatch beside them are fitted in
+        turn, as long as more is gained than by chance.
         """
         judge = self.judge
         for _ in range(self._rules.refinements):
@@ -178,6 +192,7 @@ class Search:
             known = [None, *(judged.fit.jacobian for judged in first[1:])]
             tried = judge.judged(models, [*known, *(None for _ in wider)])
             best = distinct(judge.ranked([*tried, *others]))
-            if best[0].keys == before.keys or best[0] not in tried:
+            same = best[0].keys == before.keys or best[0] not in tried
+            if same and best[0].energy > before.energy - judge.least_gain:
                 break
         return best

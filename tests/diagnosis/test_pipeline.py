@@ -91,8 +91,9 @@ def test_friction_that_may_as_well_be_the_servos_damping():
     if found.name == "viscous_friction":
         coefficient = found.parameters["coefficient"]
         assert coefficient.low < 0.6 < coefficient.high
-        # a damping of 2 N m s/rad that is known to 3 %: 2.56 times 0.06
-        assert coefficient.high - coefficient.low == pytest.approx(0.16, abs=0.04)
+        # a damping of 2 N m s/rad that is known to 3 %: 2.56 times 0.06, or more, as
+        # far as the recordings differ by chance
+        assert 0.12 < coefficient.high - coefficient.low < 2 * 0.16
     assert verdict.alternatives
     assert verdict.next_experiment.joint == "elbow"
 

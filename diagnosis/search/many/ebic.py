@@ -13,10 +13,10 @@ import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import groups_of, number_of_values
 from diagnosis.search.chance import independent_blocks
 from diagnosis.search.judging import places_of_effects
 from diagnosis.search.result import Judged
-from diagnosis.search.ties import groups_of, number_of_values
 from groundwalk.arrays import FloatArray
 
 

@@ -8,6 +8,7 @@ again. The extended Bayesian information criterion decides (`ebic.py`).
 """
 
 from diagnosis.residuals.channels import MORE_THAN_NOISE
+from diagnosis.residuals.ties import without_each
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.each_joint import each_joint
@@ -15,7 +16,6 @@ from diagnosis.search.many.fits import Fits
 from diagnosis.search.many.pruning import pruned, shared
 from diagnosis.search.many.shared_first import shared_first
 from diagnosis.search.result import Judged, SearchResult
-from diagnosis.search.ties import without_each
 
 MUCH_BETTER = 0.25
 """A model with effects at all joints is preferred to one of up to three effects if it
@@ -31,9 +31,10 @@ def everywhere(judge: Judge, result: SearchResult) -> SearchResult:
     best = best_of_all(search)
     nothing = search.nominal()
     winner = search.fitted(result.winner.model) if result.winner else nothing
-    left = winner.energy - best.energy
+    few = min(winner.energy, _beside_small_mismatch(judge, result))
+    left = few - best.energy
     floor = search.judge.floor + search.judge.floor_fit
-    much = max(MUCH_BETTER * (winner.energy - floor), search.judge.least_gain)
+    much = max(MUCH_BETTER * (few - floor), search.judge.least_gain)
     if not best.model or left < much:
         return result
     judge.least_gain = search.judge.least_gain
@@ -54,6 +55,16 @@ def everywhere(judge: Judge, result: SearchResult) -> SearchResult:
         nothing.fit.energy,
         search.judge.floor_fit,
     )
+
+
+def _beside_small_mismatch(judge: Judge, result: SearchResult) -> float:
+    """Energy that few effects leave where the model has small mismatch as well [nats].
+
+    That mismatch is everywhere, too, and not worth a name.
+    """
+    if result.winner is None:
+        return judge.nothing + judge.nothing_fit
+    return judge.again([result.winner])[0].energy
 
 
 def best_of_all(fits: Fits) -> Judged:

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model
-from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.ebic import Ebic

@@ -11,9 +11,9 @@ from diagnosis.effects.library import effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.residuals.ties import Level, labels, motors, number_of_values, tied
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Guess, Screen
-from diagnosis.search.ties import Level, labels, motors, number_of_values, tied
 
 TRIED = 3
 """Number of models that are fitted in each round since they are estimated to gain most,

@@ -6,9 +6,9 @@ import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import Signature
-from diagnosis.search.coordinates import Coordinates
 from diagnosis.search.fitting import FittedModel
 from groundwalk.arrays import FloatArray
 

@@ -4,10 +4,10 @@ import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.ties import Level, groups_of, number_of_values, tied
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.many.fits import Fits
 from diagnosis.search.result import Judged
-from diagnosis.search.ties import Level, groups_of, number_of_values, tied
 
 CLEARLY = 20.0
 """Effects whose linear estimates exceed their price by more nats than this are not

@@ -13,6 +13,7 @@ from diagnosis.effects.library import all_effects
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.signatures import Signature, signatures
+from diagnosis.residuals.ties import groups_of
 from diagnosis.search.candidates import Candidates
 from diagnosis.search.fitting import ran_into_bound
 from diagnosis.search.many.fits import Fits
@@ -21,7 +22,6 @@ from diagnosis.search.many.known_changes import KnownChanges
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import Screen
 from diagnosis.search.spread import FEWEST
-from diagnosis.search.ties import groups_of
 
 FINISHED = 3
 """Number of models in a round that are fitted to the end, until one is not worse and

@@ -15,10 +15,10 @@ from scipy.optimize import lsq_linear
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.ties import groups_of
 from diagnosis.search.many.ebic import Ebic
 from diagnosis.search.result import Judged
 from diagnosis.search.screening import SAME, TINY, Guess, Screen, View
-from diagnosis.search.ties import groups_of
 from groundwalk.arrays import FloatArray
 
 MOST_AT_ONCE = 30

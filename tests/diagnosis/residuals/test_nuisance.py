@@ -18,10 +18,13 @@ GAIN = "servo_gain@elbow"
 class Linear:
     """Residuals that are linear in how far values are from the usual, in its units."""
 
-    def __init__(self, true, noise=1.0, reach=30.0, seed=0, alike=()):
+    def __init__(self, true, noise=1.0, reach=30.0, seed=0, alike=(), bend=0.0, off=0):
         """Where the errors `true`, by "effect@place", are missing in the model.
 
-        What one of `alike` changes is nearly the sum of what the others do.
+        What one of `alike` changes is nearly the sum of what the others do. What any
+        changes is turned into other directions by `bend` for each standard deviation
+        of the first, so that residuals are not linear. Simulations are wrong by `off`
+        (noises) times the distance from the model whose error is corrected.
         """
         random = np.random.default_rng(seed)
         self.nuisance = Nuisance.of(PLANT, (), ROWS)
@@ -34,6 +37,9 @@ class Linear:
         self.true = np.array([true.get(key, 0.0) for key in keys])
         self.noise = noise * random.standard_normal(ROWS)
         self.index = {key: keys.index(key) for key in keys}
+        self.turn = bend * random.standard_normal(ROWS) * self.changes.std()
+        self.error = off * random.standard_normal(ROWS)
+        self.corrected = 0.0
 
     def far(self, model):
         """(k,) how far a model's values are from neutral ones."""
@@ -59,9 +65,16 @@ class Linear:
         return far
 
     def ask(self, models):
-        return np.stack(
-            [self.noise + (self.true - self.far(m)) @ self.changes for m in models]
-        )
+        return np.stack([self._left(self.far(model)) for model in models])
+
+    def _left(self, far):
+        bent = np.sum(self.true**2) - np.sum(far**2)
+        wrong = np.linalg.norm(far) - self.corrected
+        straight = self.noise + (self.true - far) @ self.changes
+        return straight + bent * self.turn + wrong * self.error
+
+    def correct(self, model):
+        self.corrected = float(np.linalg.norm(self.far(model)))
 
     def at(self, sizes, found):
         """The small mismatch found, with other sizes of some."""
@@ -75,14 +88,14 @@ def test_errors_are_found():
     world = Linear(
         {GAIN: 1.5, "servo_gain@shoulder": -1.2, "coulomb_friction@elbow": 2.0}
     )
-    found = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
     np.testing.assert_allclose(found.sizes, world.true, atol=0.3)
 
 
 def test_they_are_what_is_likeliest():
     """As ridge regression within bounds, in which each is worth its own square."""
     world = Linear({GAIN: 1.5}, reach=1.0)
-    found = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
     changes = -found.changes
     left = world.ask([()])[0]
     rows = np.vstack([changes.T, np.eye(len(changes))])
@@ -98,9 +111,34 @@ def test_they_are_what_is_likeliest():
     assert energies[0] < energies[1] + 2 * ENOUGH_NATS
 
 
+def test_errors_are_found_where_what_they_change_is_not_linear():
+    """One more simulation of changes does not reach the noise here."""
+    world = Linear({GAIN: 1.5, "servo_gain@shoulder": -2.0}, reach=90.0, bend=0.5)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
+    (left,) = world.ask([found.beside(())])
+    assert np.mean(left**2) < 1.5
+    np.testing.assert_allclose(found.sizes, world.true, atol=0.5)
+
+
+def test_their_own_integration_error_is_no_error_of_theirs():
+    """It is three times the noise beside the right values; so they stayed at none."""
+    world = Linear({GAIN: 2.5}, off=1.2)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
+    assert found.sizes[world.index[GAIN]] == pytest.approx(2.5, abs=0.3)
+    world = Linear({GAIN: 2.5}, off=1.2)
+    stale = NuisanceFit(world.ask, lambda model: None, ()).fitted(world.nuisance)
+    assert not stale.sizes.any()
+
+
+def test_small_errors_do_not_stand_for_what_they_cannot_explain():
+    world = Linear({GAIN: 1.5}, noise=3.0)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
+    assert not found.sizes.any()
+
+
 def test_no_error_is_larger_than_usual_and_friction_is_never_negative():
     world = Linear({GAIN: 9.0, "coulomb_friction@elbow": -2.0}, reach=3.0)
-    found = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
     sizes = found.sizes
     assert sizes[world.index[GAIN]] == pytest.approx(USUAL)
     assert sizes[world.index["coulomb_friction@elbow"]] == pytest.approx(0.0, abs=1e-6)
@@ -115,7 +153,7 @@ def test_no_error_is_larger_than_usual_and_friction_is_never_negative():
 def test_what_a_model_has_is_no_small_error_too():
     world = Linear({GAIN: 9.0})
     true = (PlacedEffect("servo_gain", "elbow", (float(np.exp(9 * 0.03)),)),)
-    found = NuisanceFit(world.ask, true).fitted(world.nuisance)
+    found = NuisanceFit(world.ask, world.correct, true).fitted(world.nuisance)
     assert found.sizes[world.index[GAIN]] == 0.0
     assert GAIN not in {one.key for one in found.beside({GAIN})}
     (left,) = world.ask([(*found.beside({GAIN}), *true)])
@@ -124,11 +162,26 @@ def test_what_a_model_has_is_no_small_error_too():
     assert np.abs(found.changes[world.index[GAIN]]).max() > 0
 
 
+def test_a_slightly_wrong_value_of_a_model_hides_no_small_errors():
+    """Its gain is one standard deviation off, 30 noises in 300 entries."""
+    world = Linear({GAIN: 9.0, "servo_gain@shoulder": -2.0}, reach=60.0)
+    wrong = (PlacedEffect("servo_gain", "elbow", (float(np.exp(8 * 0.03)),)),)
+    found = NuisanceFit(world.ask, world.correct, wrong).fitted(world.nuisance)
+    k = world.index["servo_gain@shoulder"]
+    assert found.sizes[k] == pytest.approx(-2.0, abs=0.3)
+    assert np.abs(np.delete(found.sizes, k)).max() < 0.3
+    # something else is missing, which no value of the model explains
+    loud = Linear({GAIN: 9.0, "servo_gain@shoulder": -2.0}, reach=60.0, noise=3.0)
+    assert (
+        not NuisanceFit(loud.ask, loud.correct, wrong).fitted(loud.nuisance).sizes.any()
+    )
+
+
 def test_small_errors_move_when_the_model_does():
     world = Linear({GAIN: 9.0})
-    before = NuisanceFit(world.ask, ()).fitted(world.nuisance)
+    before = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
     true = (PlacedEffect("servo_gain", "elbow", (float(np.exp(9 * 0.03)),)),)
-    after = NuisanceFit(world.ask, true).moved(before)
+    after = NuisanceFit(world.ask, world.correct, true).moved(before)
     (left,) = world.ask([(*after.beside({GAIN}), *true)])
     assert np.mean(left**2) < 1.5
     (wrong,) = world.ask([(*before.beside({GAIN}), *true)])

@@ -12,8 +12,10 @@ from made_up_search import judged
 from made_up_traces import arm, recorded
 
 from diagnosis.conclude.estimates import smallest_detectable
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.usual_errors import is_usual
+from diagnosis.search.accept import accepted
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import SearchResult, ranked
 from diagnosis.search.search import Search
@@ -50,7 +52,8 @@ def searched(*effects, rules=LEAN):
 )
 def test_one_effect_is_found_with_its_value(truth):
     name, place, value = truth
-    _, found = searched(truth)
+    search, found = searched(truth)
+    found = accepted(search.judge, found)  # a search may take one too many
     assert found.chosen == 1
     (placed,) = found.winner.model
     assert placed.key == f"{name}@{place}"
@@ -80,6 +83,18 @@ def test_a_servo_that_is_much_too_weak():
     assert values.pop("torque_limit@shoulder") == pytest.approx(least_nm, rel=0.02)
     rest = [one for one in found.winner.model if one.key in values]
     assert all(is_usual(PLANT, one) for one in rest)
+
+
+def test_a_single_effect_is_fitted_to_the_end():
+    """A Jacobian that is only followed ends at a third of this spring's stiffness."""
+    spring = ("joint_spring", "shoulder", 15.0, 0.5)
+    traces = [
+        recorded(PLANT, spring, duration_s=2.0, seed=seed, noise_rad=NOISE_RAD)
+        for seed in range(2)
+    ]
+    guess = (PlacedEffect("joint_spring", "shoulder", (2.0, -0.3)),)
+    (best,) = search_of(*traces).judge.judged([guess])
+    assert best.model[0].values == pytest.approx((15.0, 0.5), rel=0.1)
 
 
 def test_two_effects_are_found_together():

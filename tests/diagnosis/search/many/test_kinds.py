@@ -6,6 +6,7 @@ from torque_arm import arm, moved, rubbing
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.signatures import signatures
+from diagnosis.residuals.ties import number_of_values, tied
 from diagnosis.residuals.torque_evidence import with_motions
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
@@ -13,7 +14,6 @@ from diagnosis.search.judging import Judge
 from diagnosis.search.many.kinds import kinds_to_add
 from diagnosis.search.many.shared_first import servo_effects
 from diagnosis.search.screening import Screen
-from diagnosis.search.ties import number_of_values, tied
 from diagnosis.traces.usage import Usage
 
 JOINTS = "yaw", "shoulder", "elbow"

@@ -7,8 +7,8 @@ from made_up_traces import arm, recorded
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.ties import tied
 from diagnosis.search.many.ebic import Ebic
-from diagnosis.search.ties import tied
 
 CRITERION = Ebic(samples=100.0, candidates=50, joints=4)
 VALUE, CHOICE = 0.5 * np.log(100.0), np.log(50.0)

@@ -7,7 +7,7 @@ from typing import Literal
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.replays import Model
 
 Level = Literal["all", "motor", "each"]
 """How widely joints share values: all of them, those with the same motor, or none."""

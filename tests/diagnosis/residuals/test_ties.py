@@ -5,8 +5,8 @@ import pytest
 from torque_arm import arm
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.search.coordinates import Coordinates
-from diagnosis.search.ties import (
+from diagnosis.residuals.coordinates import Coordinates
+from diagnosis.residuals.ties import (
     groups_of,
     motors,
     number_of_values,

@@ -8,8 +8,8 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.predictor import Model
-from diagnosis.search.ties import group_of
+from diagnosis.residuals.replays import Model
+from diagnosis.residuals.ties import group_of
 from groundwalk.arrays import FloatArray
 
 
