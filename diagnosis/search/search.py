@@ -63,13 +63,13 @@ class Search:
             believed = judge.believes(best[size][0], before)
             if believed:
                 best[size] = self._refined(best[size])
+                starts = self._starts_from(best[size][0])
             leader = best[size][0] if believed else None
-            if size == 1 and not anyway and self._most_joints_are_off(leader):
+            if size == 1 and not anyway and self._most_joints_are_off(leader, starts):
                 self.widespread, chosen = True, int(believed)
                 break
             if leader:
                 chosen, before = size, leader
-                starts = self._starts_from(leader)
             # two effects together may explain what neither explains alone, such as
             # backlash and the friction that damps it
             elif size > chosen + 1 or not self._much_is_left(before):
@@ -93,17 +93,18 @@ class Search:
         """Without tolerances: whitened with them a short error is no longer short."""
         return self._fit.without_tolerances()
 
-    def _most_joints_are_off(self, leader: Judged | None) -> bool:
+    def _most_joints_are_off(self, leader: Judged | None, starts: Candidates) -> bool:
         """Whether most joints are off beside a single effect that is believed, if any.
 
-        Unless one more effect, such as a delay, promises to explain most of that.
+        Unless one more effect, such as a delay, promises to explain most of that;
+        `starts` are candidates beside the single one.
         """
         if not is_widespread(self._fit, leader.model if leader else ()):
             return False
         if leader is None or self._rules.largest == 1:
             return True
         left = leader.fit.energy - self.judge.floor_fit
-        return self._starts_from(leader).promised(leader) < ONE_MORE * left
+        return starts.promised(leader) < ONE_MORE * left
 
     def _with_promising(self, size: int, starts: list[Model]) -> list[Model]:
         """The models to start from, if any, and the promising ones of their size."""
