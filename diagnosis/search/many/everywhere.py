@@ -7,6 +7,8 @@ then the values that joints share come first. What chance may explain is taken o
 again. The extended Bayesian information criterion decides (`ebic.py`).
 """
 
+import numpy as np
+
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.ties import without_each
 from diagnosis.search.fitting import fit_all
@@ -60,8 +62,12 @@ def everywhere(judge: Judge, result: SearchResult) -> SearchResult:
 def _beside_small_mismatch(judge: Judge, result: SearchResult) -> float:
     """Energy that few effects leave where the model has small mismatch as well [nats].
 
-    That mismatch is everywhere, too, and not worth a name.
+    That mismatch is everywhere, too, and not worth a name. Infinite where it is too
+    small to explain what is left.
     """
+    nuisance = judge.fit.nuisance
+    if nuisance is None or not nuisance.sizes.any():
+        return np.inf
     if result.winner is None:
         return judge.nothing + judge.nothing_fit
     return judge.again([result.winner])[0].energy

@@ -1,5 +1,7 @@
 """The search for effects at all joints, and its parts."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from known_arms import CHANNELS, SINGLE, measured
@@ -14,7 +16,7 @@ from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.search.few_or_many import more_is_missing
 from diagnosis.search.fitting import fit_all, ran_into_bound
 from diagnosis.search.judging import Judge
-from diagnosis.search.many.everywhere import everywhere
+from diagnosis.search.many.everywhere import _beside_small_mismatch, everywhere
 from diagnosis.search.many.pruning import gains_of_each
 from diagnosis.search.result import SearchResult
 from diagnosis.search.search import Search
@@ -138,3 +140,17 @@ def test_nothing_is_found_where_nothing_is_missing():
     judge, found = searched(duration_s=2.5)
     assert everywhere(judge, found) is found
     assert not np.any(found.chosen)
+
+
+def test_few_count_beside_small_mismatch_only_where_it_explains_what_is_left():
+    """Elsewhere whitening takes out what no small mismatch could explain."""
+    few = SimpleNamespace(winner=SimpleNamespace(energy=7.0))
+    sizes = np.zeros(2), np.array([0.0, 1.5])
+    left = []
+    for one in sizes:
+        judge = SimpleNamespace(
+            fit=SimpleNamespace(nuisance=SimpleNamespace(sizes=one)),
+            again=lambda judged: judged,
+        )
+        left.append(_beside_small_mismatch(judge, few))
+    assert left == [np.inf, 7.0]
