@@ -99,9 +99,10 @@ class Search:
         Unless one more effect, such as a delay, promises to explain most of that;
         `starts` are candidates beside the single one.
         """
-        if not is_widespread(self._fit, leader.model if leader else ()):
+        model, few = leader.model if leader else (), self._rules.largest
+        if not is_widespread(self._fit, model, few):
             return False
-        if leader is None or self._rules.largest == 1:
+        if leader is None or few == 1:
             return True
         left = leader.fit.energy - self.judge.floor_fit
         return starts.promised(leader) < ONE_MORE * left

@@ -27,12 +27,12 @@ def joints_off(fit: Predictor, model: Model) -> list[str]:
     ]
 
 
-def is_widespread(fit: Predictor, model: Model) -> bool:
-    """Whether most joints are off, so that no few effects explain what is missing.
+def is_widespread(fit: Predictor, model: Model, few: int) -> bool:
+    """Whether most joints are off, and more than a `few` effects could explain.
 
     Never on a floating base, whose contacts carry an error at one joint to all others.
     """
     if fit.plant.base == "floating":
         return False
-    least = max(len(fit.plant.joints) / 2, FEWEST)
+    least = max(len(fit.plant.joints) / 2, few + 1)
     return len(joints_off(fit, model)) >= least

@@ -39,7 +39,8 @@ def model_of(*effects):
 def test_joints_are_off_until_a_model_explains_them(missing, known, off):
     predictor, model = predictor_of(*missing), model_of(*known)
     assert joints_off(predictor, model) == off
-    assert is_widespread(predictor, model) is (len(off) == 2)
+    assert is_widespread(predictor, model, few=1) is (len(off) == 2)
+    assert not is_widespread(predictor, model, few=2)  # two effects may explain both
 
 
 def test_what_models_usually_get_wrong_does_not_count():
