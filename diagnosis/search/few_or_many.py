@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.accept import accepted
 from diagnosis.search.many.everywhere import everywhere
@@ -41,13 +40,12 @@ def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
 def more_is_missing(fit: Predictor, result: SearchResult) -> bool:
     """Whether few effects leave so much that effects at many joints are tried.
 
-    That is more than twice the noise: less is taken for noise, since no model is exact.
     Never on a floating base, where that would take an hour.
     """
     if fit.plant.base == "floating":
         return False
     if not fit.by_torque:
-        return result.leaves_much(ALL_CLOSED, MORE_THAN_NOISE**2 - 1)
+        return result.leaves_much(ALL_CLOSED)
     model = result.winner.model if result.winner else ()
     (left,) = fit.without_tolerances().residuals([model])
     wide = (fit.channels.noise / fit.channels.floor)[fit.channel]

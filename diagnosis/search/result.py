@@ -102,17 +102,14 @@ class SearchResult:
         shares = (gained, excess), (gained + more[1], excess + more[0])
         return min(max((a / b for a, b in shares if b > 0), default=0.0), 1.0)
 
-    def leaves_much(self, least_closed: float, most_left: float = MOST_LEFT) -> bool:
-        """Whether more than noise is left, and less than a share is removed.
-
-        More than noise is its energy and that share of it, `most_left`.
-        """
+    def leaves_much(self, least_closed: float) -> bool:
+        """Whether more than noise is left, and less than a share is removed."""
         selected, fitted, closed = self.nothing, self.nothing_fit, 0.0
         if self.winner:
             selected, fitted = self.winner.selected, self.winner.fit.energy
             closed = self.closed(self.winner)
-        much = selected > (1 + most_left) * self.floor
-        much |= fitted > (1 + most_left) * self.floor_fit
+        much = selected > (1 + MOST_LEFT) * self.floor
+        much |= fitted > (1 + MOST_LEFT) * self.floor_fit
         return bool(much and closed < least_closed)
 
 

@@ -63,13 +63,11 @@ def _beside_small_mismatch(judge: Judge, result: SearchResult) -> float:
     """Energy that few effects leave where the model has small mismatch as well [nats].
 
     That mismatch is everywhere, too, and not worth a name. Infinite where it is too
-    small to explain what is left.
+    small to explain what is left, and beside no effect, for which it may stand.
     """
     nuisance = judge.fit.nuisance
-    if nuisance is None or not nuisance.sizes.any():
+    if result.winner is None or nuisance is None or not nuisance.sizes.any():
         return np.inf
-    if result.winner is None:
-        return judge.nothing + judge.nothing_fit
     return judge.again([result.winner])[0].energy
 
 
