@@ -30,7 +30,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.data_sets import expected_seconds
 from diagnosis.residuals.mismatch_map import mismatch_map, unexplained
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.usual_errors import acting
+from diagnosis.residuals.small_mismatch.usual_errors import acting
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.reference import (
     reference_limit,

@@ -10,8 +10,8 @@ from diagnosis.effects.library import effect, grown_from
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.ties import groups_of
-from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.fitting import FittedModel
 from diagnosis.search.many.pruning import gains_of_each
 from diagnosis.search.result import SearchResult

@@ -8,8 +8,8 @@ from diagnosis.effects.library import effect
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
+from diagnosis.residuals.small_mismatch.usual_errors import USUAL
 from diagnosis.residuals.ties import groups_of
-from diagnosis.residuals.usual_errors import USUAL
 from diagnosis.search.fitting import FittedModel
 from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray

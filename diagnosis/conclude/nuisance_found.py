@@ -8,9 +8,9 @@ from diagnosis.conclude.answer import probability
 from diagnosis.conclude.estimates import Z_80, standard_errors
 from diagnosis.effects.library import effect
 from diagnosis.residuals.data_sets import DataSets
-from diagnosis.residuals.nuisance import Nuisance
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.usual_errors import USUAL, value_at
+from diagnosis.residuals.small_mismatch.nuisance import Nuisance
+from diagnosis.residuals.small_mismatch.usual_errors import USUAL, value_at
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import gain_of_noise
 from diagnosis.verdict import Estimate, Found

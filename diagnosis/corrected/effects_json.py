@@ -10,7 +10,7 @@ from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.residuals.predictor import Model
-from diagnosis.residuals.usual_errors import is_usual
+from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.verdict import Verdict
 from groundwalk.errors import BadModelError, BadValueError, UnknownNameError
 from groundwalk.json_data import from_plain, parse_object, to_plain

@@ -10,9 +10,9 @@ import numpy as np
 
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.doubts import Doubts
-from diagnosis.residuals.nuisance import Nuisance
-from diagnosis.residuals.nuisance_fit import NuisanceFit
 from diagnosis.residuals.replays import Model
+from diagnosis.residuals.small_mismatch.nuisance import Nuisance
+from diagnosis.residuals.small_mismatch.nuisance_fit import NuisanceFit
 from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import BoolArray, FloatArray

@@ -22,8 +22,8 @@ CLOSE = 3.0
 on it."""
 
 GIVE_S = 0.005
-"""Time constant [s] with which a stop pushes a joint back, as that of the effect: under
-a torque it gives way by its square times the acceleration that the torque would make.
+"""Time constant [s] with which a stop pushes a joint back, as that of the effect. A
+stop gives way by its square times the acceleration that a torque would make.
 """
 
 LEAST_RAD = 1e-5

@@ -13,8 +13,8 @@ from diagnosis.residuals.doubted import no_nuisance
 from diagnosis.residuals.left_out import left_out
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.torque_predictor import predictor_of
-from diagnosis.residuals.usual_errors import is_usual
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.hooks import Hooks

@@ -96,8 +96,8 @@ class Search:
     def _most_joints_are_off(self, leader: Judged | None, starts: Candidates) -> bool:
         """Whether most joints are off beside a single effect that is believed, if any.
 
-        Unless one more effect, such as a delay, promises to explain most of that;
-        `starts` are candidates beside the single one.
+        They do not count as off if one more effect, such as a delay, promises to
+        explain half of what is left; `starts` are candidates beside the single one.
         """
         model, few = leader.model if leader else (), self._rules.largest
         if not is_widespread(self._fit, model, few):

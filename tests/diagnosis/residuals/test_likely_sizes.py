@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from diagnosis.residuals.likely_sizes import gain_of, likeliest
+from diagnosis.residuals.small_mismatch.likely_sizes import gain_of, likeliest
 
 ALL = np.ones(2, bool)
 

@@ -6,9 +6,9 @@ from made_up_traces import arm
 from scipy.optimize import lsq_linear
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.nuisance import Nuisance
-from diagnosis.residuals.nuisance_fit import ENOUGH_NATS, NuisanceFit
-from diagnosis.residuals.usual_errors import USUAL
+from diagnosis.residuals.small_mismatch.nuisance import Nuisance
+from diagnosis.residuals.small_mismatch.nuisance_fit import ENOUGH_NATS, NuisanceFit
+from diagnosis.residuals.small_mismatch.usual_errors import USUAL
 
 PLANT = arm()
 ROWS = 300
@@ -112,8 +112,8 @@ def test_they_are_what_is_likeliest():
 
 
 def test_errors_are_found_where_what_they_change_is_not_linear():
-    """One more simulation of changes does not reach the noise here."""
-    world = Linear({GAIN: 1.5, "servo_gain@shoulder": -2.0}, reach=90.0, bend=0.5)
+    """What they change at none does not lead to the noise; simulated again it does."""
+    world = Linear({GAIN: 1.5, "servo_gain@shoulder": -2.0}, reach=90.0, bend=1.0)
     found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
     (left,) = world.ask([found.beside(())])
     assert np.mean(left**2) < 1.5
@@ -163,7 +163,7 @@ def test_what_a_model_has_is_no_small_error_too():
 
 
 def test_a_slightly_wrong_value_of_a_model_hides_no_small_errors():
-    """Its gain is one standard deviation off, 30 noises in 300 entries."""
+    """Its gain is one standard deviation off, which changes 60 noises in all."""
     world = Linear({GAIN: 9.0, "servo_gain@shoulder": -2.0}, reach=60.0)
     wrong = (PlacedEffect("servo_gain", "elbow", (float(np.exp(8 * 0.03)),)),)
     found = NuisanceFit(world.ask, world.correct, wrong).fitted(world.nuisance)

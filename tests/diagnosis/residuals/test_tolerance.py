@@ -8,8 +8,8 @@ from scipy.stats import multivariate_normal
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
+from diagnosis.residuals.small_mismatch.usual_errors import usual_errors
 from diagnosis.residuals.tolerance import Tolerance
-from diagnosis.residuals.usual_errors import usual_errors
 
 
 def test_the_energy_is_the_likelihood_of_noise_and_tolerances_together():

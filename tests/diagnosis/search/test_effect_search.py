@@ -14,7 +14,7 @@ from made_up_traces import arm, recorded
 from diagnosis.conclude.estimates import smallest_detectable
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.usual_errors import is_usual
+from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.search.accept import accepted
 from diagnosis.search.judging import Judge
 from diagnosis.search.result import SearchResult, ranked

@@ -14,7 +14,7 @@ from diagnosis.pipeline import diagnose
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.residuals.usual_errors import is_usual
+from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.search import reference as search_reference
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge

@@ -154,3 +154,5 @@ def test_few_count_beside_small_mismatch_only_where_it_explains_what_is_left():
         )
         left.append(_beside_small_mismatch(judge, few))
     assert left == [np.inf, 7.0]
+    # beside no effect small mismatch may stand for the one that is missing
+    assert _beside_small_mismatch(judge, SimpleNamespace(winner=None)) == np.inf

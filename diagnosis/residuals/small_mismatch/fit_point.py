@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.residuals.nuisance import Nuisance
+from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from groundwalk.arrays import FloatArray
 
 NEAR = 1.0
@@ -12,8 +12,8 @@ NEAR = 1.0
 still count: no error is out of proportion over so little."""
 
 NEAR_X = 0.1
-"""The same for values of a model, in scaled coordinates, in which they are of order
-one."""
+"""Distance of a model's values from where changes were simulated, in scaled
+coordinates, in which they are of order one, up to which these changes still count."""
 
 
 @dataclass(frozen=True, eq=False)

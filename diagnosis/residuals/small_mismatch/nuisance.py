@@ -4,7 +4,7 @@ Masses are known to some percent, gains and damping to some more, and every gear
 little. Many such errors together change a replay far more than its noise, and not in
 proportion to each. So their likeliest values are fitted (`nuisance_fit.py`), and what
 is looked for is tried beside them; to first order around these values all others that
-are usual stay possible (`tolerance.py`). That is Laplace's approximation of the
+are usual stay possible (`../tolerance.py`). That is Laplace's approximation of the
 likelihood with the small mismatch marginalised.
 """
 
@@ -16,10 +16,9 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.likely_sizes import gain_of
 from diagnosis.residuals.replays import Model
-from diagnosis.residuals.tolerance import Tolerance
-from diagnosis.residuals.usual_errors import (
+from diagnosis.residuals.small_mismatch.likely_sizes import gain_of
+from diagnosis.residuals.small_mismatch.usual_errors import (
     USUAL,
     component_of,
     far_of,
@@ -27,6 +26,7 @@ from diagnosis.residuals.usual_errors import (
     usual_errors,
     value_at,
 )
+from diagnosis.residuals.tolerance import Tolerance
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import BoolArray, FloatArray
 

@@ -7,18 +7,18 @@ import numpy as np
 
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.coordinates import Coordinates
-from diagnosis.residuals.fit_point import FitPoint
-from diagnosis.residuals.likely_sizes import likeliest
-from diagnosis.residuals.nuisance import Nuisance
 from diagnosis.residuals.replays import Model
+from diagnosis.residuals.small_mismatch.fit_point import FitPoint
+from diagnosis.residuals.small_mismatch.likely_sizes import likeliest
+from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from groundwalk.arrays import FloatArray
 
 NUDGE = 0.5
 """Step of finite differences, in standard deviations."""
 
 NUDGE_X = 0.02
-"""The same for values of a model, in scaled coordinates, in which they are of order
-one."""
+"""Step of finite differences of a model's values, in scaled coordinates, in which they
+are of order one."""
 
 FLAT = 100.0
 """Standard deviation of values of a model before anything is measured, in scaled
@@ -31,9 +31,8 @@ MOST_SEEN = 6
 """Most times that changes are simulated in a fit; two to four suffice mostly."""
 
 CLOSER = 0.5
-"""Share of the mean square that must be left after changes were simulated once more, as
-long as more than twice the noise is left: what falls slower does not end at the noise
-in a few rounds."""
+"""Largest share of the mean square that a round may leave, as long as more than twice
+the noise is left: what falls slower does not end at the noise in a few rounds."""
 
 SHARES = (1.0, 0.5, 0.25)
 """Shares of a linear step that are tried, of which the best is taken."""
