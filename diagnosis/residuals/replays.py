@@ -150,10 +150,13 @@ class Replays:
             [column for column in same if column is not None]
             for same in itertools.zip_longest(*limbs)
         ]
-        plain, *moved = (
-            self._stacked(runs, variants, step_s)
-            for runs in (self.runs, *nudged(self.runs, groups))
-        )
+        every = [self.runs, *nudged(self.runs, groups)]
+        most = max(1, MOST_ROWS // len(self.runs))
+        parts = [
+            self._stacked(list(itertools.chain(*every[i : i + most])), variants, step_s)
+            for i in range(0, len(every), most)
+        ]
+        plain, *moved = np.split(np.concatenate(parts), len(every))
         spreads = np.repeat(np.divide(SPREADS, STEPS), len(groups))
         own = [limb.channels(self._channels)[1] for limb in self._limbs]
         return np.stack(

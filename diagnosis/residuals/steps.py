@@ -27,6 +27,10 @@ MOST_WRONG = 0.25
 """Largest rms, in units of noise, of the integration error that a simulation may have
 after correction; a larger error would be mistaken for missing physics."""
 
+FINEST_S = 1.25e-4
+"""Shortest step [s] with which the integration error is measured, where longer ones are
+not enough: servos that follow a thousand commands a second, and saturate, need it."""
+
 DISTORTED = 0.1
 """Largest error, relative to it, of what effects change in simulations whose steps are
 long. Fits are repeated with the integration error of the model that they found, so that
@@ -55,8 +59,8 @@ def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
     The steps of its simulations stay as they are. Small mismatch of the nominal model
     is not fitted.
     """
-    for step_s in STEPS_S[whole.plant.base]:
-        finest_s = step_s / 4
+    steps_s = STEPS_S[whole.plant.base]
+    for finest_s in (*(step_s / 4 for step_s in steps_s), FINEST_S):
         if finest_s < whole.finest_s:
             whole = whole.stepped(whole.step_s, finest_s)
         if finest_s == whole.finest_s and whole.correct(model).max() < MOST_WRONG:

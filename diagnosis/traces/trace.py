@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from scipy.ndimage import find_objects, label
@@ -15,6 +15,10 @@ from groundwalk.errors import BadRecordingError
 DriveBy = Literal["servos", "torques"]
 """What drives the joints in a replay of a recording: simulated servos that follow the
 recorded commands, or the measured torques."""
+
+BEFORE_ROWS = 60
+"""Most rows that a part of a recording keeps of what was before it. A state is known
+from a few neighbours on both sides, a delay is a few rows: more rows change nothing."""
 
 JOINT_FIELDS = {
     "position": "position_rad",
@@ -49,6 +53,8 @@ class Trace:
     Attributes:
       name: name of the recording, with the time span if it is a part.
       part_of: name of the recording of which this is a part; "" for a whole one.
+      before: of a part, rows of the recording just before it, which are not compared:
+        they tell the state in which the part begins, and what was commanded before.
       servo: the servos of this recording; gains may differ between recordings.
       position_rad, velocity_rad_s, torque_nm: (T, j) measured at the joints.
       command_rad, command_torque_nm: (T, j) position and torque targets.
@@ -84,6 +90,7 @@ class Trace:
     base_angular_velocity_rad_s: FloatArray | None = None
     motion: Motion | None = None
     part_of: str = ""
+    before: "Trace | None" = None
 
     @property
     def recording(self) -> str:
@@ -124,20 +131,41 @@ class Trace:
             if (values := getattr(self, name)) is not None
         }
         motion = self.motion and self.motion.of(chosen)
-        return replace(self, servo=self.servo.of(chosen), motion=motion, **changes)
+        before = self.before and self.before.of(chosen)
+        servo = self.servo.of(chosen)
+        return replace(self, servo=servo, motion=motion, before=before, **changes)
 
     def part(self, start: int, stop: int) -> "Trace":
         """Rows `start` to `stop - 1`, with their time span added to the name."""
-        rows = slice(start, stop)
-        changes = {
-            field.name: getattr(self, field.name)[rows]
-            for field in fields(self)
-            if isinstance(getattr(self, field.name), np.ndarray)
-        }
         name = f"{self.name}[{self.time_s[start]:.3g}-{self.time_s[stop - 1]:.3g} s]"
+        first = max(start - BEFORE_ROWS, 0)
+        before = self._rows(first, start) if start else self.before
+        own = self._rows(start, stop)
+        return replace(own, name=name, part_of=self.recording, before=before)
+
+    def led(self) -> "Trace":
+        """The trace with the rows `before` it in front, as if it had begun earlier."""
+        if self.before is None:
+            return self
+        earlier = self.before._columns()
+        changes: dict[str, Any] = {
+            name: np.concatenate([earlier[name], values])
+            for name, values in self._columns().items()
+        }
+        return replace(self, before=None, motion=None, **changes)
+
+    def _rows(self, start: int, stop: int) -> "Trace":
+        """Rows `start` to `stop - 1`, and nothing before them."""
+        rows: dict[str, Any] = {
+            name: each[start:stop] for name, each in self._columns().items()
+        }
         motion = self.motion and self.motion.part(start, stop)
-        own = {**changes, "motion": motion}
-        return replace(self, name=name, part_of=self.recording, **own)
+        return replace(self, motion=motion, before=None, **rows)
+
+    def _columns(self) -> dict[str, FloatArray]:
+        """The arrays with a row for each time, by the names of their fields."""
+        every = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {n: each for n, each in every.items() if isinstance(each, np.ndarray)}
 
 
 def driven_by_torques(trace: Trace) -> Trace:

@@ -10,7 +10,8 @@ from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
 HEAD_ROWS = 60
-"""Number of rows at a recording's start that are smoothed to get its start state."""
+"""Number of rows at a trace's start that are smoothed, with those before it if it is a
+part, to get its start state."""
 
 UNHELD_WINDOW_S = 0.5
 """Duration [s] after which a replay starts again from the measured state, for joints
@@ -39,8 +40,9 @@ class Run:
       base: (13,) state of a floating base at the start: position (3) [m], orientation
         (4, quaternion w, x, y, z), linear velocity (3, world frame) [m/s], angular
         velocity (3, body frame) [rad/s]. None for a fixed base.
-      whole: the trace of which `trace` is a window; None if `trace` is a whole one.
-        Commands from before the window may still act in it if they take effect late.
+      whole: the trace of which `trace` is a window, with what was recorded before; None
+        if `trace` is all. Commands from before a window may still act in it if they
+        take effect late.
     """
 
     trace: Trace
@@ -51,10 +53,16 @@ class Run:
 
     @classmethod
     def of(cls, trace: Trace) -> "Run":
-        """A whole trace, to be replayed from the smoothed state at its start."""
-        head = slice(0, min(trace.ticks, HEAD_ROWS))
-        smoothed = smooth_columns(trace.time_s[head], trace.position_rad[head])
-        return cls(trace, smoothed.value[0], smoothed.rate[0])
+        """A trace, to be replayed from the smoothed state at its start.
+
+        In the midst of a motion it is known far better from both sides.
+        """
+        led = trace.led()
+        first = led.ticks - trace.ticks
+        head = slice(0, first + HEAD_ROWS)
+        smoothed = smooth_columns(led.time_s[head], led.position_rad[head])
+        whole = led if first else None
+        return cls(trace, smoothed.value[first], smoothed.rate[first], whole=whole)
 
 
 def window_s(plant: Plant, trace: Trace) -> float | None:
@@ -79,7 +87,10 @@ def runs_of(plant: Plant, trace: Trace, least_s: float = 0.0) -> list[Run]:
         return [Run.of(trace)]
     if plant.base == "fixed":
         longest_s = max(longest_s, least_s)
-    position, velocity, _ = smooth_columns(trace.time_s, trace.position_rad)
+    led = trace.led()
+    more = led.ticks - trace.ticks
+    smoothed = smooth_columns(led.time_s, led.position_rad)
+    position, velocity = smoothed.value[more:], smoothed.rate[more:]
     base = _bases(trace) if plant.base == "floating" else None
     since_s = trace.time_s - trace.time_s[0]
     if plant.base == "floating":
@@ -93,7 +104,7 @@ def runs_of(plant: Plant, trace: Trace, least_s: float = 0.0) -> list[Run]:
             position[first],
             velocity[first],
             None if base is None else base[first],
-            trace,
+            led,
         )
         for first, last in zip(starts, ends, strict=True)
     ]

@@ -68,3 +68,28 @@ def test_only_recordings_that_need_it_take_short_steps():
     fast = replace(slow, command_rad=0.5 * np.sign(slow.command_rad))
     whole = steps.with_best_steps(Predictor(plant, [slow, fast], CHANNELS))
     assert whole.steps_s[0] > whole.steps_s[1]
+
+
+class Measured:
+    """Something whose integration error is known by its shortest step [s]."""
+
+    def __init__(self, errors, step_s=LONG_S, finest_s=LONG_S / 4):
+        self.plant, self.errors = arm(), errors
+        self.step_s, self.finest_s = step_s, finest_s
+
+    def stepped(self, step_s, finest_s):
+        return Measured(self.errors, step_s, finest_s)
+
+    def correct(self, model):
+        return np.array([self.errors[self.finest_s]])
+
+    def doubt(self, model, tolerances):
+        pass
+
+
+@pytest.mark.parametrize("enough_s", [LONG_S / 4, FINEST_S, steps.FINEST_S])
+def test_the_integration_error_is_measured_with_steps_as_short_as_it_needs(enough_s):
+    tried = LONG_S / 4, LONG_S / 8, FINEST_S, steps.FINEST_S
+    errors = {one: 0.1 if one <= enough_s else 3.0 for one in tried}
+    exact = steps.exact_steps(Measured(errors))
+    assert (exact.step_s, exact.finest_s) == (LONG_S, enough_s)

@@ -1,0 +1,89 @@
+"""Parts of recordings know what was before them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.plant.servo import Servo
+from diagnosis.traces.trace import BEFORE_ROWS, Trace
+from diagnosis.traces.windows import Run
+
+HZ = 250
+NOISE_RAD = 4e-5
+BRAKE_S = 1.0
+"""Joints that moved at a steady speed begin to brake at this time."""
+SPEED_RAD_S, BRAKING_RAD_S2 = np.array([3.0, -2.0]), np.array([-60.0, 50.0])
+
+
+def braking(seed=0):
+    """Two joints that brake suddenly, and their true speeds (T, 2)."""
+    time_s = np.arange(2 * HZ) / HZ
+    since = np.clip(time_s - BRAKE_S, 0.0, np.abs(SPEED_RAD_S / BRAKING_RAD_S2).min())
+    position = np.outer(time_s, SPEED_RAD_S) + np.outer(since**2 / 2, BRAKING_RAD_S2)
+    late = np.maximum(time_s - BRAKE_S - since, 0.0)
+    position += np.outer(late * since, BRAKING_RAD_S2)
+    speed = SPEED_RAD_S + np.outer(since, BRAKING_RAD_S2)
+    noise = NOISE_RAD * np.random.default_rng(seed).standard_normal(position.shape)
+    command = position + 0.01 * np.arange(len(time_s))[:, None]
+    servo = Servo.ideal(2)
+    return Trace("t", time_s, position + noise, servo, command_rad=command), speed
+
+
+FIRST = int((BRAKE_S - 0.008) * HZ)
+"""A row just before they brake."""
+
+
+def test_the_speed_in_the_midst_of_a_motion_is_known_from_both_sides():
+    near, far = [], []
+    for seed in range(10):
+        trace, speed = braking(seed)
+        part = trace.part(FIRST, FIRST + HZ // 2)
+        for found, one in ((near, part), (far, replace(part, before=None))):
+            found.append(Run.of(one).velocity_rad_s - speed[FIRST])
+    near, far = (np.sqrt(np.mean(np.square(one))) for one in (near, far))
+    assert near < 0.03
+    assert far > 2 * near
+
+
+def test_rows_before_a_part_lead_to_it():
+    trace, _ = braking()
+    part = trace.part(FIRST, FIRST + 20)
+    assert part.ticks == 20
+    assert part.before is not None
+    assert part.before.ticks == BEFORE_ROWS
+    led = part.led()
+    own = slice(FIRST - BEFORE_ROWS, FIRST + 20)
+    np.testing.assert_array_equal(led.time_s, trace.time_s[own])
+    np.testing.assert_array_equal(led.command_rad, trace.command_rad[own])
+    assert led.before is None
+
+
+def test_a_part_at_the_start_has_only_what_was_before_the_whole():
+    trace, _ = braking()
+    assert trace.part(0, 20).before is None
+    assert trace.part(0, 20).led().ticks == 20
+    again = trace.part(FIRST, FIRST + 50).part(0, 20)
+    assert again.before is not None
+    assert again.before.time_s[-1] == trace.time_s[FIRST - 1]
+    near = trace.part(3, 20)
+    assert near.before is not None
+    assert near.before.ticks == 3
+
+
+def test_some_joints_of_a_part():
+    trace, _ = braking()
+    one = trace.part(FIRST, FIRST + 20).of([1])
+    assert one.before is not None
+    assert one.before.position_rad.shape == (BEFORE_ROWS, 1)
+    assert one.led().position_rad.shape == (BEFORE_ROWS + 20, 1)
+
+
+def test_late_commands_of_a_part_are_those_from_before_it():
+    trace, _ = braking()
+    run = Run.of(trace.part(FIRST, FIRST + 20))
+    assert run.whole is not None
+    earlier = np.searchsorted(run.whole.time_s, run.trace.time_s[0]) - 3
+    np.testing.assert_array_equal(
+        run.whole.command_rad[earlier], trace.command_rad[FIRST - 3]
+    )
+    assert Run.of(trace).whole is None
