@@ -28,8 +28,9 @@ MOST_WRONG = 0.25
 after correction; a larger error would be mistaken for missing physics."""
 
 FINEST_S = 1.25e-4
-"""Shortest step [s] with which the integration error is measured, where longer ones are
-not enough: servos that follow a thousand commands a second, and saturate, need it."""
+"""Shortest step [s] with which the integration error is measured on a fixed base, where
+longer ones are not enough: servos that follow a thousand commands a second, and
+saturate, need it. Contacts of a floating base need far more than shorter steps."""
 
 DISTORTED = 0.1
 """Largest error, relative to it, of what effects change in simulations whose steps are
@@ -59,8 +60,10 @@ def exact_steps(whole: Predictor, model: Model = ()) -> Predictor:
     The steps of its simulations stay as they are. Small mismatch of the nominal model
     is not fitted.
     """
-    steps_s = STEPS_S[whole.plant.base]
-    for finest_s in (*(step_s / 4 for step_s in steps_s), FINEST_S):
+    shortest_s = [step_s / 4 for step_s in STEPS_S[whole.plant.base]]
+    if whole.plant.base == "fixed":
+        shortest_s.append(FINEST_S)
+    for finest_s in shortest_s:
         if finest_s < whole.finest_s:
             whole = whole.stepped(whole.step_s, finest_s)
         if finest_s == whole.finest_s and whole.correct(model).max() < MOST_WRONG:

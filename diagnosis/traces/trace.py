@@ -18,7 +18,8 @@ recorded commands, or the measured torques."""
 
 BEFORE_ROWS = 60
 """Most rows that a part of a recording keeps of what was before it. A state is known
-from a few neighbours on both sides, a delay is a few rows: more rows change nothing."""
+from neighbours on both sides, and most delays are shorter (60 ms at 1,000 rows a
+second); if one is longer, the first of these rows' commands counts until then."""
 
 JOINT_FIELDS = {
     "position": "position_rad",

@@ -1,6 +1,7 @@
 """Long steps show a little less than short ones, and fits in them end at the same."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -73,12 +74,12 @@ def test_only_recordings_that_need_it_take_short_steps():
 class Measured:
     """Something whose integration error is known by its shortest step [s]."""
 
-    def __init__(self, errors, step_s=LONG_S, finest_s=LONG_S / 4):
-        self.plant, self.errors = arm(), errors
+    def __init__(self, errors, base="fixed", step_s=LONG_S, finest_s=LONG_S / 4):
+        self.plant, self.errors = SimpleNamespace(base=base), errors
         self.step_s, self.finest_s = step_s, finest_s
 
     def stepped(self, step_s, finest_s):
-        return Measured(self.errors, step_s, finest_s)
+        return Measured(self.errors, self.plant.base, step_s, finest_s)
 
     def correct(self, model):
         return np.array([self.errors[self.finest_s]])
@@ -93,3 +94,9 @@ def test_the_integration_error_is_measured_with_steps_as_short_as_it_needs(enoug
     errors = {one: 0.1 if one <= enough_s else 3.0 for one in tried}
     exact = steps.exact_steps(Measured(errors))
     assert (exact.step_s, exact.finest_s) == (LONG_S, enough_s)
+
+
+def test_steps_of_a_floating_base_are_not_shortened_for_what_contacts_do():
+    (step_s,) = STEPS_S["floating"]
+    exact = steps.exact_steps(Measured({step_s / 4: 3.0}, "floating", step_s))
+    assert (exact.step_s, exact.finest_s) == (step_s, step_s / 4)

@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from diagnosis.plant.servo import Servo
+from diagnosis.traces import trace
 from diagnosis.traces.trace import BEFORE_ROWS, Trace
 from diagnosis.traces.windows import Run
 
@@ -36,8 +38,8 @@ FIRST = int((BRAKE_S - 0.008) * HZ)
 def test_the_speed_in_the_midst_of_a_motion_is_known_from_both_sides():
     near, far = [], []
     for seed in range(10):
-        trace, speed = braking(seed)
-        part = trace.part(FIRST, FIRST + HZ // 2)
+        whole, speed = braking(seed)
+        part = whole.part(FIRST, FIRST + HZ // 2)
         for found, one in ((near, part), (far, replace(part, before=None))):
             found.append(Run.of(one).velocity_rad_s - speed[FIRST])
     near, far = (np.sqrt(np.mean(np.square(one))) for one in (near, far))
@@ -45,45 +47,54 @@ def test_the_speed_in_the_midst_of_a_motion_is_known_from_both_sides():
     assert far > 2 * near
 
 
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_how_many_rows_are_kept_before_a_part_does_not_matter(monkeypatch, factor):
+    whole, _ = braking()
+    usual = Run.of(whole.part(FIRST, FIRST + HZ // 2)).velocity_rad_s
+    monkeypatch.setattr(trace, "BEFORE_ROWS", int(factor * BEFORE_ROWS))
+    other = Run.of(whole.part(FIRST, FIRST + HZ // 2)).velocity_rad_s
+    np.testing.assert_allclose(other, usual, atol=0.01)
+
+
 def test_rows_before_a_part_lead_to_it():
-    trace, _ = braking()
-    part = trace.part(FIRST, FIRST + 20)
+    whole, _ = braking()
+    part = whole.part(FIRST, FIRST + 20)
     assert part.ticks == 20
     assert part.before is not None
     assert part.before.ticks == BEFORE_ROWS
     led = part.led()
     own = slice(FIRST - BEFORE_ROWS, FIRST + 20)
-    np.testing.assert_array_equal(led.time_s, trace.time_s[own])
-    np.testing.assert_array_equal(led.command_rad, trace.command_rad[own])
+    np.testing.assert_array_equal(led.time_s, whole.time_s[own])
+    np.testing.assert_array_equal(led.command_rad, whole.command_rad[own])
     assert led.before is None
 
 
 def test_a_part_at_the_start_has_only_what_was_before_the_whole():
-    trace, _ = braking()
-    assert trace.part(0, 20).before is None
-    assert trace.part(0, 20).led().ticks == 20
-    again = trace.part(FIRST, FIRST + 50).part(0, 20)
+    whole, _ = braking()
+    assert whole.part(0, 20).before is None
+    assert whole.part(0, 20).led().ticks == 20
+    again = whole.part(FIRST, FIRST + 50).part(0, 20)
     assert again.before is not None
-    assert again.before.time_s[-1] == trace.time_s[FIRST - 1]
-    near = trace.part(3, 20)
+    assert again.before.time_s[-1] == whole.time_s[FIRST - 1]
+    near = whole.part(3, 20)
     assert near.before is not None
     assert near.before.ticks == 3
 
 
 def test_some_joints_of_a_part():
-    trace, _ = braking()
-    one = trace.part(FIRST, FIRST + 20).of([1])
+    whole, _ = braking()
+    one = whole.part(FIRST, FIRST + 20).of([1])
     assert one.before is not None
     assert one.before.position_rad.shape == (BEFORE_ROWS, 1)
     assert one.led().position_rad.shape == (BEFORE_ROWS + 20, 1)
 
 
 def test_late_commands_of_a_part_are_those_from_before_it():
-    trace, _ = braking()
-    run = Run.of(trace.part(FIRST, FIRST + 20))
+    whole, _ = braking()
+    run = Run.of(whole.part(FIRST, FIRST + 20))
     assert run.whole is not None
     earlier = np.searchsorted(run.whole.time_s, run.trace.time_s[0]) - 3
     np.testing.assert_array_equal(
-        run.whole.command_rad[earlier], trace.command_rad[FIRST - 3]
+        run.whole.command_rad[earlier], whole.command_rad[FIRST - 3]
     )
-    assert Run.of(trace).whole is None
+    assert Run.of(whole).whole is None
