@@ -11,6 +11,7 @@ from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
+from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.data_sets import DataSets
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
@@ -28,6 +29,10 @@ from groundwalk.arrays import FloatArray
 MORE_FLOATING = 4
 """Number of models that the search fits in addition if the base floats. Contacts make
 the linear estimates unreliable by which it chooses models to fit."""
+
+OTHER_NOISE = 1.1
+"""Factor by which noise must differ for another search: from thousands of rows it is
+known to some percent, and a tenth moves what counts as evidence by a fifth."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
@@ -68,12 +73,17 @@ class Learned:
         What it leaves is then the noise: no model of this robot is better, and only
         what stands out from it is evidence. (A search for effects at all joints has
         taken it as noise by itself, so that only tests follow.) It also searches again
-        if dry friction that lets joints creep fits better than such that stops them.
+        where the best model shows other noise than the nominal one did, and if dry
+        friction that lets joints creep fits better than such that stops them.
         """
         traces = (*material.traces, *material.reference)
         channels = precise(material.plant, traces, material.channels, threads)
         given = _rules(material.plant, rules)
         first = cls._of(material, channels, given, threads, hooks)
+        timed = first._timed_anew()
+        if timed is not None:
+            channels, found = timed, _best_of_each_size(first.search, first.result)
+            first = cls._of(material, channels, given.again, threads, hooks, found)
         soft = first._creeps()
         wider = np.ones(len(channels.names))
         if not (first.noise or soft):
@@ -91,6 +101,20 @@ class Learned:
             return replace(first, data=data, inexact=True)
         found = _best_of_each_size(first.search, first.result)
         return cls._of(material, wide, given.again, threads, hooks, found)
+
+    def _timed_anew(self) -> Channels | None:
+        """The channels as the best model shows their noise; None if that is no other.
+
+        Recordings of the healthy robot have shown it before.
+        """
+        fit, winner = self.search.judge.fit, self.result.winner
+        is_fixed = fit.plant.base == "fixed"
+        if winner is None or self.noise or fit.by_torque or not is_fixed:
+            return None
+        timed, is_far_off = clock_at(fit, winner.model, fit.channels.untimed)
+        other = timed.noise / fit.channels.noise
+        differs = max(other.max(), 1 / other.min()) > OTHER_NOISE
+        return timed if differs and not is_far_off else None
 
     def _creeps(self) -> bool:
         """Whether dry friction that lets joints creep fits better."""

@@ -255,9 +255,13 @@ class SpeedLimit(NumberEffect, ServoEffect):
         return (Parameter("speed", "rad/s", low, high, np.inf, typical, True),)
 
     def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
-        """Limits at 80, 50 and 25 % of the commands' speed in the recordings."""
-        speed = usage.command_speed_rad_s[plant.joints.index(place)]
-        return [(share * speed,) for share in (0.8, 0.5, 0.25)]
+        """Limits of 2, 1.4, 1 and 0.7 times the joint's highest speed.
+
+        A target that is limited takes the joint along, so that the joint's own speed
+        tells the limit; that of commands, which may jump, does not.
+        """
+        speed = usage.top_speed_rad_s[plant.joints.index(place)]
+        return [(factor * speed,) for factor in (2.0, 1.4, 1.0, 0.7)]
 
 
 class CommandLatency(NumberEffect):

@@ -81,6 +81,17 @@ class Channels:
             common_jitter_s=common_s,
         )
 
+    @property
+    def untimed(self) -> "Channels":
+        """The channels with noise that includes what jitter adds on average."""
+        return replace(
+            self,
+            noise=self.noise / self.share_at_rest,
+            share_at_rest=1.0,
+            own_jitter_s=0.0,
+            common_jitter_s=0.0,
+        )
+
     def of_joint(self, joint: str) -> list[int]:
         """Indices of the channels that belong to a joint."""
         return [i for i, name in enumerate(self.names) if name.endswith(f".{joint}")]

@@ -13,9 +13,8 @@ import numpy as np
 from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.channels import MORE_THAN_NOISE, Channels
-from diagnosis.residuals.clock import clock_noise, speeds
-from diagnosis.residuals.jitter import with_clock, with_shared_clock
+from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.traces.split import shortened
@@ -148,31 +147,9 @@ def precise(
     given = found
     for _ in range(ROUNDS):
         predictor = predictor_of(plant, some, given, threads=threads)
-        timed, is_far_off = _timed(predictor, found)
+        predictor.calibrate()
+        timed, is_far_off = clock_at(predictor, (), found)
         if not (is_far_off and timed.jitter_s):
             break
         given = timed
     return timed
-
-
-def _timed(predictor: Predictor, found: Channels) -> tuple[Channels, bool]:
-    """The channels with the jitter that small mismatch of the model leaves.
-
-    Also returns whether much more than noise is left in most channels even with it.
-    """
-    predictor.calibrate()
-    given, beside = predictor.channels, predictor.moved_to(())
-    shape = -1, len(found.names)
-    left = beside.evenly().residuals([()]).reshape(shape) * given.noise / found.noise
-    scored, speed = predictor.scored.reshape(shape), speeds(predictor.traces, found)
-    timed = with_clock(found, left, speed, scored)
-    white = beside.without_tolerances().residuals([()]).reshape(shape)
-    if not given.jitter_s:
-        clock = clock_noise(predictor.traces, timed, scored)
-        white = white * given.noise / timed.noise
-        white = white if clock is None else clock.without(white[None])[0]
-    square = np.sum(white**2, axis=0) / np.maximum(scored.sum(axis=0), 1)
-    count = np.sum(square > MORE_THAN_NOISE**2)
-    if count < max(len(square) / 2, 2):
-        return timed, False
-    return with_shared_clock(found, left, speed, scored), True

@@ -93,7 +93,7 @@ class Candidates:
                 keys = keys_of(model)
                 if len(keys) == len(model) and keys != judged.keys:
                     swaps.setdefault(keys, model)
-        for model in self._moved(judged):
+        for model in moved(self._fit, judged.model):
             swaps.setdefault(keys_of(model), model)
         return self._scanned(list(swaps.values()))
 
@@ -179,19 +179,18 @@ class Candidates:
                 near.update(pair)
         return near
 
-    def _moved(self, judged: Judged) -> list[Model]:
-        """Variants of a model with an effect moved along the chain of bodies."""
-        plant, traces = self._fit.plant, self._fit.traces
-        return [
-            tuple(
-                replace(other, place=place) if other is placed else other
-                for other in judged.model
-            )
-            for placed in judged.model
-            if effect(placed.name).place_kind == "body"
-            for place in effect(placed.name).places(plant, traces)
-            if place in plant.neighbours(placed.place)
-        ]
+
+def moved(fit: Predictor, model: Model) -> list[Model]:
+    """Variants of a model with an effect moved along the chain of bodies."""
+    return [
+        tuple(
+            replace(other, place=place) if other is placed else other for other in model
+        )
+        for placed in model
+        if effect(placed.name).place_kind == "body"
+        for place in effect(placed.name).places(fit.plant, fit.traces)
+        if place in fit.plant.neighbours(placed.place)
+    ]
 
 
 def grown(model: Model) -> list[Model]:

@@ -123,8 +123,10 @@ class Judge:
 
         It is compared with the best smaller model, None for the nominal sim. The gain
         on the fitting data must not be by chance, and the selection data must not
-        contradict it: an end stop or a push need not occur there. With a floating base
-        recordings differ by chance, so that the gain must show in both.
+        contradict it: an end stop or a push need not occur there. What gains less on
+        the fitting data is believed if the selection data gain so much that both
+        together are not by chance. With a floating base recordings differ by chance, so
+        that the gain must show in both.
         """
         energy = smaller.selected if smaller else self.nothing
         fitted = smaller.fit.energy if smaller else self.nothing_fit
@@ -133,7 +135,21 @@ class Judge:
         gained, selected = fitted - best.fit.energy, energy - best.selected
         is_free = self.fit.plant.base == "floating"
         here = selected > (least if is_free else -CONTRADICTED)
-        return gained > least and here and self._matters(gained)
+        sure = gained > least or (
+            not is_free and gained + selected > least + self._selected_by_chance
+        )
+        return sure and here and self._matters(gained)
+
+    @property
+    def _selected_by_chance(self) -> float:
+        """Gain [nats] that models do not reach by chance on data they do not know.
+
+        That of the best of those compared if noise were independent, times how much
+        more correlated noise lets candidates gain on the fitting data.
+        """
+        independent = gain_of_noise(places_of_effects(self.fit))
+        correlated = max(self.least_gain / independent, 1.0)
+        return correlated * gain_of_noise(self.rules.finished)
 
     def _price(self, model: Model) -> float:
         """Gain [nats] that a model needs beyond that of effects with one value each.

@@ -13,7 +13,7 @@ from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.bursts import push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import Signature, signatures
-from diagnosis.search.candidates import Candidates, grown
+from diagnosis.search.candidates import Candidates, grown, moved
 from diagnosis.search.judging import Judge, distinct, gain_of_noise
 from diagnosis.search.result import Judged, SearchResult, keys_of
 from diagnosis.search.spread import is_widespread
@@ -180,8 +180,9 @@ class Search:
         """Fit the best models again with the integration error of the best one.
 
         Dry friction and end stops change it. More general forms of the best model's
-        effects are fitted as well. Values and small mismatch beside them are fitted in
-        turn, as long as more is gained than by chance.
+        effects are fitted as well, and those at the next bodies: beside a load at the
+        wrong one small mismatch does not lead to the noise. Values and small mismatch
+        beside them are fitted in turn, as long as more is gained than by chance.
         """
         judge = self.judge
         for _ in range(self._rules.refinements):
@@ -189,7 +190,7 @@ class Search:
             judge.calibrate(before.model)
             first = best[: self._rules.beam]
             others = judge.again(best[self._rules.beam :])
-            wider = grown(before.model)
+            wider = [*grown(before.model), *moved(self._fit, before.model)]
             models = [*(judged.model for judged in first), *wider]
             known = [None, *(judged.fit.jacobian for judged in first[1:])]
             tried = judge.judged(models, [*known, *(None for _ in wider)])

@@ -97,6 +97,17 @@ def test_a_single_effect_is_fitted_to_the_end():
     assert best.model[0].values == pytest.approx((15.0, 0.5), rel=0.1)
 
 
+def test_an_effect_moves_to_its_body_before_more_are_added():
+    """Beside it at the wrong body small mismatch would not lead to the noise."""
+    truth = ("drag", "lower", 3.0)
+    traces = [recorded(PLANT, truth, duration_s=2.0, seed=seed) for seed in range(2)]
+    search = search_of(*traces)
+    wrong = search.judge.judged([(PlacedEffect("drag", "upper", (3.0,)),)])
+    (best, *_) = search._refined(wrong)
+    assert best.keys == {"drag@lower"}
+    assert best.model[0].values[0] == pytest.approx(3.0, rel=0.05)
+
+
 def test_two_effects_are_found_together():
     truth = ("servo_gain", "elbow", 0.7), ("coulomb_friction", "shoulder", 0.4)
     _, found = searched(*truth)
@@ -137,7 +148,9 @@ def model_of(judge, fitted, selected, key="armature@elbow"):
 @pytest.mark.parametrize(
     ("fitted", "selected", "believed"),
     [
-        (0.5, 3.0, False),  # among many models some fit well by chance
+        (0.5, 0.6, False),  # among many models some fit well by chance
+        (0.5, 3.0, True),  # not on data that they do not know
+        (-0.5, 1.0, False),
         (2.0, 1.0, True),
         (2.0, 0.0, True),  # a stop need not be met in both
         (2.0, -1.0, False),

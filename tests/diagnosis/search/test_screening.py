@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from joint_rigs import ticks, trace_of
 from made_up_traces import arm, recorded
 
 from diagnosis.effects.library import effect
@@ -257,3 +258,23 @@ def test_trial_values_follow_usage():
     for angle, side in effect("end_stop").first_tries(plant, "elbow", usage):
         assert usage.low_rad[elbow] <= angle <= usage.high_rad[elbow]
         assert abs(side) == 1
+
+
+@pytest.mark.parametrize("limit", [1.5, 3.0, 6.0])
+def test_the_speed_of_a_joint_tells_its_limit_where_commands_jump(limit):
+    plant = arm()
+    time_s = ticks(4.0, 0.01)
+    slow = 0.2 * np.sin(time_s)
+    jumping = slow + 0.8 * ((time_s > 1) & (time_s < 2.5))
+    follows = [0.0]
+    for wanted in jumping[1:]:  # textbook rate limiter
+        far = np.clip(wanted - follows[-1], -0.01 * limit, 0.01 * limit)
+        follows.append(follows[-1] + far)
+    joints = np.stack([slow, follows], axis=1)
+    command = np.stack([slow, jumping], axis=1)
+    trace = trace_of(plant, time_s, joints, command_rad=command)
+    usage = Usage.of(plant, [trace])
+    assert usage.top_speed_rad_s == pytest.approx([0.2, limit], rel=0.1)
+    tries = effect("speed_limit").first_tries(plant, "elbow", usage)
+    assert min(abs(one / limit - 1) for (one,) in tries) < 0.1
+    assert np.quantile(np.abs(np.diff(command[:, 1])) / 0.01, 0.99) < 0.25  # no help
