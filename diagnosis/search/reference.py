@@ -1,6 +1,6 @@
 """Learns the errors of a robot model from recordings of the healthy robot."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from diagnosis.residuals.left_out import left_out
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
+from diagnosis.residuals.steps import with_best_steps
 from diagnosis.residuals.torque_predictor import predictor_of
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.fitting import fit_all
@@ -48,13 +49,21 @@ only for the progress display."""
 
 
 class _Simulations(NamedTuple):
-    """What all simulations of recordings of the healthy robot have in common."""
+    """What all simulations of recordings of the healthy robot have in common.
+
+    Attributes:
+      window_s: length of the windows, see `longest_window_s`.
+      finest_s: shortest step with which the integration error is measured.
+      finer: by recording, how many steps are taken for a usual one.
+    """
 
     plant: Plant
     channels: Channels
     threads: int
     hooks: Hooks
     window_s: float
+    finest_s: float | None = None
+    finer: Mapping[str, int] | None = None
 
     @classmethod
     def of(
@@ -65,9 +74,15 @@ class _Simulations(NamedTuple):
         threads: int,
         hooks: Hooks,
     ) -> "_Simulations":
-        """Simulations in windows over which replays of the traces stay close."""
+        """Simulations in windows over which replays stay close, with exact steps."""
         window_s = longest_window_s(plant, traces, channels, threads)
-        return cls(plant, channels, threads, hooks, window_s)
+        sims = cls(plant, channels, threads, hooks, window_s)
+        best = with_best_steps(sims.uncalibrated(traces, None))
+        finer = {
+            trace.recording: round(best.step_s / step_s)
+            for trace, step_s in zip(traces, best.steps_s, strict=True)
+        }
+        return sims._replace(finest_s=best.finest_s, finer=finer)
 
     def predictor(
         self,
@@ -93,7 +108,11 @@ class _Simulations(NamedTuple):
     ) -> Predictor:
         """A predictor of recordings with windows as for those to be diagnosed."""
         options = None, self.threads, noise, self.hooks.advance, self.window_s
-        return predictor_of(self.plant, traces, self.channels, *options)
+        found = predictor_of(self.plant, traces, self.channels, *options)
+        if self.finer is None or found.by_torque:
+            return found
+        finer = [self.finer[trace.recording] for trace in traces]
+        return found.stepped(found.step_s, self.finest_s, finer)
 
 
 def learn_reference(

@@ -115,7 +115,7 @@ def test_where_nothing_is_missing_nothing_is_named():
 def test_the_smallest_size_is_just_seen():
     """What is larger is named, what is smaller is not."""
     size = verdict_of().smallest_detectable["servo_gain@elbow"].value
-    larger, smaller = (verdict_of(gain=(1.0, 1 - share * size)) for share in (1.5, 0.6))
+    larger, smaller = (verdict_of(gain=(1.0, 1 - share * size)) for share in (1.5, 0.8))
     assert [one.name for one in larger.effects] == ["servo_gain"]
     assert smaller.kind == "none"
     assert "servo_gain" in {one.name for one in smaller.small}

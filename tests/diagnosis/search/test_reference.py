@@ -5,15 +5,18 @@ from functools import cache
 
 import numpy as np
 import pytest
+from joint_rigs import run_from, ticks, trace_of
 from known_arms import SINGLE, measured
-from made_up_traces import arm, recorded
+from made_up_traces import arm, arm_command, recorded
 from swinger_rig import moved, swinger, with_speeds
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.pipeline import diagnose
+from diagnosis.replay.replay import replay
 from diagnosis.residuals.channels import shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.replays import variants_of
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.search import reference as search_reference
 from diagnosis.search.hooks import Hooks
@@ -201,3 +204,26 @@ def test_what_is_larger_than_usual_is_taken_as_given_as_a_whole():
     (large,) = [one for one in found if not is_usual(arm(), one)]
     assert large.key == "coulomb_friction@elbow"
     assert large.values[0] == pytest.approx(0.16, rel=0.05)
+
+
+def stepping(plant, seed, noise_rad):
+    """A plant in very short time steps whose commands jump, so that servos saturate."""
+    time_s = ticks(2.0, 0.02)
+    jumps = np.sign(arm_command(time_s, seed)) * (time_s > 0.5)[:, None]
+    trace = trace_of(plant, time_s, command_rad=0.5 * jumps)
+    (run,) = replay([run_from(trace)], variants_of(plant, [()]), 2.5e-5)
+    noise = np.random.default_rng(seed).standard_normal((len(time_s), 2))
+    position_rad = run.position_rad[0] + noise_rad * noise
+    return replace(trace, name=f"steps {seed}", position_rad=position_rad)
+
+
+def test_errors_of_the_simulation_are_not_learned_from_the_healthy_robot():
+    """With the steps that do elsewhere, up to 4 times the noise would be left."""
+    plant = arm(kp=60.0, kd=1.5, limit=4.0)
+    traces = [stepping(plant, seed, 1e-4) for seed in (0, 1)]
+    channels = shared_channels(plant, traces)
+    small = replace(channels, noise=np.full(2, 1e-4), floor=np.full(2, 1e-4))
+    sims = search_reference._Simulations.of(plant, traces, small, 1, Hooks())
+    check = sims.predictor(traces)
+    (left,) = check.without_tolerances().residuals([()])
+    assert np.mean(left[check.scored] ** 2) < 1.1
