@@ -9,9 +9,15 @@ import numpy as np
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError
+from worlds.hidden.commands import CommandLine, Held, PathLine, mean_of
 from worlds.hidden.effects.kind import JointTorque, StiffContact
 from worlds.hidden.effects.placed import Hidden, surroundings
-from worlds.hidden.engine import WATCH_STEPS, HiddenEngine, least_inertia_kg_m2
+from worlds.hidden.engine import (
+    WATCH_STEPS,
+    HiddenEngine,
+    least_inertia_kg_m2,
+    present,
+)
 from worlds.hidden.plant import HiddenPlant
 from worlds.hidden.servos import Servos, Transmission, servo_torque_nm
 
@@ -19,8 +25,8 @@ from worlds.hidden.servos import Servos, Transmission, servo_torque_nm
 class HiddenJoints:
     """A robot's servos, transmissions and other joint torques, with hidden effects.
 
-    The engine's leapfrog integration gives the speeds of half a step ago. They are
-    extrapolated to the present, so that explicit damping is second-order accurate.
+    All torques are those in the middle of a physics step, as `HiddenDrive` says. Speeds
+    are extrapolated to it, so that explicit damping is second-order accurate.
 
     Attributes:
       servo_nm: (j,) torques of the motors in the last step, without those of effects.
@@ -82,9 +88,10 @@ class HiddenJoints:
         """
         angles = position_rad
         for joint, transmission in self._loose.items():
-            if transmission.encoder_at_motor and transmission.motor_rad is not None:
+            motor_rad = transmission.next_rad
+            if transmission.encoder_at_motor and motor_rad is not None:
                 angles = angles.copy()
-                angles[joint] = transmission.motor_rad
+                angles[joint] = motor_rad
         return self._servos.rippled(angles)
 
     def torque(
@@ -92,21 +99,26 @@ class HiddenJoints:
         time_s: float,
         position_rad: FloatArray,
         velocity_rad_s: FloatArray,
-        command_rad: FloatArray,
+        held: Sequence[Held],
     ) -> FloatArray:
         """(j,) torques [N m] on the joints, constant over the next physics step.
 
-        `time_s` counts from the start of the recording. Angles and speeds (j,) come
-        from the engine; `command_rad` (j,) are the targets that have reached the
-        servos.
+        `time_s` is that of the step's middle, counted from the start of the recording.
+        Angles and speeds (j,) come from the engine; `held` are the targets that have
+        reached the servos. Servos that remember earlier targets get their mean.
         """
         before = velocity_rad_s if self._before is None else self._before
-        speed = 1.5 * velocity_rad_s - 0.5 * before
+        speed = present(velocity_rad_s, before)
         self._before = velocity_rad_s.copy()
-        target = self._servos.set_point(command_rad)
-        target = self._servos.controlled(target, position_rad)
-        gains = kp, kd, back_emf, most = self._servos.gains(time_s)
-        torque = servo_torque_nm(gains, target - position_rad, speed)
+        servos, gains = self._servos, self._servos.gains(time_s)
+        kp, kd, back_emf, most = gains
+        if servos.remember:
+            held = [(1.0, mean_of(held))]
+        target, torque = np.zeros_like(speed), np.zeros_like(speed)
+        for share, command_rad in held:
+            aim = servos.controlled(servos.set_point(command_rad), position_rad)
+            target += share * aim
+            torque += share * servo_torque_nm(gains, aim - position_rad, speed)
         for i, transmission in self._loose.items():
             torque[i] = transmission.torque(
                 float(position_rad[i]),
@@ -124,64 +136,15 @@ class HiddenJoints:
         return torque
 
 
-_LEAD_STEPS = 0.5
-"""Delay of every command in physics steps: in leapfrog integration the force at the
-start of a step stands for the time from half a step before to half a step after it."""
-
-
-class CommandLine:
-    """Delays commands to servos by a time that need not be whole physics steps."""
-
-    def __init__(self, start_rad: FloatArray, delay_steps: float) -> None:
-        """Begin with (j,) targets in force; later ones come `delay_steps` late."""
-        self._now, self._delay = start_rad, delay_steps + _LEAD_STEPS
-        self._coming: deque[tuple[float, FloatArray]] = deque()
-
-    def send(self, step: int, command_rad: FloatArray) -> None:
-        """Send (j,) position targets at the beginning of physics step number `step`."""
-        self._coming.append((step + self._delay, command_rad))
-
-    def over(self, step: int) -> FloatArray:
-        """(j,) mean position targets [rad] that the servos have in this physics step.
-
-        Must be called once for each step, in order: it drops the commands used.
-        """
-        if not self._coming or self._coming[0][0] >= step + 1:
-            return self._now
-        mean, done = np.zeros_like(self._now), 0.0
-        while self._coming and self._coming[0][0] < step + 1:
-            at, command = self._coming.popleft()
-            part = max(at - step, 0.0)
-            mean += (part - done) * self._now
-            self._now, done = command, part
-        return np.asarray(mean + (1.0 - done) * self._now)
-
-
-class PathLine(CommandLine):
-    """Leads to each command on a straight path, as controllers that plan paths do.
-
-    The path begins when the command is sent and takes as long as the tick before.
-    """
-
-    def __init__(self, start_rad: FloatArray) -> None:
-        """Begin with (j,) targets in force."""
-        super().__init__(start_rad, 0.0)
-        self._from = self._to = start_rad
-        self._sent, self._steps = 0, 1
-
-    def send(self, step: int, command_rad: FloatArray) -> None:
-        """Lead to (j,) position targets from those of physics step number `step`."""
-        self._from, self._to = self.over(step), command_rad
-        self._steps, self._sent = max(step - self._sent, 1), step
-
-    def over(self, step: int) -> FloatArray:
-        """(j,) position targets [rad] in the middle of this physics step."""
-        done = min((step - self._sent + 0.5) / self._steps, 1.0)
-        return np.asarray(self._from + done * (self._to - self._from))
-
-
 class HiddenDrive:
-    """Applies commands, joint torques and pushes to a robot; reads its encoders."""
+    """Applies commands, joint torques and pushes to a robot; reads its encoders.
+
+    Engines integrate by leapfrog: forces act over a whole physics step, and the
+    positions that belong to them are those in its middle. So the engine's positions are
+    half a step ahead of its speeds, of commands and of readings, which are taken at the
+    ends of steps. Commands then change with the steps, and all that depends on
+    positions and speeds is second-order accurate.
+    """
 
     def __init__(
         self,
@@ -208,7 +171,8 @@ class HiddenDrive:
         self._late_steps = (around.encoder_delay_s + self._joints.late_s) / step_s
         self._step = 0
         # Past angles at the encoders, as many as their delay needs.
-        self._seen = deque([start_rad], maxlen=ceil(self._late_steps.max()) + 2)
+        self._seen = deque([start_rad], maxlen=ceil(self._late_steps.max()) + 3)
+        self._true = deque([start_rad], maxlen=2)
 
     def send(self, command_rad: FloatArray) -> None:
         """Send (j,) position targets to the servos, which get them after the delay."""
@@ -221,7 +185,7 @@ class HiddenDrive:
         """
         world, end = self._world, self._step + steps
         while self._step < end:
-            time_s = (self._step - zero_step) * self._step_s
+            time_s = (self._step + 0.5 - zero_step) * self._step_s
             for body, push in self._pushes:
                 force_n = push(time_s, partial(world.body_velocity, body))
                 if force_n is not None:
@@ -234,6 +198,7 @@ class HiddenDrive:
             )
             world.step(torque)
             self._step += 1
+            self._true.append(world.position_rad.copy())
             self._seen.append(self._joints.encoders(world.position_rad).copy())
             if self._step > end - WATCH_STEPS:
                 world.watch()
@@ -242,8 +207,13 @@ class HiddenDrive:
         """(j,) readings [rad] of noiseless encoders now, with offsets and delays."""
         steps = np.arange(self._step + 1 - len(self._seen), self._step + 1)
         columns = zip(self._late_steps, np.transpose(self._seen), strict=True)
-        angles = [np.interp(self._step - late, steps, one) for late, one in columns]
+        now = self._step - 0.5
+        angles = [np.interp(now - late, steps, one) for late, one in columns]
         return np.array(angles) + self._joints.offset_rad
+
+    def positions(self) -> FloatArray:
+        """(j,) true angles [rad] of the joints now."""
+        return np.asarray(np.mean(self._true, axis=0))
 
     def motor_torques(self) -> FloatArray:
         """(j,) torques [N m] of the motors in the last physics step."""

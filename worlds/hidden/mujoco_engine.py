@@ -10,7 +10,7 @@ from groundwalk.errors import UnknownNameError
 from robots.engine_models.mjcf import quiet_mujoco
 from terrain import Heightfield
 from worlds.hidden.effects.placed import Hidden, surroundings
-from worlds.hidden.engine import ORIGIN_POSE, BodySense
+from worlds.hidden.engine import ORIGIN_POSE, BodySense, present
 from worlds.hidden.plant import HiddenPlant
 from worlds.sim.world import add_ground, touch_shares
 
@@ -88,6 +88,7 @@ class HiddenMujoco:
         hinges = [model.joint(name) for name in plant.joints]
         self._qpos = _slice([int(hinge.qposadr[0]) for hinge in hinges])
         self._dofs = _slice([int(hinge.dofadr[0]) for hinge in hinges])
+        self._before = self._data.qvel.copy()
         self._forget()
 
     @property
@@ -110,13 +111,22 @@ class HiddenMujoco:
         if self._floating:
             self._data.qpos[2] = height_m
         self._mujoco.mj_forward(self._model, self._data)
+        self._before = self._data.qvel.copy()
         self._forget()
 
     def step(self, torque_nm: FloatArray) -> None:
         """Take one physics step under (j,) joint torques and the pushes set before."""
-        self._data.qfrc_applied[self._dofs] = torque_nm
-        self._mujoco.mj_step(self._model, self._data)
-        self._data.xfrc_applied[:] = 0.0
+        model, data = self._model, self._data
+        data.qfrc_applied[self._dofs] = torque_nm
+        if self._floating:
+            self._mujoco.mj_step(model, data)
+        else:
+            late = data.qvel.copy()
+            data.qvel[:] = present(late, self._before)
+            self._mujoco.mj_step1(model, data)
+            data.qvel[:] = self._before = late
+            self._mujoco.mj_step2(model, data)
+        data.xfrc_applied[:] = 0.0
 
     def push(self, body: str, force_n: FloatArray) -> None:
         """Let a (3,) force act at a body's centre of mass over the next step."""

@@ -153,9 +153,9 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
     commands, encoders, positions, torques, senses = [], [], [], [], []
     ok = True
     for row, steps in enumerate(np.diff(ticks, append=ticks[-1])):
-        sense = world.sense()
+        sense = _now(world.sense(), clock.step_s)
         senses.append(sense)
-        positions.append(world.position_rad.copy())
+        positions.append(drive.positions())
         encoders.append(drive.encoders())
         torques.append(drive.motor_torques())
         ok = ok and bool(np.isfinite(positions[-1]).all())
@@ -167,6 +167,19 @@ def _recorded(world: HiddenEngine, drive: HiddenDrive, clock: Clock, feed: Feed)
     felt = {name: np.stack(column) for name, column in columns}
     sent, read, true = map(np.stack, (commands, encoders, positions))
     return Run(clock, sent, read, true, np.stack(torques), felt, ok)
+
+
+def _now(sense: BodySense, step_s: float) -> BodySense:
+    """The readings with the base's pose half a physics step before, see `HiddenDrive`.
+
+    The engine's positions are half a step ahead of the ticks.
+    """
+    import mujoco
+
+    late_s, turned = -step_s / 2, sense.orientation.copy()
+    mujoco.mju_quatIntegrate(turned, sense.angular_rad_s, late_s)
+    moved_m = sense.position_m + late_s * sense.linear_m_s
+    return sense._replace(position_m=moved_m, orientation=turned)
 
 
 def stands(felt: dict[str, FloatArray], ground: Heightfield) -> bool:

@@ -77,6 +77,11 @@ class Servos:
     def _slews(self) -> bool:
         return bool(np.isfinite(self.max_speed_rad_s).any())
 
+    @cached_property
+    def remember(self) -> bool:
+        """Whether torques depend on earlier set-points, not on the present one only."""
+        return self._controls or self._slews
+
     def gains(
         self, time_s: float
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
@@ -136,9 +141,10 @@ class Servos:
         most, now = self.max_speed_rad_s * self._step_s, self._target
         change = target - now
         self._target = now + np.clip(change, -most, most)
-        # A set-point at its speed limit is at `now` as the step begins. One below the
-        # limit is a target, which already is a mean over the step.
-        return np.where(np.abs(change) > most, now, self._target)
+        # At its speed limit a set-point moves all through the step. One below the limit
+        # is a target, which is the same from the step's start on.
+        middle = (now + self._target) / 2
+        return np.where(np.abs(change) > most, middle, self._target)
 
 
 @dataclass
@@ -148,7 +154,8 @@ class Transmission:
     The rotor's inertia is part of the link in the nominal models, so the motor itself
     is taken as massless: its torque and the spring's are equal at all times. The servo
     controls the motor's angle m by the law of `servos.servo_torque_nm`. With q the
-    joint's angle and u the motor's torque, each implicit Euler step solves for m:
+    joint's angle and u the motor's torque, each step solves for m, with dm/dt by the
+    second-order backward difference:
       u = clip(kp (command - m) - kd dm/dt, +-most) - back_emf dm/dt,
       u = stiffness dead_zone(m - q, play / 2) + damping (dm/dt - dq/dt in contact).
     The total play is `gap_rad`. The encoder reads the motor's angle, which is
@@ -161,6 +168,14 @@ class Transmission:
     step_s: float
     encoder_at_motor: bool = False
     motor_rad: float | None = None
+    before_rad: float | None = None
+
+    @property
+    def next_rad(self) -> float | None:
+        """The motor's angle one step later if it turns on as it did in the last one."""
+        if self.motor_rad is None or self.before_rad is None:
+            return self.motor_rad
+        return 2 * self.motor_rad - self.before_rad
 
     def torque(
         self,
@@ -175,17 +190,24 @@ class Transmission:
         m/rad], kd [N m s/rad], largest torque [N m] and back-EMF [N m s/rad].
         """
         kp, kd, most, back_emf = servo
-        before = angle_rad if self.motor_rad is None else self.motor_rad
+        last = angle_rad if self.motor_rad is None else self.motor_rad
+        earlier = last if self.before_rad is None else self.before_rad
+        before = (4 * last - earlier) / 3  # dm/dt = (m - before) / (2/3 step)
         free = (kp, kp * command_rad, kd + back_emf)
         motor = self._balance(before, angle_rad, speed_rad_s, free)
-        rate = (motor - before) / self.step_s
+        rate = (motor - before) / self._lasted_s
         wanted = kp * (command_rad - motor) - kd * rate
         if abs(wanted) > most:
             held = most if wanted > 0 else -most
             motor = self._balance(before, angle_rad, speed_rad_s, (0.0, held, back_emf))
-            rate = (motor - before) / self.step_s
-        self.motor_rad = motor
+            rate = (motor - before) / self._lasted_s
+        self.motor_rad, self.before_rad = motor, last
         return self._spring(motor - angle_rad, rate - speed_rad_s)
+
+    @property
+    def _lasted_s(self) -> float:
+        """Time [s] of the backward difference, see `torque`."""
+        return 2 * self.step_s / 3
 
     def _spring(self, twist_rad: float, rate_rad_s: float) -> float:
         half = self.gap_rad / 2
@@ -199,11 +221,11 @@ class Transmission:
     ) -> float:
         """Motor angle m [rad] at which the torques of motor and spring are equal.
 
-        One step before it was `before`; the joint has the angle q and the speed v; the
-        motor's (pull, drive, drag) give its torque drive - pull m - drag dm/dt.
+        It changes from `before` in `_lasted_s`; the joint has the angle q and the speed
+        v; the motor's (pull, drive, drag) give its torque drive - pull m - drag dm/dt.
         """
         pull, drive, drag = motor
-        half, h = self.gap_rad / 2, self.step_s
+        half, h = self.gap_rad / 2, self._lasted_s
         weight = pull + drag / h
         push = drive + drag / h * before
         if half > 0 and weight > 0 and abs(push / weight - q) < half:

@@ -12,7 +12,13 @@ from robots.engine_models.urdf import model_urdf
 from terrain import Heightfield
 from worlds.hidden.drive import HiddenDrive, HiddenJoints
 from worlds.hidden.effects.placed import Hidden, surroundings
-from worlds.hidden.engine import ORIGIN_POSE, BodySense, HiddenEngine, check_engine
+from worlds.hidden.engine import (
+    ORIGIN_POSE,
+    BodySense,
+    HiddenEngine,
+    check_engine,
+    present,
+)
 from worlds.hidden.mujoco_engine import HiddenMujoco, hidden_model
 from worlds.hidden.plant import HiddenPlant, described_hidden_plant
 from worlds.real.body import BulletBody
@@ -73,11 +79,35 @@ class HiddenBullet(BulletBody):
             spring=spring,
             ground=ground,
         )
+        self._before = np.zeros(len(plant.joints))
         self._forget()
 
     def _forget(self) -> None:
         self._watched, self._feet = 0, np.zeros(8)
         self._earlier: FloatArray | None = None
+
+    def reset(self, pose_rad: FloatArray, height_m: float) -> None:
+        """Put the robot at rest in a pose (joints,), a floating base at this height."""
+        super().reset(pose_rad, height_m)
+        self._before = self.velocity_rad_s
+
+    def step(self, torque_nm: FloatArray) -> None:
+        """Advance one physics step under torques (joints,) and the preceding pushes."""
+        late = self.velocity_rad_s
+        if not self._floating:
+            torque_nm = torque_nm + self._turning(present(late, self._before), late)
+        self._before = late
+        super().step(torque_nm)
+
+    def _turning(self, now: FloatArray, late: FloatArray) -> FloatArray:
+        """(j,) torques [N m] that turn forces due to speeds from `late` to `now`."""
+        position, rest = self.position_rad.tolist(), [0.0] * len(late)
+        needed = self.bullet.calculateInverseDynamics
+        one, other = (
+            np.array(needed(self.number, position, speed.tolist(), rest))
+            for speed in (late, now)
+        )
+        return np.asarray(one - other)
 
     def watch(self) -> None:
         """Add this step's foot forces to the mean that `sense` will return."""

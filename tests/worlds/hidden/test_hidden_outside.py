@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from worlds.hidden.drive import PathLine
+from worlds.hidden.commands import PathLine
 from worlds.hidden.effects import KINDS, Hidden
 from worlds.hidden.effects.flexible_links import across
 from worlds.hidden.effects.presliding import ELEMENTS, MaxwellSlip
@@ -258,13 +258,13 @@ def test_a_log_of_torques_tells_no_command_and_holds_the_motor_s_torque():
 
 def test_a_path_leads_to_each_command_within_a_tick():
     line = PathLine(np.array([1.0]))
-    assert line.over(0) == 1.0
+    assert line.over(0) == [(1.0, 1.0)]
     line.send(10, np.array([3.0]))  # ten steps after the beginning
-    assert line.over(10) == pytest.approx(1.0 + 2.0 * 0.05)
-    assert line.over(14) == pytest.approx(1.0 + 2.0 * 0.45)
+    ((_, first),), ((_, fifth),) = line.over(10), line.over(14)
+    assert first == pytest.approx(1.0 + 2.0 * 0.05)
+    assert fifth == pytest.approx(1.0 + 2.0 * 0.45)
     line.send(20, np.array([3.0]))
-    assert line.over(29) == pytest.approx(3.0)
-    assert line.over(99) == pytest.approx(3.0)
+    assert [line.over(step) for step in (29, 99)] == [[(1.0, 3.0)]] * 2
 
 
 @pytest.mark.parametrize("paths", [True, False])

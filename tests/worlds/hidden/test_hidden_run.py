@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 from groundwalk.errors import BadValueError, UnknownNameError
 from worlds.hidden.effects import Hidden
+from worlds.hidden.limbs import limb_plant
 from worlds.hidden.plant import hidden_plant
 from worlds.hidden.run import Clock, run_hidden
 
@@ -21,6 +22,11 @@ JOINT, LINK = "swing", "link"
 
 def command(time_s):
     return 0.3 + 0.25 * np.sin(2 * np.pi * 0.7 * time_s) * np.minimum(time_s, 1.0)
+
+
+def jumps(time_s):
+    """So far apart that a servo with little torque gives all of it."""
+    return 0.3 + 0.9 * np.sign(np.sin(2 * np.pi * 1.9 * time_s))
 
 
 def clock(step_s=STEP_S):
@@ -45,11 +51,12 @@ def run(*effects, engine="mujoco", step_s=STEP_S, start=0.3, table=None):
 def solved(
     *, mass=0.0, z=0.0, armature=0.0, viscous=0.0, kp=KP, kd=KD, spring=(0.0, 0.0),
     pitch=0.0, drag=0.0, delay=0.0, push=0.0, fade=0.0, most=np.inf, start=0.3,
+    asking=command,
 ):  # fmt: skip
     """Positions at the ticks by the equation of motion of a driven pendulum."""
     reach = L - z
     inertia = OWN + (M + mass) * reach**2 + armature
-    asked = command(np.arange(ROWS) * TICK_S)
+    asked = asking(np.arange(ROWS) * TICK_S)
 
     def motion(t, state):
         q, v = state
@@ -117,6 +124,39 @@ def test_an_effect_moves_the_pendulum_as_its_equation_says(effects, changes, eng
     assert rms_mrad(found, solved(**changes)) < 0.05
     if changes:
         assert rms_mrad(found, solved()) > 1.0
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "bullet"])
+@pytest.mark.parametrize("delay", [0.0, 0.00813])
+def test_a_servo_at_its_limit_reverses_when_a_command_arrives(delay, engine):
+    """Half a step too early or too late, it would be off by 0.1 to 0.3 mrad."""
+    effects = [Hidden("torque_limit", JOINT, {"torque": 2.5})]
+    if delay:
+        effects.append(Hidden("command_latency", "commands", {"delay": delay}))
+    table = jumps(np.arange(ROWS) * TICK_S)
+    found = run(*effects, engine=engine, table=table).position_rad[:, 0]
+    assert rms_mrad(found, solved(most=2.5, delay=delay, asking=jumps)) < 0.03
+    if delay:
+        late = solved(most=2.5, delay=delay + STEP_S / 2, asking=jumps)
+        assert rms_mrad(found, late) > 0.1
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "bullet"])
+def test_fast_links_turn_each_other_as_in_much_shorter_steps(engine):
+    plant = limb_plant("z1")
+    middle_rad, rows = plant.range_rad.mean(axis=1), 60
+    turns = 0.4 * np.sign(np.sin(np.outer(np.arange(rows), 0.3 + 0.1 * np.arange(6))))
+    table = middle_rad + turns
+
+    def positions(step_s):
+        ticks = Clock(step_s, np.arange(rows) * round(TICK_S / step_s), 0)
+        return run_hidden(
+            plant, (), engine, ticks, lambda row, _: table[row], table[0], NOBODY
+        ).position_rad
+
+    found = positions(STEP_S)
+    assert np.abs(np.diff(found, axis=0)).max() / TICK_S > 4  # rad/s
+    assert rms_mrad(found, positions(STEP_S / 4)) < 0.1
 
 
 def test_both_engines_agree_with_nothing_hidden():

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from groundwalk.errors import BadValueError
-from worlds.hidden.drive import CommandLine
+from worlds.hidden.commands import CommandLine
 from worlds.hidden.effects import Hidden
 from worlds.hidden.plant import hidden_plant
 from worlds.hidden.recorded import HiddenSensors, hidden_recording
@@ -84,5 +84,5 @@ def test_ticks_are_late_by_no_more_than_the_jitter():
 def test_a_command_arrives_after_its_delay_to_a_part_of_a_step():
     line = CommandLine(np.zeros(1), 2.25)
     line.send(0, np.ones(1))
-    # a leapfrog's force at a step's start stands for half a step before and after it
-    assert [line.over(step).item() for step in range(5)] == [0, 0, 0.25, 1, 1]
+    whole = [line.over(step) for step in range(4)]
+    assert whole == [[(1, 0)], [(1, 0)], [(0.25, 0), (0.75, 1)], [(1, 1)]]
