@@ -118,15 +118,24 @@ class HiddenMujoco:
         """Take one physics step under (j,) joint torques and the pushes set before."""
         model, data = self._model, self._data
         data.qfrc_applied[self._dofs] = torque_nm
-        if self._floating:
-            self._mujoco.mj_step(model, data)
-        else:
-            late = data.qvel.copy()
-            data.qvel[:] = present(late, self._before)
-            self._mujoco.mj_step1(model, data)
-            data.qvel[:] = self._before = late
-            self._mujoco.mj_step2(model, data)
+        self._mujoco.mj_step1(model, data)
+        if not self._floating:
+            self._turn()
+        self._mujoco.mj_step2(model, data)
         data.xfrc_applied[:] = 0.0
+
+    def _turn(self) -> None:
+        """Take the forces that turn links from the present speeds, see `present`.
+
+        Constraints keep the late speeds: they are stiff, and would be unstable.
+        """
+        model, data = self._model, self._data
+        late = data.qvel.copy()
+        data.qvel[:] = present(late, self._before)
+        self._mujoco.mj_comVel(model, data)
+        self._mujoco.mj_rne(model, data, 0, data.qfrc_bias)
+        data.qvel[:] = self._before = late
+        self._mujoco.mj_comVel(model, data)
 
     def push(self, body: str, force_n: FloatArray) -> None:
         """Let a (3,) force act at a body's centre of mass over the next step."""
