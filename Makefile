@@ -5,7 +5,8 @@ PYTHON ?= $(shell python3.11 -c "" 2>/dev/null && echo python3.11 || echo python
 
 VENV := .venv
 READY := $(VENV)/ready
-PYTEST := $(VENV)/bin/python -m pytest -n 3 --maxschedchunk 1
+# Tests of one group run in one process, since they share what takes long to make.
+PYTEST := $(VENV)/bin/python -m pytest -n 3 --dist loadgroup --no-loadscope-reorder
 RUN := runs/walk
 RESULTS := runs/results
 # The studies of `groundwalk transfer` that have a page in docs/results.

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.audit.result import Audit
 from diagnosis.conclude.answer import verdict_kind
+from diagnosis.conclude.old_effects import old_effects, without
 from diagnosis.conclude.soft_friction import CREEPS, creeps, rubs, softly
 from diagnosis.material import Material
 from diagnosis.plant.plant import Plant
@@ -15,12 +15,13 @@ from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.data_sets import DataSets
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
+from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.steps import precise
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
 from diagnosis.search.reference import learn_reference, reference_checks
-from diagnosis.search.result import SearchResult
+from diagnosis.search.result import SearchResult, keys_of
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
 from diagnosis.verdict import VerdictKind
@@ -33,6 +34,10 @@ the linear estimates unreliable by which it chooses models to fit."""
 OTHER_NOISE = 1.1
 """Factor by which noise must differ for another search: from thousands of rows it is
 known to some percent, and a tenth moves what counts as evidence by a fifth."""
+
+MOST_KNOWN = 3
+"""Most times that it is learned what the healthy robot has: before the search, and
+after one that has found more of it."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
@@ -134,11 +139,33 @@ class Learned:
         hooks: Hooks,
         promising: Sequence[Model] = (),
     ) -> "Learned":
-        """One search, which also tries the models `promising`."""
-        data, noise, search = _divided(
-            material, channels, rules, threads, hooks, promising
-        )
-        return cls(material, data, noise, search, *_searched(search, material.audited))
+        """A search, which also tries the models `promising`.
+
+        Where it finds what the healthy robot had as well, that becomes part of the
+        nominal model, and it begins anew. What comes out again is left out.
+        """
+        known: Model | None = None
+        for number in range(MOST_KNOWN):
+            data, noise, search = _divided(
+                material, channels, rules, threads, hooks, promising, known
+            )
+            result, everywhere = found_by(search)
+            old = old_effects(search.judge, result)
+            before = noise.model if noise else ()
+            more = keys_of(old) - keys_of(before)
+            if not more or number + 1 == MOST_KNOWN:
+                break
+            large = (one for one in before if not is_usual(material.plant, one))
+            known = (*large, *(one for one in old if one.key in more))
+            promising = [
+                tuple(one for one in model if one.key not in more)
+                for model in _best_of_each_size(search, result)
+            ]
+            rules = rules.again
+        result = without(search.judge, result, old)
+        kind = verdict_kind(result, material.plant, material.audited)
+        everywhere = everywhere and result.chosen > 0
+        return cls(material, data, noise, search, result, kind, everywhere)
 
 
 def _left(learned: Predictor, result: SearchResult) -> FloatArray:
@@ -167,15 +194,18 @@ def _divided(
     threads: int,
     hooks: Hooks,
     promising: Sequence[Model] = (),
+    known: Model | None = None,
 ) -> tuple[DataSets, ReferenceNoise | None, Search]:
     """The data by use, the healthy robot's model errors, and a search ready to run.
 
-    The search also tries the models `promising`.
+    The search also tries the models `promising`. The healthy robot has `known` effects,
+    which are searched for if None.
     """
     plant, before, reference = material.plant, material.before, material.reference
     noise, healthy = None, list[Predictor]()
     if reference:
-        noise = learn_reference(before, reference, channels, rules, threads, hooks)
+        options = rules, threads, hooks, known
+        noise = learn_reference(before, reference, channels, *options)
     hooks.stage("fit", FIT_REPLAYS)
     data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
     if noise:
@@ -205,12 +235,3 @@ def _rules(plant: Plant, rules: Rules | None) -> Rules:
         single_effects=rules.single_effects + MORE_FLOATING,
         further_effects=rules.further_effects + MORE_FLOATING,
     )
-
-
-def _searched(search: Search, audited: Audit) -> tuple[SearchResult, VerdictKind, bool]:
-    """Search for effects that the sim lacks, and decide the kind of the verdict.
-
-    Also returns whether effects at all joints explain what is missing.
-    """
-    result, at_all = found_by(search)
-    return result, verdict_kind(result, search.judge.fit.plant, audited), at_all

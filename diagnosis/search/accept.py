@@ -2,8 +2,8 @@
 
 `accepted` applies three tests in this order. The best models are compared again, each
 with its own integration error. Values and effects that the best one does not need are
-removed. Effects that recordings of the healthy robot show as well are removed, too
-(`old_effects.py`).
+removed. Of a robot on its feet, effects that gain at few moments, or as much on
+recordings of the healthy robot, are removed, too (`steady_gains.py`).
 """
 
 from collections.abc import Sequence
@@ -15,8 +15,8 @@ from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.ties import without_each
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
-from diagnosis.search.old_effects import without_old_effects
 from diagnosis.search.result import Judged, SearchResult, keys_of
+from diagnosis.search.steady_gains import with_steady_gains
 from groundwalk.arrays import FloatArray
 
 CLOSE_NATS = 100.0
@@ -33,7 +33,7 @@ def accepted(judge: Judge, result: SearchResult) -> SearchResult:
     judge.hooks.stage("comparison", REPLAYS_EACH * judge.rules.compared)
     result = compared_exactly(judge, result)
     result = without_idle_effects(judge, without_idle_values(judge, result))
-    return without_old_effects(judge, result)
+    return with_steady_gains(judge, result)
 
 
 def compared_exactly(judge: Judge, result: SearchResult) -> SearchResult:

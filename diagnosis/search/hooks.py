@@ -81,11 +81,16 @@ class Hooks:
         and the keys of its results.
         """
         self.progress, self._checkpoint, self._part = progress, checkpoint, part
-        self._saved = 0
+        self._saved, self._parts = 0, dict[str, int]()
 
     def within(self, part: str) -> "Hooks":
-        """Hooks for a named part of the diagnosis, such as "reference"."""
-        return Hooks(self.progress, self._checkpoint, part)
+        """Hooks for a named part of the diagnosis, such as "reference".
+
+        A part that comes again has a number, so that its results are stored apart.
+        """
+        self._parts[part] = self._parts.get(part, 0) + 1
+        number = f" {self._parts[part]}" if self._parts[part] > 1 else ""
+        return Hooks(self.progress, self._checkpoint, f"{part}{number}")
 
     def stage(self, name: str, steps: int) -> None:
         """Report that a stage with about `steps` simulations of the data begins."""

@@ -20,9 +20,12 @@ CONTRADICTED = 3.0
 to 1 (Kass and Raftery 1995, "Bayes factors": strong evidence)."""
 
 
-def gain_of_noise(candidates: int) -> float:
-    """Gain [nats] of the best of independent candidates in 1 of 100 cases of noise."""
-    return 0.5 * float(chi2.isf(0.01 / max(candidates, 1), 1))
+def gain_of_noise(candidates: int, values: int = 1) -> float:
+    """Gain [nats] of the best of independent candidates in 1 of 100 cases of noise.
+
+    Each has as many `values` that are fitted.
+    """
+    return 0.5 * float(chi2.isf(0.01 / max(candidates, 1), values))
 
 
 def places_of_effects(predictor: Predictor) -> int:
@@ -56,7 +59,8 @@ class Judge:
 
         Predictors are calibrated and have the same channels; `healthy` are those of
         recordings of the healthy robot: what gains there, too, is no evidence of a
-        change (on a fixed base that is asked after a search, see `old_effects.py`).
+        change (on a fixed base that is asked after a search, see
+        `conclude/old_effects.py`).
         """
         self.fit, self.select, self.rules = fit, select, rules or Rules()
         self.healthy, self.hooks = healthy, hooks or Hooks()

@@ -5,10 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.effects.parts import PlacedEffect
-from diagnosis.search.judging import Judge
-from diagnosis.search.old_effects import without_old_effects
 from diagnosis.search.result import SearchResult
+from diagnosis.search.steady_gains import with_steady_gains
 
 FIRST, SECOND = ("first",), ("first", "second")
 
@@ -33,21 +31,10 @@ class Known:
         return found.reshape(len(models), -1)
 
 
-class Keyed(Known):
-    """A predictor of eight moments with gains by the names of placed effects."""
-
-    def residuals(self, models):
-        """See `Known.residuals`; effects without a given gain gain nothing."""
-        names = [[one.name for one in model] for model in models]
-        for name in {name for some in names for name in some}:
-            self._gains.setdefault(name, np.zeros(8))
-        return super().residuals(names)
-
-
 def chosen(now, before, size=1, fit=None):
     best = {1: [SimpleNamespace(model=FIRST)], 2: [SimpleNamespace(model=SECOND)]}
     judge = SimpleNamespace(fit=fit or now, select=now, healthy=before)
-    return without_old_effects(judge, SearchResult(0.0, 0.0, best, size)).chosen
+    return with_steady_gains(judge, SearchResult(0.0, 0.0, best, size)).chosen
 
 
 STEADY, WILD = [20, 25, 18, 22, 24, 19, 21, 23], [150, -20, 3, -15, 5, -10, 8, 2]
@@ -90,37 +77,6 @@ def test_few_moments_of_each_kind_of_data_tell_together(fitted, expected):
     before = Known(first=NONE)
     assert chosen(now, [before], fit=now) == 1
     assert chosen(now, [before], fit=Known(first=fitted)) == expected
-
-
-class Told(Judge):
-    """Judges models of placed effects by their given gains, without any fit."""
-
-    def __init__(self, fit, healthy):
-        self.fit = self.select = fit
-        self.healthy = healthy
-
-    def judged(self, starts, jacobians=None):
-        return [SimpleNamespace(model=start) for start in starts]
-
-
-@pytest.mark.parametrize(
-    ("before", "kept"),
-    [
-        ({}, "ab"),
-        ({"b": [9] * 8}, "ab"),  # by chance, or as faint as it was always
-        ({"b": [11] * 8}, "a"),
-        ({"a": [18] * 8, "b": [11] * 8}, ""),
-    ],
-)
-def test_on_a_fixed_base_what_gained_half_as_much_before_is_old(before, kept):
-    a, b = (PlacedEffect(name, "elbow", (1.0,)) for name in "ab")
-    gains = {"a": [20] * 8, "b": [20] * 8}
-    now, then = (Keyed("fixed", **own) for own in (gains, before))
-    best = {1: [], 2: [SimpleNamespace(model=(a, b))]}
-    result = SearchResult(0.0, 0.0, best, 2)
-    found = without_old_effects(Told(now, [then]), result)
-    model = found.winner.model if found.winner else ()
-    assert "".join(one.name for one in model) == kept
 
 
 def test_without_a_reference_nothing_is_asked():

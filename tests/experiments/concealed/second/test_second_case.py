@@ -19,6 +19,8 @@ from worlds.hidden import Hidden
 from worlds.hidden.limbs import limb_plant
 from worlds.hidden.run import Clock, run_hidden
 
+pytestmark = pytest.mark.xdist_group("second_case")
+
 SINGLE = CasePlan("single", "two_dof", 50, "servos", 2, True, "mujoco")
 PLANS = {
     "single": SINGLE,
@@ -35,7 +37,7 @@ def made(tmp_path_factory):
         patch.setattr(second_motion, "DURATION_S", (2.5, 3.0))
         patch.setattr(second, "planned", lambda seed, count: tuple(PLANS.values()))
         for number in range(3):
-            sets.make_case(2, folder / "cases", folder / "truths", 9, number, 3)
+            sets.make_case(2, folder / "cases", folder / "truths", 5, number, 3)
     return folder
 
 
