@@ -75,6 +75,7 @@ class BatchLaws:
         self._applied = self._bind("qfrc_applied")
         self.outside = OutsideForces(batch, variants, runs, step_s)
         self._elastic: ElasticJoints | None = None
+        self._plain = not variants.need_laws().any()
 
     def begin(self, asked_rad: FloatArray | None = None) -> None:
         """Begin, or begin again, in the state that the simulations are in.
@@ -131,6 +132,31 @@ class BatchLaws:
             asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
         self._servos.limit(asked_rad, position, velocity)
         self._ctrl[:, self._actuators] = asked_rad
+
+    @property
+    def only_follow(self) -> bool:
+        """Whether servos follow targets that do not jump by MuJoCo's actuators alone.
+
+        Then nothing has to be computed between steps, unless servos saturate.
+        """
+        return self._plain and self._servos.at_rest
+
+    def saturate(
+        self, target_rad: FloatArray, angle: FloatArray, velocity: FloatArray
+    ) -> bool:
+        """Whether any servo's torque exceeds its limit, in arrays (n R, steps, j)."""
+        return self._servos.saturate(target_rad, angle, velocity)
+
+    def begin_again(self, inertia_kg_m2: FloatArray) -> None:
+        """Begin in a state as of which joints had inertias (n R, j) in the last step.
+
+        See `inertia_kg_m2`. The simulations' states were put back before.
+        """
+        self._servos.recall(inertia_kg_m2)
+
+    def inertia_kg_m2(self) -> FloatArray:
+        """(n R, j) inertias at the joints, with the links beyond, in the last step."""
+        return self._servos.inertia_kg_m2()
 
     def jumps(self, ends: Ends | None) -> list[Ends | None]:
         """For each of B steps its targets (n R, j) as it begins and ends, if any jumps.
