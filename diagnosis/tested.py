@@ -14,7 +14,7 @@ from diagnosis.conclude.held_out_errors import (
     rms_above_floor,
 )
 from diagnosis.conclude.nuisance_found import with_unusual_ones
-from diagnosis.effects.library import effect
+from diagnosis.effects.library import lasts
 from diagnosis.learned import Learned
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.fitting import FittedModel
@@ -100,14 +100,16 @@ def _test_of(
         nominal = data.learned.nominal(), data.test.nominal()
         sims = [one.nominal() for one in sims]
     own = sims[0].with_tolerances_beside(model)
-    refitted, said = established(own, model)
+    healthy = learned.search.judge.healthy if own.plant.base == "fixed" else ()
+    refitted, said = established(own, model, healthy)
     known, model = bool(model), refitted.model if refitted else ()
     both = sims[0].moved_to(model)
     pair = both, sims[1].with_nuisance_of(both)
     usual = beside_control(nominal, model)
     fit, judged = held_out_errors(usual, pair, learned.result, model, least_gain, seed)
     if model:
-        timed = all(effect(placed.name).timed for placed in model)
+        traces = [*data.learned.traces, *data.test.traces]
+        timed = not any(lasts(placed, traces) for placed in model)
         left = nominal[1].residuals([()])[0], pair[1].residuals([model])[0]
         refuted = model_refuted(*left, least_gain)
         said = (*refuted, *said, *objections(judged, timed))

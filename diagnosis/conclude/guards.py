@@ -7,13 +7,16 @@ same at a wrong place and than another effect, and much of what a regression wit
 physics could.
 """
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.conclude.between_recordings import scattered
 from diagnosis.conclude.estimates import Z_80, standard_errors
 from diagnosis.conclude.held_out_errors import Judgement
-from diagnosis.effects.library import effect
+from diagnosis.effects.library import effect, lasts
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
@@ -47,20 +50,21 @@ find a moment from far away."""
 
 
 def established(
-    both: Predictor, model: Model
+    both: Predictor, model: Model, healthy: Sequence[Predictor] = ()
 ) -> tuple[FittedModel | None, tuple[str, ...]]:
     """The effects of a model, refitted, without those that may be nothing.
 
     Effects are removed one at a time, those that may be nothing before those on a
     bound. Returns the effects fitted to the data of `both`, None if none is left, and
-    sentences on those on a bound.
+    sentences on those on a bound. `healthy` are predictors of the healthy robot, which
+    show how much recordings of one robot differ.
     """
     said = list[str]()
     model = _retimed(both.without_tolerances(), model)
     while model:
         fitted = fit_all(both, [model])[0]
         model = fitted.model
-        doubtful = _may_be_nothing(both, fitted)
+        doubtful = _may_be_nothing(both, fitted) or _scattered(both, healthy, fitted)
         bound = [one for one in model if ran_into_bound(fitted, one)]
         if doubtful is None and not bound:
             return fitted, tuple(said)
@@ -118,6 +122,20 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
         if ratios and max(ratios) < least:
             worst, least = placed, max(ratios)
     return worst
+
+
+def _scattered(
+    both: Predictor, healthy: Sequence[Predictor], fitted: FittedModel
+) -> PlacedEffect | None:
+    """An effect that may be no more than differences between recordings, if any is.
+
+    What does not last need not be in all of them. On a floating base recordings differ
+    by chance, and each time block counts by itself.
+    """
+    if both.plant.base == "floating":
+        return None
+    found = itertools.chain(*scattered(both, healthy, fitted))
+    return next((one for one in found if lasts(one, both.traces)), None)
 
 
 def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:

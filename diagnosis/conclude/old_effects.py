@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.conclude.estimates import PRIOR_SPREAD, standard_errors
-from diagnosis.effects.library import effect
+from diagnosis.effects.library import effect, lasts
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import groups_of
@@ -39,10 +39,11 @@ def old_effects(judge: Judge, result: SearchResult) -> Model:
     """
     if result.winner is None or not judge.healthy or judge.fit.plant.base != "fixed":
         return ()
-    lasting = tuple(one for one in result.winner.model if not effect(one.name).timed)
+    (healthy,) = judge.healthy
+    traces = [*judge.fit.traces, *healthy.traces]
+    lasting = tuple(one for one in result.winner.model if lasts(one, traces))
     if not lasting:
         return ()
-    (healthy,) = judge.healthy
     own, now = _fitted(judge.fit, result.winner.model)
     healthy, then = _fitted(healthy, _fitted(healthy, lasting)[1].model)
     groups = groups_of(then.model)

@@ -1,13 +1,14 @@
 """All effects that a diagnosis can name, and how to add effects of your own."""
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from types import MappingProxyType
 
 from diagnosis.effects import bodies, friction, ground, joints, sensors, servos
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.traces.trace import Trace
 from groundwalk.errors import BadValueError, UnknownNameError
 
 BUILT_IN: Mapping[str, Effect] = MappingProxyType(
@@ -83,6 +84,17 @@ def grown_from(placed: PlacedEffect) -> tuple[PlacedEffect, ...]:
     return tuple(
         grown for one in all_effects().values() for grown in one.grown_from(placed)
     )
+
+
+def lasts(placed: PlacedEffect, traces: Sequence[Trace]) -> bool:
+    """Whether an effect acts in all recordings, and all the time in each."""
+    first_s = min(float(trace.time_s[0]) for trace in traces)
+    last_s = max(float(trace.time_s[-1]) for trace in traces)
+    kind = effect(placed.name)
+    if not kind.timed:
+        return True
+    acted = kind.acted(placed, first_s, last_s)
+    return placed.recording is None and acted.kind == "always"
 
 
 @contextlib.contextmanager

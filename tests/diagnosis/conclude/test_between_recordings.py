@@ -1,0 +1,99 @@
+"""What differs from recording to recording is no evidence of something missing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from made_up_traces import NOISE_RAD, arm, recorded
+from scipy.stats import norm, t
+
+from diagnosis.conclude import between_recordings
+from diagnosis.conclude.between_recordings import may_be_scatter, scattered
+from diagnosis.conclude.guards import established
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.fitting import fit_all
+
+CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
+GAIN = (PlacedEffect("servo_gain", "elbow", (1.03,)),)
+
+
+def predictor_of(gains, first=0):
+    """Of one recording for each gain of the elbow's servo."""
+    traces = [
+        replace(
+            recorded(arm(), ("servo_gain", "elbow", gain), seed=first + k),
+            name=f"recording {first + k}",
+        )
+        for k, gain in enumerate(gains)
+    ]
+    found = Predictor(arm(), traces, CHANNELS)
+    found.calibrate(GAIN, tolerances=False)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("gains", "expected"),
+    [((1.03, 1.03), False), ((1.07, 0.99), True), ((1.6, 1.58), False)],
+)
+def test_an_effect_that_recordings_disagree_on_is_scatter(gains, expected):
+    both = predictor_of(gains)
+    (fitted,) = fit_all(both, [GAIN])
+    assert bool(scattered(both, [], fitted)) == expected
+    kept, _ = established(both, GAIN)
+    assert (kept is None) == expected
+
+
+@pytest.mark.parametrize(
+    ("before", "expected"), [((1.0, 1.0), False), ((1.05, 0.95), True)]
+)
+def test_the_healthy_robot_shows_how_much_recordings_differ(before, expected):
+    both, healthy = predictor_of((1.03, 1.03)), predictor_of(before, first=5)
+    (fitted,) = fit_all(both, [GAIN])
+    assert bool(scattered(both, [healthy], fitted)) == expected
+
+
+def test_what_acts_in_one_recording_is_not_asked_of_others():
+    both = predictor_of((1.0, 1.0))
+    push = PlacedEffect(
+        "external_force", "lower", (5.0, 0.0, 0.0, 0.5, 0.5), both.traces[0].recording
+    )
+    (fitted,) = fit_all(both, [(push,)])
+    kept, _ = established(both, fitted.model)
+    assert kept is None or kept.model[0].key == push.key
+
+
+def of(*sizes, weight=100.0):
+    return np.array(sizes), np.full(len(sizes), weight)
+
+
+def test_scatter_widens_the_error_of_the_mean():
+    """Two sizes 1 -+ d: scatter 2 w d^2, one degree, so that |t| = 1 / d."""
+    edge = 1 / t.isf(0.025, 1)
+    assert may_be_scatter([of(1 + 1.01 * edge, 1 - 1.01 * edge, weight=1e6)])
+    assert not may_be_scatter([of(1 + 0.99 * edge, 1 - 0.99 * edge, weight=1e6)])
+
+
+def test_scatter_that_may_be_noise_widens_nothing():
+    """The recordings disagree from 1.96 standard errors of their difference on."""
+    apart = norm.isf(0.025) / np.sqrt(2 * 100.0)
+    assert not may_be_scatter([of(1 + 0.99 * apart, 1 - 0.99 * apart)])
+    assert may_be_scatter([of(1 + 1.01 * apart, 1 - 1.01 * apart)])
+
+
+def test_recordings_in_which_the_effect_hardly_shows_say_nothing():
+    sizes, weights = of(1.0, 1.02, 9.0, weight=1e4)
+    assert may_be_scatter([(sizes, weights)])
+    assert not may_be_scatter([(sizes, weights * [1, 1, 1e-3])])
+    assert not may_be_scatter([of(1.0)])
+
+
+@pytest.mark.parametrize("constant", ["LEVEL", "LEAST_WEIGHT"])
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_a_factor_of_two_does_not_matter(monkeypatch, constant, factor):
+    value = getattr(between_recordings, constant)
+    monkeypatch.setattr(between_recordings, constant, factor * value)
+    test_the_healthy_robot_shows_how_much_recordings_differ((1.0, 1.0), False)
+    test_the_healthy_robot_shows_how_much_recordings_differ((1.05, 0.95), True)
+    test_an_effect_that_recordings_disagree_on_is_scatter((1.6, 1.58), False)
