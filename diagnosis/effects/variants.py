@@ -158,7 +158,8 @@ class Variants:
     def need_laws(self) -> BoolArray:
         """(n,) whether a replay has to compute something at every step of a variant.
 
-        What effects change once for all, such as masses, gains or limits, is not that.
+        What effects change once for all, such as masses, gains or limits, is not that,
+        nor are pushes, which change as they begin and end.
         """
         own = self.joints
         changes = (
@@ -166,10 +167,12 @@ class Variants:
             *(own.load_share, self.outside.drag_n_s_m, *self.torques.values()),
             *(np.isfinite(own.setpoint_speed_rad_s), np.isfinite(own.spring_nm_rad)),
         )
-        found = np.array([bool(some) for some in self.outside.pushes])
-        for one in changes:
-            found |= one.reshape(self.n, -1).any(axis=1)
-        return found
+        every = [one.reshape(self.n, -1).any(axis=1) for one in changes]
+        return np.asarray(np.any(every, axis=0))
+
+    def pushed(self) -> BoolArray:
+        """(n,) whether bodies of a variant are pushed."""
+        return np.array([bool(some) for some in self.outside.pushes])
 
     def column(self, joint: str) -> int:
         """Index of a joint in arrays (n, j)."""

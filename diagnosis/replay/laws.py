@@ -19,7 +19,10 @@ from diagnosis.replay.servos import (
     first_share,
 )
 from diagnosis.replay.transmission import BatchGaps, ElasticJoints
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
+
+ROUNDING = 1e-9
+"""Share of a step that is no time at all: what rounding of times [s] may be."""
 
 FAST = 1e9
 """Speed [rad/s] that stands for no speed limit of a set-point."""
@@ -285,6 +288,14 @@ class OutsideForces:
         self._pushed_n = np.zeros((*self._drag.shape, 3))
         self._last_m: FloatArray | None = None
 
+    def changes(self, time_s: FloatArray) -> BoolArray:
+        """(B,) whether pushes differ in steps from those in the step before.
+
+        The steps follow upon the present one, and begin at (B, R) times [s].
+        """
+        shares = np.stack([self._share, *map(self._shares, time_s)])
+        return np.asarray((np.diff(shares, axis=0) != 0).any(axis=(1, 2)))
+
     def apply(self, time_s: FloatArray) -> None:
         """Set the forces of the step that begins at (R,) times [s], one for a run."""
         if len(self._row):
@@ -294,9 +305,7 @@ class OutsideForces:
 
     def _push(self, time_s: FloatArray) -> None:
         """Apply each push, scaled by the share of the step in which it acts."""
-        begin = np.maximum(time_s, self._start_s[:, None])
-        end = np.minimum(time_s + self._step_s, self._end_s[:, None])
-        share = np.maximum(end - begin, 0.0) / self._step_s
+        share = self._shares(time_s)
         if (share == self._share).all():
             return
         self._share = share
@@ -306,6 +315,14 @@ class OutsideForces:
         force = share[:, :, None] * self._newton[:, None]
         np.add.at(self._pushed_n, (pushed, bodies), force)
         self._force[pushed, bodies, :3] = self._pushed_n[pushed, bodies]
+
+    def _shares(self, time_s: FloatArray) -> FloatArray:
+        """(pushes, R) shares of the step from (R,) times on in which pushes act."""
+        begin = np.maximum(time_s, self._start_s[:, None])
+        end = np.minimum(time_s + self._step_s, self._end_s[:, None])
+        # all of a step is all of it, whatever the rounding of its time
+        share = np.maximum(end - begin, 0.0) / self._step_s
+        return np.where(np.abs(share - 1) < ROUNDING, 1.0, share)
 
     def _resist(self) -> None:
         """Apply drag, computed from the bodies' mean velocities over the last step."""

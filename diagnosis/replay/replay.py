@@ -70,9 +70,12 @@ def replay(
         jumps = batch.laws.jumps(drive.ends(now_s))
         added = drive.added(now_s)
         extra = pushed if added is None else added
+        alone = batch.laws.outside.changes(now_s)
+        if jumps:
+            alone |= [jump is not None for jump in jumps]
         i = 0
         while i < len(numbers):
-            until = _until_jump(jumps, i, len(numbers))
+            until = i + int(np.argmax(np.append(alone[i:], True)))
             if until > i and not rolling.waits():
                 own = (None if one is None else one[i:until] for one in (asked, extra))
                 rolled = rolling.taken(until - i, *own)
@@ -91,13 +94,6 @@ def replay(
             tape.note(first + i + 1)
             i += 1
     return tape.read(runs, variants)
-
-
-def _until_jump(jumps: Sequence[object], first: int, end: int) -> int:
-    """Index of the next step in which a target jumps, or `end`; `first` may be one."""
-    if not jumps:
-        return end
-    return next((i for i in range(first, end) if jumps[i] is not None), end)
 
 
 class ReplayBatch:

@@ -188,7 +188,8 @@ class Replays:
         """
         runs = [limb.run(run) for run in some]
         most = max(1, MOST_ROWS // len(runs))
-        slow = variants_of(limb.plant, models).need_laws()
+        every = variants_of(limb.plant, models)
+        slow = every.need_laws() | every.pushed()
         rows = sum(run.trace.ticks for run in runs)
         found = np.empty((len(models), rows, len(own.names)))
         for alike in (np.flatnonzero(~slow), np.flatnonzero(slow)):

@@ -7,7 +7,6 @@ from made_up_traces import arm, arm_command
 
 from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.effects.variants import Push
 from diagnosis.replay import replay as replays
 from diagnosis.replay import rolling
 from diagnosis.replay.replay import replay
@@ -107,10 +106,14 @@ def test_effects_that_need_a_law_at_each_step_are_known():
     assert variants_of(arm(), [(), (slow,)]).need_laws().tolist() == [False, True]
 
 
-def test_pushes_need_a_law():
-    variants = variants_of(arm(), [(), ()])
-    variants.outside.pushes[1].append(Push("lower", (1.0, 0.0, 0.0), 0.1, 0.1))
-    assert variants.need_laws().tolist() == [False, True]
+def test_as_pushes_begin_and_end_a_step_is_taken(monkeypatch):
+    push = placed("external_force", "lower", 2.0, 0.0, 0.0, 0.4003, 0.3)
+    steady = placed("external_force", "lower", 1.0, 0.0, 0.0, -1.0, 100.0)
+    run = run_of(arm())
+    rolled, count, stepped = both_ways(monkeypatch, run, [(push,), (steady,)], arm())
+    assert all(count)
+    assert_same(rolled, stepped)
+    assert np.ptp(rolled.position_rad[0, 60:80] - rolled.position_rad[1, 60:80]) > 1e-3
 
 
 def test_torques_without_servos(monkeypatch):
