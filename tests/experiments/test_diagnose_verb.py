@@ -14,8 +14,6 @@ from experiments.record import Record
 from experiments.record import main as record
 from groundwalk.errors import BadRecordingError, BadValueError, RunFolderError
 
-pytestmark = pytest.mark.xdist_group("diagnose_verb")
-
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):

@@ -23,8 +23,6 @@ from experiments.terrain_stress import TerrainStress, main
 from groundwalk.errors import BadValueError, UnknownNameError
 from walk_engine import gaits
 
-pytestmark = pytest.mark.xdist_group("terrain_stress")
-
 SMOKE = {
     "gaits": ("start",), "worlds": ("sim",), "families": ("stairs", "friction"),
     "rungs": 2, "trials": 2, "worst": 1, "threads": 1,

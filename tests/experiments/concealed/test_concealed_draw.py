@@ -22,8 +22,6 @@ from worlds.hidden.run import run_hidden
 from worlds.hidden.scales import scales
 from worlds.recordings.metadata import RecordingMetadata
 
-pytestmark = pytest.mark.xdist_group("concealed_draw")
-
 DURATION_S = 3.0
 CASES = 300
 

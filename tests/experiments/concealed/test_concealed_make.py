@@ -19,8 +19,6 @@ from worlds import read_recording
 from worlds.hidden.effects import KINDS
 from worlds.hidden.run import run_hidden
 
-pytestmark = pytest.mark.xdist_group("concealed_make")
-
 
 @pytest.fixture
 def pendulums(monkeypatch):

@@ -16,8 +16,6 @@ from experiments.transfer.gym_studies.page import check_claims, returns_figure, 
 from experiments.transfer.gym_studies.study import METHODS
 from groundwalk.errors import BadValueError, UnknownNameError
 
-pytestmark = pytest.mark.xdist_group("transfer_gym")
-
 
 @pytest.fixture(scope="module")
 def pendulum(tmp_path_factory):

@@ -19,8 +19,6 @@ from worlds.hidden import Hidden
 from worlds.hidden.limbs import limb_plant
 from worlds.hidden.run import Clock, run_hidden
 
-pytestmark = pytest.mark.xdist_group("second_case")
-
 SINGLE = CasePlan("single", "two_dof", 50, "servos", 2, True, "mujoco")
 PLANS = {
     "single": SINGLE,
