@@ -107,7 +107,8 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
     """The effect with the least evidence among those whose values may be neutral.
 
     An effect may be nothing if the neutral value of each of its parameters that has one
-    lies in its 80 % interval.
+    lies in its 80 % interval. Where that is infinite, as without a speed limit, it is
+    the end of the possible values on that side.
     """
     errors = standard_errors(both, fitted)
     x = fitted.coordinates.of(fitted.model)
@@ -116,8 +117,9 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
         ratios = []
         for i in own:
             parameter = fitted.coordinates.parameters[i]
-            if np.isfinite(parameter.neutral) and parameter.name not in SECONDARY:
-                neutral = fitted.coordinates.scaled(i, parameter.neutral)
+            nothing = np.clip(parameter.neutral, parameter.low, parameter.high)
+            if np.isfinite(nothing) and parameter.name not in SECONDARY:
+                neutral = fitted.coordinates.scaled(i, float(nothing))
                 ratios.append(abs(x[i] - neutral) / (Z_80 * errors[i]))
         if ratios and max(ratios) < least:
             worst, least = placed, max(ratios)

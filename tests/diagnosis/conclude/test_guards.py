@@ -133,3 +133,15 @@ def test_a_value_that_runs_into_its_bound_is_not_stated():
     fitted, told = established(both, (late,))
     assert fitted is None
     assert "end of its possible range" in told[0]
+
+
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_limit_that_may_as_well_be_none_is_nothing(kept):
+    """No finite speed stands for no limit: one that is never reached does."""
+    trace = recorded(arm(), *([("speed_limit", "elbow", 0.8)] if kept else []))
+    both = Predictor(arm(), [trace], CHANNELS)
+    model = (PlacedEffect("speed_limit", "elbow", (0.8 if kept else 12.0,)),)
+    both.calibrate(model, tolerances=False)
+    found, said = established(both, model)
+    assert (found is not None) == kept
+    assert not said
