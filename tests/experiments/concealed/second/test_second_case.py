@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_once import made_once
 
 from experiments.concealed import sets
 from experiments.concealed.reading import read_case
@@ -30,13 +31,15 @@ PLANS = {
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A set of three short cases, as `make_case` writes them."""
-    folder = tmp_path_factory.mktemp("set")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(second_motion, "DURATION_S", (2.5, 3.0))
-        patch.setattr(second, "planned", lambda seed, count: tuple(PLANS.values()))
-        for number in range(3):
-            sets.make_case(2, folder / "cases", folder / "truths", 5, number, 3)
-    return folder
+
+    def make(folder):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(second_motion, "DURATION_S", (2.5, 3.0))
+            patch.setattr(second, "planned", lambda seed, count: tuple(PLANS.values()))
+            for number in range(3):
+                sets.make_case(2, folder / "cases", folder / "truths", 5, number, 3)
+
+    return made_once(tmp_path_factory, "second", make)
 
 
 def truth_of(made, kind):
