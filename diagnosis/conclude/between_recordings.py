@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import chi2, t
 
+from diagnosis.effects.library import lasts
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import groups_of
@@ -32,10 +33,12 @@ def scattered(
 
     `fitted` is the fit to the recordings of `both`. Recordings of the healthy robot, if
     there are any, show how much recordings of one robot differ. Effects that share
-    their values are one.
+    their values are one. What does not last need not be in all recordings.
     """
     found = []
     for group in groups_of(fitted.model):
+        if not lasts(group[0], both.traces):
+            continue
         seen = [_sizes(both, fitted, group)]
         seen += [_sizes_before(one, group) for one in healthy]
         if may_be_scatter(seen):

@@ -7,7 +7,6 @@ same at a wrong place and than another effect, and much of what a regression wit
 physics could.
 """
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -16,7 +15,7 @@ import numpy as np
 from diagnosis.conclude.between_recordings import scattered
 from diagnosis.conclude.estimates import Z_80, standard_errors
 from diagnosis.conclude.held_out_errors import Judgement
-from diagnosis.effects.library import effect, lasts
+from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
@@ -131,13 +130,13 @@ def _scattered(
 ) -> PlacedEffect | None:
     """An effect that may be no more than differences between recordings, if any is.
 
-    What does not last need not be in all of them. On a floating base recordings differ
-    by chance, and each time block counts by itself.
+    On a floating base recordings differ by chance, and each time block counts by
+    itself.
     """
     if both.plant.base == "floating":
         return None
-    found = itertools.chain(*scattered(both, healthy, fitted))
-    return next((one for one in found if lasts(one, both.traces)), None)
+    found = scattered(both, healthy, fitted)
+    return found[0][0] if found else None
 
 
 def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:

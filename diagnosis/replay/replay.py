@@ -62,7 +62,8 @@ def replay(
     longest_s = max(run.trace.duration_s for run in runs)
     steps = int(np.ceil((longest_s + 1e-9) / step_s))
     drive = Drive(runs, variants.signals.command_delay_s, step_s)
-    tape, rolling = Tape(batch, steps), Rolling(batch)
+    tape = Tape(batch, steps)
+    rolling = Rolling(batch.batch, batch.laws, batch.plant)
     for first in range(0, steps, BLOCK):
         numbers = np.arange(first, min(first + BLOCK, steps))
         now_s = start_s + numbers[:, None] * step_s

@@ -2,22 +2,20 @@
 
 Between two steps most replays have nothing to do: commands are known in advance, and
 MuJoCo's actuators are the servos. Then MuJoCo takes all steps of a block by itself,
-which for few simulations is ten times as fast. Where a servo saturates, its law is
-needed at every step: such a block is begun again, and taken step by step.
+which saves most of the time where few robots are simulated. Where a servo saturates,
+its law is needed at every step: such a block is begun again, and taken step by step.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from mujoco import mjtState
-from mujoco.batch import SimulationError
+from mujoco.batch import Batch, SimulationError
 
+from diagnosis.plant.plant import Plant
+from diagnosis.replay.laws import BatchLaws
 from diagnosis.replay.servos import columns
 from groundwalk.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from diagnosis.replay.replay import ReplayBatch
 
 PAUSE = 256
 """Steps that are taken one by one after a block that had to be begun again; twice as
@@ -41,13 +39,13 @@ class Rolled:
 class Rolling:
     """Takes steps of a replay inside MuJoCo, as long as no law is needed at them."""
 
-    def __init__(self, batch: "ReplayBatch") -> None:
-        """Prepare for a batch of simulations that are in their start states."""
-        self._batch = batch
-        self._actuators = columns(batch.plant.actuators)
-        self._dofs = columns(batch.plant.dofs)
-        self._ctrl = batch.bind("ctrl")
-        self._applied = batch.bind("qfrc_applied")
+    def __init__(self, batch: Batch, laws: BatchLaws, plant: Plant) -> None:
+        """Prepare for a batch of robots with their laws, in their start states."""
+        self._batch, self._laws = batch, laws
+        self._actuators = columns(plant.actuators)
+        self._angles, self._dofs = columns(plant.qpos), columns(plant.dofs)
+        self._ctrl = np.asarray(batch.bind("ctrl"))
+        self._applied = np.asarray(batch.bind("qfrc_applied"))
         self._wait, self._pause = 0, PAUSE
 
     def waits(self) -> bool:
@@ -55,7 +53,7 @@ class Rolling:
         if self._wait:
             self._wait -= 1
             return True
-        return not self._batch.laws.only_follow
+        return not self._laws.only_follow
 
     def taken(
         self,
@@ -68,7 +66,7 @@ class Rolling:
         `asked_rad` (k, n, j) are position targets in measured angles that do not jump
         within a step, `pushed_nm` (k, n, j) torques on the joints; None for none.
         """
-        batch, laws = self._batch.batch, self._batch.laws
+        batch, laws = self._batch, self._laws
         before, inertia = batch.state.copy(), laws.inertia_kg_m2().copy()
         warned = batch.warning.sum()
         angle, speed = (one.copy() for one in laws.joint_state())
@@ -114,9 +112,8 @@ class Rolling:
         self, target: FloatArray, angle: FloatArray, speed: FloatArray, rolled: Rolled
     ) -> bool:
         """Whether a servo's torque exceeds its limit as any of the steps begins."""
-        plant, laws = self._batch.plant, self._batch.laws
-        angles = rolled.qpos[:, :-1, columns(plant.qpos)]
+        angles = rolled.qpos[:, :-1, self._angles]
         speeds = rolled.qvel[:, :-1, self._dofs]
         angles = np.concatenate([angle[:, None], angles], axis=1)
         speeds = np.concatenate([speed[:, None], speeds], axis=1)
-        return laws.saturate(target.transpose(1, 0, 2), angles, speeds)
+        return self._laws.saturate(target.transpose(1, 0, 2), angles, speeds)

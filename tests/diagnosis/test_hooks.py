@@ -10,9 +10,10 @@ from swinger_rig import moved, swinger
 
 from diagnosis.pipeline import diagnose
 from diagnosis.residuals.channels import shared_channels
+from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.reference import learn_reference, reference_checks
-from diagnosis.search.result import pack_noise
+from diagnosis.search.result import pack_noise, unpack_noise
 
 
 class Reports:
@@ -101,3 +102,16 @@ def test_what_was_learned_from_a_reference_is_not_learned_again():
     np.testing.assert_array_equal(same_residual, residual)
     assert again.steps < first.steps
     assert all(name.startswith("reference") for name in again.stages)
+
+
+def test_a_part_that_comes_again_is_stored_apart():
+    """Else it would be given what the same part had found before."""
+    store = Store()
+    hooks = Hooks(checkpoint=store)
+    noises = [ReferenceNoise.known((), count) for count in (1, 2)]
+    found = [
+        hooks.within("reference").saved(lambda one=one: one, pack_noise, unpack_noise)
+        for one in noises
+    ]
+    assert [len(one.scale) for one in found] == [1, 2]
+    assert len(store.kept) == 2

@@ -20,7 +20,7 @@ GAIN = (PlacedEffect("servo_gain", "elbow", (1.03,)),)
 
 
 def predictor_of(gains, first=0):
-    """Of one recording for each gain of the elbow's servo."""
+    """A predictor of one recording for each gain of the elbow's servo."""
     traces = [
         replace(
             recorded(arm(), ("servo_gain", "elbow", gain), seed=first + k),
@@ -54,14 +54,20 @@ def test_the_healthy_robot_shows_how_much_recordings_differ(before, expected):
     assert bool(scattered(both, [healthy], fitted)) == expected
 
 
-def test_what_acts_in_one_recording_is_not_asked_of_others():
-    both = predictor_of((1.0, 1.0))
-    push = PlacedEffect(
-        "external_force", "lower", (5.0, 0.0, 0.0, 0.5, 0.5), both.traces[0].recording
-    )
-    (fitted,) = fit_all(both, [(push,)])
-    kept, _ = established(both, fitted.model)
-    assert kept is None or kept.model[0].key == push.key
+def test_what_does_not_last_need_not_be_in_all_recordings():
+    push = "external_force", "lower", 5.0, 0.0, 0.0, 1.0, 0.5
+    traces = [
+        replace(recorded(arm(), *own, seed=k), name=f"recording {k}")
+        for k, own in enumerate(([push], []))
+    ]
+    both = Predictor(arm(), traces, CHANNELS)
+    model = (PlacedEffect(push[0], push[1], push[2:]),)
+    both.calibrate(model, tolerances=False)
+    (fitted,) = fit_all(both, [model])
+    assert scattered(both, [], fitted) == []
+    always = (PlacedEffect(push[0], push[1], (1.0, 0.0, 0.0, -1.0, 100.0)),)
+    (fitted,) = fit_all(both, [always])
+    assert scattered(both, [], fitted) != []
 
 
 def of(*sizes, weight=100.0):

@@ -133,7 +133,7 @@ UNIT = np.eye(3)
 
 
 def test_values_count_as_far_off_from_the_gain_that_the_best_reaches_by_chance():
-    """Of three one in a hundred exceeds this distance, if all are zero."""
+    """The largest of three exceeds this distance once in a hundred, if all are zero."""
     edge = np.sqrt(chi2.isf(0.01 / 3, 1))
     groups = [[0], [1], [2]]
     assert Values(np.array([0.99 * edge, 0, 0]), UNIT).far_off(groups) == []
@@ -144,7 +144,7 @@ def test_values_count_as_far_off_from_the_gain_that_the_best_reaches_by_chance()
 
 
 def test_one_value_makes_up_for_others_whose_errors_go_with_its_own():
-    """Of the first two only the sum is known: either may be the one that is off."""
+    """Only the sum of the first two is known: either may be the one that is off."""
     alike = np.array([[1.0, -0.99, 0], [-0.99, 1.0, 0], [0, 0, 1.0]]) * 100
     far = Values(np.array([20.0, 20.0, 0.0]), alike)
     assert len(far.far_off([[0], [1], [2]])) == 1

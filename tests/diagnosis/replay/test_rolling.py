@@ -7,7 +7,6 @@ from made_up_traces import arm, arm_command
 
 from diagnosis.effects.library import all_effects
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.replay import replay as replays
 from diagnosis.replay import rolling
 from diagnosis.replay.replay import replay
 from diagnosis.replay.rolling import Rolling
@@ -147,4 +146,3 @@ def test_after_each_failure_it_waits_twice_as_long(monkeypatch):
     monkeypatch.setattr(Rolling, "taken", counted)
     replay([run_of(plant, duration_s=3.0)], variants_of(plant, [()]), STEP_S)
     assert [one for one in waits if one][:2] == [rolling.PAUSE, 2 * rolling.PAUSE]
-    assert replays.BLOCK * 3 > rolling.PAUSE
