@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 if TYPE_CHECKING:
     from diagnosis.effects.effect import TorqueEffect
@@ -154,25 +154,6 @@ class Variants:
         """(n, j, parameters) values of a `TorqueEffect`, to be changed in place."""
         shape = self.n, len(self.plant.joints), parameters
         return self.torques.setdefault(effect, np.zeros(shape))
-
-    def need_laws(self) -> BoolArray:
-        """(n,) whether a replay has to compute something at every step of a variant.
-
-        What effects change once for all, such as masses, gains or limits, is not that,
-        nor are pushes, which change as they begin and end.
-        """
-        own = self.joints
-        changes = (
-            *(own.fade_1_s, own.off_share, own.gap_rad, own.stribeck_nm),
-            *(own.load_share, self.outside.drag_n_s_m, *self.torques.values()),
-            *(np.isfinite(own.setpoint_speed_rad_s), np.isfinite(own.spring_nm_rad)),
-        )
-        every = [one.reshape(self.n, -1).any(axis=1) for one in changes]
-        return np.asarray(np.any(every, axis=0))
-
-    def pushed(self) -> BoolArray:
-        """(n,) whether bodies of a variant are pushed."""
-        return np.array([bool(some) for some in self.outside.pushes])
 
     def column(self, joint: str) -> int:
         """Index of a joint in arrays (n, j)."""

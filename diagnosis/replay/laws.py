@@ -19,10 +19,7 @@ from diagnosis.replay.servos import (
     first_share,
 )
 from diagnosis.replay.transmission import BatchGaps, ElasticJoints
-from groundwalk.arrays import BoolArray, FloatArray
-
-ROUNDING = 1e-9
-"""Share of a step that is no time at all: what rounding of times [s] may be."""
+from groundwalk.arrays import FloatArray
 
 FAST = 1e9
 """Speed [rad/s] that stands for no speed limit of a set-point."""
@@ -78,7 +75,6 @@ class BatchLaws:
         self._applied = self._bind("qfrc_applied")
         self.outside = OutsideForces(batch, variants, runs, step_s)
         self._elastic: ElasticJoints | None = None
-        self._plain = not variants.need_laws().any()
 
     def begin(self, asked_rad: FloatArray | None = None) -> None:
         """Begin, or begin again, in the state that the simulations are in.
@@ -135,31 +131,6 @@ class BatchLaws:
             asked_rad = self._elastic.drive(asked_rad, position, velocity, self._step_s)
         self._servos.limit(asked_rad, position, velocity)
         self._ctrl[:, self._actuators] = asked_rad
-
-    @property
-    def only_follow(self) -> bool:
-        """Whether servos follow targets that do not jump by MuJoCo's actuators alone.
-
-        Then nothing has to be computed between steps, unless servos saturate.
-        """
-        return self._plain and self._servos.at_rest
-
-    def saturate(
-        self, target_rad: FloatArray, angle: FloatArray, velocity: FloatArray
-    ) -> bool:
-        """Whether any servo's torque exceeds its limit, in arrays (n R, steps, j)."""
-        return self._servos.saturate(target_rad, angle, velocity)
-
-    def begin_again(self, inertia_kg_m2: FloatArray) -> None:
-        """Begin in a state as of which joints had inertias (n R, j) in the last step.
-
-        See `inertia_kg_m2`. The simulations' states were put back before.
-        """
-        self._servos.recall(inertia_kg_m2)
-
-    def inertia_kg_m2(self) -> FloatArray:
-        """(n R, j) inertias at the joints, with the links beyond, in the last step."""
-        return self._servos.inertia_kg_m2()
 
     def jumps(self, ends: Ends | None) -> list[Ends | None]:
         """For each of B steps its targets (n R, j) as it begins and ends, if any jumps.
@@ -288,14 +259,6 @@ class OutsideForces:
         self._pushed_n = np.zeros((*self._drag.shape, 3))
         self._last_m: FloatArray | None = None
 
-    def changes(self, time_s: FloatArray) -> BoolArray:
-        """(B,) whether pushes differ in steps from those in the step before.
-
-        The steps follow upon the present one, and begin at (B, R) times [s].
-        """
-        shares = np.stack([self._share, *map(self._shares, time_s)])
-        return np.asarray((np.diff(shares, axis=0) != 0).any(axis=(1, 2)))
-
     def apply(self, time_s: FloatArray) -> None:
         """Set the forces of the step that begins at (R,) times [s], one for a run."""
         if len(self._row):
@@ -305,7 +268,9 @@ class OutsideForces:
 
     def _push(self, time_s: FloatArray) -> None:
         """Apply each push, scaled by the share of the step in which it acts."""
-        share = self._shares(time_s)
+        begin = np.maximum(time_s, self._start_s[:, None])
+        end = np.minimum(time_s + self._step_s, self._end_s[:, None])
+        share = np.maximum(end - begin, 0.0) / self._step_s
         if (share == self._share).all():
             return
         self._share = share
@@ -315,14 +280,6 @@ class OutsideForces:
         force = share[:, :, None] * self._newton[:, None]
         np.add.at(self._pushed_n, (pushed, bodies), force)
         self._force[pushed, bodies, :3] = self._pushed_n[pushed, bodies]
-
-    def _shares(self, time_s: FloatArray) -> FloatArray:
-        """(pushes, R) shares of the step from (R,) times on in which pushes act."""
-        begin = np.maximum(time_s, self._start_s[:, None])
-        end = np.minimum(time_s + self._step_s, self._end_s[:, None])
-        # all of a step is all of it, whatever the rounding of its time
-        share = np.maximum(end - begin, 0.0) / self._step_s
-        return np.where(np.abs(share - 1) < ROUNDING, 1.0, share)
 
     def _resist(self) -> None:
         """Apply drag, computed from the bodies' mean velocities over the last step."""

@@ -11,7 +11,6 @@ from diagnosis.plant.servo import Servo
 from diagnosis.replay.conforming_ground import conform
 from diagnosis.replay.drive import Drive
 from diagnosis.replay.laws import BatchLaws
-from diagnosis.replay.rolling import Rolled, Rolling
 from diagnosis.replay.servos import columns
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import Run
@@ -63,27 +62,13 @@ def replay(
     steps = int(np.ceil((longest_s + 1e-9) / step_s))
     drive = Drive(runs, variants.signals.command_delay_s, step_s)
     tape = Tape(batch, steps)
-    rolling = Rolling(batch.batch, batch.laws, batch.plant)
     for first in range(0, steps, BLOCK):
         numbers = np.arange(first, min(first + BLOCK, steps))
         now_s = start_s + numbers[:, None] * step_s
         asked, pushed = drive.at(now_s)
         jumps = batch.laws.jumps(drive.ends(now_s))
         added = drive.added(now_s)
-        extra = pushed if added is None else added
-        alone = batch.laws.outside.changes(now_s)
-        if jumps:
-            alone |= [jump is not None for jump in jumps]
-        i = 0
-        while i < len(numbers):
-            until = i + int(np.argmax(np.append(alone[i:], True)))
-            if until > i and not rolling.waits():
-                own = (None if one is None else one[i:until] for one in (asked, extra))
-                rolled = rolling.taken(until - i, *own)
-                if rolled is not None:
-                    tape.note_all(first + i + 1, rolled)
-                    i = until
-                    continue
+        for i in range(len(numbers)):
             if asked is not None:
                 batch.laws.servo(asked[i], now_s[i], jumps[i])
             if pushed is not None:
@@ -93,7 +78,6 @@ def replay(
             batch.laws.outside.apply(now_s[i])
             batch.step()
             tape.note(first + i + 1)
-            i += 1
     return tape.read(runs, variants)
 
 
@@ -101,7 +85,7 @@ class ReplayBatch:
     """Simulations of all variants of a robot model in all runs, sorted by variant.
 
     `n` is the number of simulations, `count` that of runs. `qpos` (n, nq) and `qvel`
-    (n, nv) are MuJoCo's, which change as the simulations step; `batch` is MuJoCo's.
+    (n, nv) are MuJoCo's, which change as the simulations step.
     """
 
     def __init__(
@@ -110,24 +94,24 @@ class ReplayBatch:
         """Put the simulations of n variants in R runs into the runs' start states."""
         self.plant, self.step_s = variants.plant, step_s
         self.n, self.count = variants.n * len(runs), len(runs)
-        self.batch = Batch(self.plant.model, self.n, threads)
-        np.asarray(self.batch.expand("opt.timestep"))[:] = step_s
+        self._batch = Batch(self.plant.model, self.n, threads)
+        np.asarray(self._batch.expand("opt.timestep"))[:] = step_s
         self.qpos, self.qvel = map(self.bind, ("qpos", "qvel"))
         servos = [_servo(run.trace) for run in runs]
-        self.laws = BatchLaws(self.batch, variants, servos, step_s)
+        self.laws = BatchLaws(self._batch, variants, servos, step_s)
         self._start(runs, variants)
         self.laws.begin()
 
     def step(self) -> None:
         """Take one step of physics; a simulation that diverges gets NaN positions."""
         try:
-            self.batch.step()
+            self._batch.step()
         except SimulationError as error:
             self.qpos[error.ids] = np.nan
 
     def bind(self, name: str) -> FloatArray:
         """(n, ...) live view of a field of `MjData` of all n simulations."""
-        return np.asarray(self.batch.bind(name))
+        return np.asarray(self._batch.bind(name))
 
     def _start(self, runs: Sequence[Run], variants: Variants) -> None:
         """Set start positions and velocities, and ground bumps under the soles."""
@@ -142,10 +126,10 @@ class ReplayBatch:
         if bases:
             base = np.tile(bases, (n, 1))
             self.qpos[:, :7], self.qvel[:, :6] = base[:, :7], base[:, 7:]
-        self.batch.forward()
+        self._batch.forward()
         height_m = variants.outside.bump_height_m
         if height_m.any() and bases:
-            conform(self.batch, plant, [*runs] * n, np.repeat(height_m, self.count))
+            conform(self._batch, plant, [*runs] * n, np.repeat(height_m, self.count))
 
 
 def _servo(trace: Trace) -> Servo:
@@ -180,20 +164,6 @@ class Tape:
         if self._base is not None:
             self._base[step, :, :7] = batch.qpos[:, :7]
             self._base[step, :, 7:] = batch.qvel[:, :6]
-
-    def note_all(self, step: int, rolled: Rolled) -> None:
-        """Store the states after some steps, the first of which is number `step`."""
-        plant, found = self._batch.plant, rolled.qpos.swapaxes(0, 1)
-        own = slice(step, step + len(found))
-        speed, force = (
-            one.swapaxes(0, 1) for one in (rolled.qvel, rolled.actuator_force)
-        )
-        self._position[own] = found[:, :, columns(plant.qpos)]
-        self._velocity[own] = speed[:, :, columns(plant.dofs)]
-        self._torque[own] = force[:, :, self._actuators]
-        if self._base is not None:
-            self._base[own, :, :7] = found[:, :, :7]
-            self._base[own, :, 7:] = speed[:, :, :6]
 
     def read(self, runs: Sequence[Run], variants: Variants) -> list[Replayed]:
         """Predicted measurements for each run, at the rows of its recording."""

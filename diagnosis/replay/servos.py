@@ -89,7 +89,6 @@ class BatchServos:
         model = plant.model
         diagonal = model.M_rowadr + model.M_rownnz - 1
         self._mass = np.asarray(batch.bind("M")), diagonal[self._dofs]
-        self._recalled: FloatArray | None = None
         # limits of the next step, and whether actuators' present ones are not `_limit`
         self._least_limit, self._changed = self._limit, False
 
@@ -103,17 +102,9 @@ class BatchServos:
 
         One whose torque is below leaves saturation within the step: see `limit`.
         """
-        inertia = self.inertia_kg_m2() + self._step_s * self._damping[:, self._dofs]
-        return np.asarray(self._limit * (1 + self._step_s * self.law["kd"] / inertia))
-
-    def inertia_kg_m2(self) -> FloatArray:
-        """(rows, j) inertias at the joints, with the links beyond, in the last step."""
         mass, diagonal = self._mass
-        return mass[:, diagonal] if self._recalled is None else self._recalled
-
-    def recall(self, inertia_kg_m2: FloatArray) -> None:
-        """Take inertias (rows, j) as those of the last step, as it is taken again."""
-        self._recalled = inertia_kg_m2
+        inertia = mass[:, diagonal] + self._step_s * self._damping[:, self._dofs]
+        return np.asarray(self._limit * (1 + self._step_s * self.law["kd"] / inertia))
 
     def equal(
         self, mean_rad: FloatArray, ends: Ends, angle: FloatArray, velocity: FloatArray
@@ -170,20 +161,6 @@ class BatchServos:
         if changed or self._changed:
             self._set_range(np.where(free, UNLIMITED_NM, self._least_limit))
         self._changed, self._least_limit = changed, self._limit
-        self._recalled = None
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether all actuators have their own limits, not those of a single step."""
-        return not self._changed and self._least_limit is self._limit
-
-    def saturate(
-        self, target_rad: FloatArray, angle: FloatArray, velocity: FloatArray
-    ) -> bool:
-        """Whether any torque exceeds its limit, in arrays (rows, steps, j)."""
-        kp, kd = self.law["kp"][:, None], self.law["kd"][:, None]
-        torque = np.abs(kp * (target_rad - angle) - kd * velocity)
-        return bool((torque > self._limit[:, None]).any())
 
     def _set_range(self, limit: FloatArray) -> None:
         """Set torque limits (rows, j) [N m] of all actuators."""

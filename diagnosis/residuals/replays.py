@@ -182,23 +182,16 @@ class Replays:
         step_s: float,
         own: Channels,
     ) -> FloatArray:
-        """(n, rows of the runs, channels of the limb) simulated values, in batches.
-
-        Models that need laws at every step would slow down others in their batch.
-        """
+        """(n, rows of the runs, channels of the limb) simulated values, in batches."""
         runs = [limb.run(run) for run in some]
         most = max(1, MOST_ROWS // len(runs))
-        every = variants_of(limb.plant, models)
-        slow = every.need_laws() | every.pushed()
-        rows = sum(run.trace.ticks for run in runs)
-        found = np.empty((len(models), rows, len(own.names)))
-        for alike in (np.flatnonzero(~slow), np.flatnonzero(slow)):
-            for first in range(0, len(alike), most):
-                part = alike[first : first + most]
-                variants = variants_of(limb.plant, [models[i] for i in part])
-                results = replay(runs, variants, step_s, self._threads)
-                found[part] = np.concatenate([stacked(one, own) for one in results], 1)
-        return found
+        parts = []
+        for first in range(0, len(models), most):
+            variants = variants_of(limb.plant, models[first : first + most])
+            results = replay(runs, variants, step_s, self._threads)
+            stacks = [stacked(result, own) for result in results]
+            parts.append(np.concatenate(stacks, axis=1))
+        return np.concatenate(parts)
 
 
 def time_blocks(traces: Sequence[Trace], length_s: float) -> IntArray:
