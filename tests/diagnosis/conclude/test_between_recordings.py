@@ -1,6 +1,7 @@
 """What differs from recording to recording is no evidence of something missing."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RA
 GAIN = (PlacedEffect("servo_gain", "elbow", (1.03,)),)
 
 
+@cache
 def predictor_of(gains, first=0):
     """A predictor of one recording for each gain of the elbow's servo."""
     traces = [
