@@ -11,7 +11,7 @@ from experiments.concealed.second.plan import dealt
 from groundwalk.errors import BadRecordingError
 
 UNDOCTORED = 1 / 3
-"""Share of the cases of each robot in which nothing is doctored."""
+"""Share of each robot's cases in which nothing is doctored, if something can be."""
 _OUTSIDE_WEIGHT = 0.5
 """Share of what is outside the library, relative to each effect in it."""
 
@@ -39,12 +39,13 @@ def _planned(there: Sequence[str], seed: int, count: int) -> list[tuple[str, str
     shares = {}
     for name in there:
         real = REAL_SETS[name]
-        shares[name, NOTHING] = UNDOCTORED * real.share
+        undoctored = UNDOCTORED if real.doctorings else 1.0
+        shares[name, NOTHING] = undoctored * real.share
         weights = {
             each: _OUTSIDE_WEIGHT if each in OUTSIDE else 1.0
             for each in real.doctorings
         }
         for each, weight in weights.items():
             part = weight / sum(weights.values())
-            shares[name, each] = (1 - UNDOCTORED) * real.share * part
+            shares[name, each] = (1 - undoctored) * real.share * part
     return dealt(shares, count, np.random.default_rng([seed, count]))
