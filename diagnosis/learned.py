@@ -151,12 +151,11 @@ class Learned:
             )
             result, everywhere = found_by(search)
             old = old_effects(search.judge, result)
-            before = noise.model if noise else ()
+            before = _searched_for(material.plant, noise, known)
             more = keys_of(old) - keys_of(before)
             if not more or number + 1 == MOST_KNOWN:
                 break
-            large = (one for one in before if not is_usual(material.plant, one))
-            known = (*large, *(one for one in old if one.key in more))
+            known = (*before, *(one for one in old if one.key in more))
             promising = [
                 tuple(one for one in model if one.key not in more)
                 for model in _best_of_each_size(search, result)
@@ -166,6 +165,19 @@ class Learned:
         kind = verdict_kind(result, material.plant, material.audited)
         everywhere = everywhere and result.chosen > 0
         return cls(material, data, noise, search, result, kind, everywhere)
+
+
+def _searched_for(
+    plant: Plant, noise: ReferenceNoise | None, known: Model | None
+) -> Model:
+    """What the healthy robot has of what is searched for there, or has been before.
+
+    Without errors that are usual and no larger than that: beside what is searched for
+    they are held to be small.
+    """
+    keys = keys_of(known or ())
+    every = noise.model if noise else ()
+    return tuple(one for one in every if one.key in keys or not is_usual(plant, one))
 
 
 def _left(learned: Predictor, result: SearchResult) -> FloatArray:

@@ -176,14 +176,17 @@ class Predictor(Doubted):
         """Measure the integration error of a model, to be taken out of all residuals.
 
         Returns (c,) the rms, in units of noise, of that which remains in each channel;
-        large if the simulation of `model` diverges.
+        large if the simulation of `model` diverges. Fast errors that the robot model
+        makes for the healthy robot are noise, too.
         """
 
         def values(step_s: float) -> FloatArray:
             return np.asarray(self._replayed([model], step_s)[0])
 
         self._error, left = IntegrationError.of(values, self.step_s, self.finest_s)
-        left = np.nan_to_num(left / self.channels.noise, nan=WORST)
+        known = self._doubts.noise
+        noise = self.channels.noise * (1.0 if known is None else known.scale)
+        left = np.nan_to_num(left / noise, nan=WORST)
         return np.asarray(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2, axis=0)))
 
     def _doubt_times(self, model: Model) -> None:

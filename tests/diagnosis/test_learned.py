@@ -69,6 +69,16 @@ def test_what_comes_again_though_it_is_known_is_left_out(monkeypatch):
     assert scene.left_out == (OLD,)
 
 
+def test_what_was_held_to_be_small_becomes_known_if_it_is_large(monkeypatch):
+    """The healthy robot has more of what is a usual error as long as it is small."""
+    scene = Scene(monkeypatch, comes_again=False)
+    large = PlacedEffect(USUAL.name, USUAL.place, (0.3,))
+    olds = iter([(large,), ()])
+    monkeypatch.setattr(learned, "old_effects", lambda *args: next(olds))
+    scene.run()
+    assert scene.known == [None, (large,)]
+
+
 def test_it_ends(monkeypatch):
     """Each time something else is old: what is old last is left out."""
     scene = Scene(monkeypatch, comes_again=True)

@@ -10,6 +10,7 @@ from made_up_traces import arm, arm_command, recorded
 from diagnosis.effects.joints import JointElasticity
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import WORST, Channels, Predictor
+from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.replays import WARM_UP_S
 
 NOISE_RAD = 4e-4
@@ -43,6 +44,17 @@ def test_calibration_takes_out_what_the_step_costs():
     assert rms(predictor) > 2
     assert predictor.calibrate().max() < 0.05
     assert rms(predictor) < 0.05
+
+
+def test_what_the_step_costs_counts_beside_errors_of_the_healthy_robot():
+    """Of twice the noise in one channel that which is left is half as much."""
+    plant, trace = measured(8.0, 0.2, noise_rad=0.0)
+    known = replace(ReferenceNoise.known((), 2), scale=np.array([2.0, 1.0]))
+    left = [Predictor(plant, [trace], CHANNELS, noise=one) for one in (None, known)]
+    alone, beside = (one.correct() for one in left)
+    assert beside[0] == pytest.approx(alone[0] / 2)
+    assert beside[1] == pytest.approx(alone[1])
+    assert alone.min() > 0
 
 
 def test_another_step_is_of_the_same_traces():
