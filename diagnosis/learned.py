@@ -35,9 +35,11 @@ OTHER_NOISE = 1.1
 """Factor by which noise must differ for another search: from thousands of rows it is
 known to some percent, and a tenth moves what counts as evidence by a fifth."""
 
-MOST_KNOWN = 3
+MOST_KNOWN = 2
 """Most times that it is learned what the healthy robot has: before the search, and
-after one that has found more of it."""
+after one that has found more of it. Where its model is far from exact it has several
+explanations, and each further time it may change to another one, which explains what is
+new as well."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
