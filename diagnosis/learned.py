@@ -153,7 +153,7 @@ class Learned:
             )
             result, everywhere = found_by(search)
             old = old_effects(search.judge, result)
-            before = _searched_for(material.plant, noise, known)
+            before = _not_small(material.plant, noise, known)
             more = keys_of(old) - keys_of(before)
             if not more or number + 1 == MOST_KNOWN:
                 break
@@ -169,13 +169,13 @@ class Learned:
         return cls(material, data, noise, search, result, kind, everywhere)
 
 
-def _searched_for(
+def _not_small(
     plant: Plant, noise: ReferenceNoise | None, known: Model | None
 ) -> Model:
-    """What the healthy robot has of what is searched for there, or has been before.
+    """The effects of the healthy robot whose size is free when its model is learned.
 
-    Without errors that are usual and no larger than that: beside what is searched for
-    they are held to be small.
+    They are larger than usual errors of models, or were `known` before. All others are
+    held to be small.
     """
     keys = keys_of(known or ())
     every = noise.model if noise else ()

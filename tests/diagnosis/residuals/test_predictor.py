@@ -47,7 +47,7 @@ def test_calibration_takes_out_what_the_step_costs():
 
 
 def test_what_the_step_costs_counts_beside_errors_of_the_healthy_robot():
-    """Of twice the noise in one channel that which is left is half as much."""
+    """Where these make the noise twice as large, the share left by steps is half."""
     plant, trace = measured(8.0, 0.2, noise_rad=0.0)
     known = replace(ReferenceNoise.known((), 2), scale=np.array([2.0, 1.0]))
     left = [Predictor(plant, [trace], CHANNELS, noise=one) for one in (None, known)]

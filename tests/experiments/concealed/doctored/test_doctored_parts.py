@@ -114,6 +114,9 @@ def test_a_set_holds_enough_doctored_and_undoctored_cases(tmp_path):
     assert set(done) == {NOTHING, *OUTSIDE, *SIZES}
     assert {name for name, _ in every} == set(REAL_SETS)
     assert all(what in (NOTHING, *REAL_SETS[name].doctorings) for name, what in every)
+    # a robot at which nothing may be doctored has its share of the cases all the same
+    count = Counter(name for name, _ in every)
+    assert count["pendulum_viscous"] == 0.04 * len(every)
     assert plan(tmp_path) == every != plan(tmp_path, seed=2)
 
 
