@@ -145,3 +145,20 @@ def test_a_limit_that_may_as_well_be_none_is_nothing(kept):
     found, said = established(both, model)
     assert (found is not None) == kept
     assert not said
+
+
+@pytest.mark.parametrize("off", [True, False])
+def test_a_motor_that_was_off_for_perhaps_no_time_is_nothing(off):
+    """An elbow that jumps out of place, and back in three rows, is no motor off."""
+    trace = recorded(arm(), *([("servo_off", "elbow", 1.0, 1.5, 0.3)] if off else []))
+    if not off:
+        jumped = trace.position_rad.copy()
+        jumped[40:43, 1] -= 0.02, 0.013, 0.006
+        trace = replace(trace, position_rad=jumped)
+    both = Predictor(arm(), [trace], CHANNELS)
+    values = (1.0, 1.5, 0.3) if off else (0.9, 0.77, 0.06)
+    model = (PlacedEffect("servo_off", "elbow", values),)
+    both.calibrate(model, tolerances=False)
+    found, said = established(both, model)
+    assert (found is not None) == off
+    assert not said
