@@ -22,6 +22,12 @@ behind the command to be measured there."""
 SURE = 0.97
 """Correlation that position and delayed command must exceed for the delay to count."""
 
+SHARP = 2.0
+"""A delay counts if others, as far from it as a stall makes them, fit worse by this
+factor in rms: a joint that moves evenly is like its command after any delay. True
+delays fit ten times better, others as well, so that the factor may be anything
+between (tested)."""
+
 APART = 4
 """Number of 0.5 s steps between the two windows whose lags are compared: 2 s."""
 
@@ -127,4 +133,7 @@ def _lag(position: FloatArray, command: FloatArray, most: int) -> float:
     size = np.linalg.norm(late, axis=1) * np.linalg.norm(own)
     alike = (late @ own) / np.maximum(size, 1e-12)
     best = int(np.argmax(alike))  # a missing value is never alike
-    return float(best) if alike[best] > SURE and best < most else np.nan
+    left = np.sqrt(np.maximum(1 - alike**2, 0.0))
+    others = np.abs(np.arange(len(left)) - best) >= LEAST_TICKS
+    sharp = np.all(left[others] > SHARP * left[best])
+    return float(best) if alike[best] > SURE and best < most and sharp else np.nan

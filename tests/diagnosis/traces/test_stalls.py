@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from diagnosis.plant.servo import Servo
+from diagnosis.traces import stalls
 from diagnosis.traces.stalls import lag_jumps, said_of_stalls, steady
 from diagnosis.traces.trace import Trace
 
@@ -57,6 +58,25 @@ def test_what_is_no_stall_is_none(late_s):
     trace = recording(late_s)
     assert lag_jumps(trace) == []
     assert steady(trace) is trace
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
+def test_joints_that_move_evenly_do_not_tell_when(factor, monkeypatch):
+    """They turn at corners and lag by 0.1 s; noise decides which delay fits best."""
+    monkeypatch.setattr(stalls, "SHARP", factor * stalls.SHARP)
+    time_s = np.arange(2000) * TICK_S
+    first, rest = np.arange(3), 3 - 0.5 * np.arange(3)
+
+    def angle(t):
+        return np.abs((t[:, None] - first) % (2 * rest) - rest)
+
+    for seed in range(20):
+        noise = 0.002 * np.random.default_rng(seed).standard_normal((2000, 3))
+        position, servo = angle(time_s - 0.1) + noise, Servo.ideal(3)
+        even = Trace("even", time_s, position, servo, command_rad=angle(time_s))
+        assert lag_jumps(even) == []
+    late = recording(lambda t, joint: 0.1 + 0.02 * joint + 0.08 * (t > 25))
+    assert len(lag_jumps(late)) == 1
 
 
 def test_one_or_two_joints_tell_nothing():
