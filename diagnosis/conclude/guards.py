@@ -26,6 +26,7 @@ from diagnosis.search.fitting import (
     fit_all,
     ran_into_bound,
 )
+from diagnosis.search.judging import gain_of_noise
 from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
@@ -59,7 +60,7 @@ def established(
     show how much recordings of one robot differ.
     """
     said = list[str]()
-    model = _retimed(both.without_tolerances(), model)
+    model = _simplified(both, _retimed(both.without_tolerances(), model))
     while model:
         fitted = fit_all(both, [model])[0]
         model = fitted.model
@@ -99,6 +100,24 @@ def _retimed(both: Predictor, model: Model) -> Model:
         energies = (both.residuals(options) ** 2).sum(axis=1)
         best = [options[int(k)] for k in np.argsort(energies)[:FITTED]]
         model = min(fit_all(both, best), key=lambda fit: fit.energy).model
+    return model
+
+
+def _simplified(both: Predictor, model: Model) -> Model:
+    """The effects, in simpler forms where further values explain no more than chance.
+
+    A search compared the forms on a part of the data, and beside other errors.
+    """
+    for placed in model:
+        simpler = effect(placed.name).simpler(placed)
+        others = tuple(one for one in model if one is not placed)
+        taken = {one.key for one in others}
+        if simpler.key in {placed.key, *taken} or placed.tied:
+            continue
+        whole, part = fit_all(both, [model, (*others, simpler)])
+        fewer = len(placed.values) - len(simpler.values)
+        if part.energy - whole.energy < gain_of_noise(1, fewer):
+            model = part.model
     return model
 
 

@@ -162,3 +162,18 @@ def test_a_motor_that_was_off_for_perhaps_no_time_is_nothing(off):
     found, said = established(both, model)
     assert (found is not None) == off
     assert not said
+
+
+@pytest.mark.parametrize("sticks", [True, False])
+def test_friction_is_stated_in_its_simplest_form(sticks):
+    """More friction near standstill is stated only where it shows."""
+    form = "stribeck_friction" if sticks else "coulomb_friction"
+    values = (1.0, 0.8, 0.1) if sticks else (1.0,)
+    both = predictor((form, "elbow", *values))
+    fitted, told = established(
+        both, (PlacedEffect("stribeck_friction", "elbow", (1.0, 0.1, 0.05)),)
+    )
+    (kept,) = fitted.model
+    assert kept.name == form
+    assert kept.values[0] == pytest.approx(1.0, rel=0.05)
+    assert told == ()
