@@ -2,7 +2,8 @@
 
 Servos are stiff, so that a change at one joint hardly moves the others: an effect is
 tried at all joints in one simulation, and the change in each joint's own channels is
-its signature there.
+its signature there. Joints that meet a limit may collapse and take others along, so
+that limits are tried one by one, if the robot has few joints.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,6 +17,10 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray, IntArray
+
+FEW_JOINTS = 6
+"""For robots with at most this many joints more is tried: limits joint by joint, and
+each kind of effect at its best guessed place."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +93,8 @@ def _trials(
             continue
         if not any(options.values()):
             continue
-        if kind.place_kind == "joint" and kind.joint_by_joint:
+        apart = kind.threshold and len(places) <= FEW_JOINTS
+        if kind.place_kind == "joint" and kind.joint_by_joint and not apart:
             for level in range(max(map(len, options.values()))):
                 model = tuple(
                     PlacedEffect(name, place, values[level])

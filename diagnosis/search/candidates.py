@@ -7,16 +7,12 @@ import numpy as np
 
 from diagnosis.effects.library import all_effects, effect, grown_from
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.signatures import Signature
+from diagnosis.residuals.signatures import FEW_JOINTS, Signature
 from diagnosis.residuals.ties import without_each
 from diagnosis.search.result import Judged, keys_of
 from diagnosis.search.rules import Rules
 from diagnosis.search.screening import Screen
 from groundwalk.arrays import FloatArray
-
-FEW_JOINTS = 6
-"""For robots with at most this many joints every kind of effect is fitted at its best
-guessed place; for others only the kinds that are likely to explain most."""
 
 
 class Candidates:
@@ -40,6 +36,7 @@ class Candidates:
     def alone(self, residual: FloatArray) -> list[Model]:
         """Models of one effect: the best guesses, and the best of some other kinds.
 
+        With few joints of all other kinds, else of those likely to explain most.
         `residual` (N,) is that of the nominal sim [noise].
         """
         rules, ranked = self._rules, self._screen.singles(residual)
