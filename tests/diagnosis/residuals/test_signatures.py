@@ -20,7 +20,10 @@ def test_limits_are_tried_joint_by_joint_where_joints_are_few(few, monkeypatch):
     found = signatures(predictor, (), usage, names=["torque_limit"])
     models = [(), *((one.placed,) for one in found)]
     nominal, *alone = predictor.residuals(models)
-    changes = [one.change - (own - nominal)[one.rows] for one, own in zip(found, alone)]
+    changes = [
+        one.change - (own - nominal)[one.rows]
+        for one, own in zip(found, alone, strict=True)
+    ]
     assert len(found) == 6
     assert all(len(one.rows) == len(nominal) for one in found) == few
     largest = max(float(np.abs(one).max()) for one in changes)
