@@ -99,6 +99,20 @@ class Doubted(ABC):
         self.doubt(model, tolerances)
         return self.correct(model) if tolerances and self.nuisance else error
 
+    def calibrate_with(self, model: Model) -> Model:
+        """Calibrate at a model whose values are fitted together with small mismatch.
+
+        Returns the model with these values. Together they predict a robot as well as
+        they can, even if much is left.
+        """
+        self.correct(model)
+        self._doubt_times(model)
+        start = self.nuisance or no_nuisance(self)
+        found, model = self.nuisance_fit(model).fitted_with_values(start)
+        self._doubts = self._doubts.taking(found, self._beyond())
+        self.correct(model)
+        return model
+
     def doubt(self, model: Model = (), tolerances: bool = True) -> None:
         """Find what wrong start states change, and small mismatch of the nominal model.
 

@@ -274,22 +274,16 @@ def _with_small_mismatch(
     What is larger than usual becomes an effect without bounds: the rest would look new.
     """
     predictor = sims.uncalibrated(traces, None)
-    model = _calibrated(predictor, model)
+    model = predictor.calibrate_with(model)
     for _ in range(MOST_FREED):
         larger = _larger_than_usual(predictor, model)
         if not larger:
             break
         own = predictor.with_tolerances_beside((*model, *larger))
-        model = _calibrated(predictor, fit_all(own, [(*model, *larger)])[0].model)
+        model = predictor.calibrate_with(fit_all(own, [(*model, *larger)])[0].model)
     if predictor.nuisance is None:
         return model
     return (*predictor.nuisance.beside({one.key for one in model}), *model)
-
-
-def _calibrated(predictor: Predictor, model: Model) -> Model:
-    """The model with the values that suit small mismatch, which is fitted beside it."""
-    predictor.calibrate(model)
-    return fit_all(predictor, [model])[0].model if model else ()
 
 
 def _larger_than_usual(predictor: Predictor, model: Model) -> Model:

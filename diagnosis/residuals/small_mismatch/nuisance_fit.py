@@ -34,6 +34,10 @@ CLOSER = 0.5
 """Largest share of the mean square that a round may leave, as long as more than twice
 the noise is left: what falls slower does not end at the noise in a few rounds."""
 
+SETTLED = 0.95
+"""The same share where errors and values are to predict a robot that no model is exact
+of: what falls by less than 5 % has settled."""
+
 SHARES = (1.0, 0.5, 0.25)
 """Shares of a linear step that are tried, of which the best is taken."""
 
@@ -88,12 +92,22 @@ class NuisanceFit:
         nothing = errors.at(np.zeros(len(errors.units)))
         return self.seen(nothing) if errors.seen_at[0].any() else nothing
 
-    def _converged(self, now: FitPoint) -> FitPoint:
-        """The point after rounds of steps, as long as these approach the noise."""
+    def fitted_with_values(self, start: Nuisance) -> tuple[Nuisance, Model]:
+        """The likeliest errors and values of the model, together, whatever is left."""
+        x = self._coordinates(start).of(self.model)
+        begun = self._linear(self._placed(self._begun(start).errors, x))
+        now = self._converged(begun, closer=SETTLED)
+        return now.errors, self._coordinates(start).model_at(now.x)
+
+    def _converged(self, now: FitPoint, closer: float = CLOSER) -> FitPoint:
+        """The point after rounds of steps, as long as these approach the noise.
+
+        Far from it a round may leave a share `closer` of the mean square at most.
+        """
         for _ in range(MOST_SEEN):
             before = _mean_square(now.left)
             now = self._descended(now)
-            if _is_far_off(now.left) and _mean_square(now.left) > CLOSER * before:
+            if _is_far_off(now.left) and _mean_square(now.left) > closer * before:
                 break
             self.correct(self._beside(now.errors, now.x))
             now = self._at(now)
@@ -147,16 +161,16 @@ class NuisanceFit:
         changes, sizes = errors.changes, errors.sizes
         if len(now.x):
             ends = self._coordinates(errors).bounds()
-            far = [(np.clip(end, now.x - 1, now.x + 1)) / FLAT for end in ends]
+            far = [np.clip(end - now.x, -1, 1) / FLAT for end in ends]
             low, high = np.append(low, far[0]), np.append(high, far[1])
             free = np.append(free, np.ones(len(now.x), bool))
             changes = np.vstack([changes, FLAT * now.slopes])
-            sizes = np.append(sizes, now.x / FLAT)
+            sizes = np.append(sizes, np.zeros(len(now.x)))  # what is unknown stays
         wanted = np.clip(
             likeliest(changes, now.left, sizes, free, low, high), low, high
         )
         steps = [
-            (errors.at(one[:k]), FLAT * one[k:])
+            (errors.at(one[:k]), now.x + FLAT * one[k:])
             for share in SHARES
             for one in [sizes + share * (wanted - sizes)]
         ]

@@ -136,6 +136,18 @@ def test_small_errors_do_not_stand_for_what_they_cannot_explain():
     assert not found.sizes.any()
 
 
+def test_a_robot_is_predicted_by_errors_and_values_together_whatever_is_left():
+    """Three times the noise is left; the elbow's gain is a value, not an error."""
+    world = Linear({GAIN: 4.0, "servo_gain@shoulder": -1.2}, noise=3.0, bend=0.2)
+    start = (PlacedEffect("servo_gain", "elbow", (1.0,)),)
+    fit = NuisanceFit(world.ask, world.correct, start)
+    found, model = fit.fitted_with_values(world.nuisance)
+    (left,) = world.ask([(*found.beside({GAIN}), *model)])
+    assert np.mean(left**2) < 1.1 * np.mean(world.noise**2)
+    sizes = found.sizes + world.far(model)
+    np.testing.assert_allclose(sizes, world.true, atol=0.5)
+
+
 def test_no_error_is_larger_than_usual_and_friction_is_never_negative():
     world = Linear({GAIN: 9.0, "coulomb_friction@elbow": -2.0}, reach=3.0)
     found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
