@@ -15,6 +15,7 @@ import numpy as np
 from diagnosis.conclude.between_recordings import scattered
 from diagnosis.conclude.estimates import Z_80, standard_errors
 from diagnosis.conclude.held_out_errors import Judgement
+from diagnosis.conclude.usual_bursts import usual_event
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
@@ -64,7 +65,11 @@ def established(
     while model:
         fitted = fit_all(both, [model])[0]
         model = fitted.model
-        doubtful = _may_be_nothing(both, fitted) or _scattered(both, healthy, fitted)
+        doubtful = (
+            _may_be_nothing(both, fitted)
+            or _scattered(both, healthy, fitted)
+            or usual_event(both, healthy, fitted)
+        )
         bound = [one for one in model if ran_into_bound(fitted, one)]
         if doubtful is None and not bound:
             return fitted, tuple(said)

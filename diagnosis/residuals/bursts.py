@@ -73,7 +73,7 @@ def _bursts(
     """The strongest bursts, each with the recording that shows it."""
     found: list[tuple[float, Span, str]] = []
     for number, trace in enumerate(predictor.traces):
-        energy, scored = _binned(predictor, residual, number, channel)
+        energy, scored = binned(predictor, residual, number, channel)
         by_chance = chi2.isf(CHANCE / len(scored), np.maximum(scored, 1))
         least = max(STANDS_OUT * np.median(energy), LEAST * scored.mean())
         limit = np.maximum(by_chance, least)
@@ -86,7 +86,7 @@ def _bursts(
     return [(span, recording) for _, span, recording in found[:MOST]]
 
 
-def _binned(
+def binned(
     predictor: Predictor,
     residual: FloatArray,
     number: int,
@@ -146,7 +146,7 @@ def onsets(predictor: Predictor, residual: FloatArray) -> list[tuple[float, str]
             if trace.recording == recording
         ]
         own.sort(key=lambda number: float(predictor.traces[number].time_s[0]))
-        parts = [_binned(predictor, residual, number) for number in own]
+        parts = [binned(predictor, residual, number) for number in own]
         energy, scored = (np.concatenate(one) for one in zip(*parts, strict=True))
         start_s = np.concatenate(
             [
