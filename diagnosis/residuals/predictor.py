@@ -247,6 +247,11 @@ class Predictor(Doubted):
         fine, finer = (self._replayed(models, self.step_s / part) for part in (2, 4))
         return np.asarray(2 * finer - fine + self._error.extrapolated)
 
+    @property
+    def has_reference(self) -> bool:
+        """Whether recordings of the healthy robot show errors, which are taken out."""
+        return self._doubts.noise is not None
+
     def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
         """(n, N) measured less predicted values of n models, in units of noise.
 

@@ -3,7 +3,9 @@
 Servos are stiff, so that a change at one joint hardly moves the others: an effect is
 tried at all joints in one simulation, and the change in each joint's own channels is
 its signature there. Joints that meet a limit may collapse and take others along, so
-that limits are tried one by one, if the robot has few joints.
+that limits are tried one by one, if the robot has few joints. And where recordings of
+the healthy robot show errors of all joints together, a residual is whitened with these,
+so that a change at one joint shows at others: there all is tried joint by joint.
 """
 
 from collections.abc import Mapping, Sequence
@@ -80,6 +82,7 @@ def _trials(
 ) -> list[tuple[Model, bool]]:
     """Effects to simulate together, and whether these are one kind at all joints."""
     trials: list[tuple[Model, bool]] = []
+    mixed = predictor.has_reference and predictor.plant.base == "fixed"
     for name in names:
         kind = effect(name)
         places = kind.places(predictor.plant, predictor.traces)
@@ -93,7 +96,7 @@ def _trials(
             continue
         if not any(options.values()):
             continue
-        apart = kind.threshold and len(places) <= FEW_JOINTS
+        apart = mixed or (kind.threshold and len(places) <= FEW_JOINTS)
         if kind.place_kind == "joint" and kind.joint_by_joint and not apart:
             for level in range(max(map(len, options.values()))):
                 model = tuple(

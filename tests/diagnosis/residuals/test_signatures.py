@@ -5,6 +5,7 @@ from made_up_traces import arm, recorded
 
 from diagnosis.residuals import signatures as tries
 from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.signatures import signatures
 from diagnosis.traces.usage import Usage
 
@@ -16,15 +17,42 @@ def test_limits_are_tried_joint_by_joint_where_joints_are_few(few, monkeypatch):
         monkeypatch.setattr(tries, "FEW_JOINTS", 1)
     predictor = Predictor(arm(), [recorded(arm(), duration_s=2.0)], CHANNELS)
     predictor.calibrate()
+    assert len(found_in(predictor, "torque_limit")) == 6
+    assert (wrong(predictor, "torque_limit") < 1e-6) == few
+
+
+@pytest.mark.parametrize("reference", [True, False])
+def test_all_is_tried_joint_by_joint_beside_errors_of_all_joints(reference):
+    """The healthy robot's joints go wrong together, by 30 times the noise."""
+    predictor = Predictor(arm(), [recorded(arm(), duration_s=2.0)], CHANNELS)
+    if reference:
+        rng, scored = np.random.default_rng(3), predictor.scored.reshape(-1, 2)
+        left = rng.standard_normal(scored.shape)
+        for block in predictor.blocks:
+            far = block.waves @ (30 * rng.standard_normal(block.waves.shape[1]))
+            left[block.rows] += far[:, None]
+        noise = ReferenceNoise.of((), left, scored, predictor.blocks)
+        predictor = Predictor(arm(), predictor.traces, CHANNELS, noise=noise)
+    predictor.calibrate()
+    assert (wrong(predictor, "viscous_friction") < 1e-6) == reference
+
+
+def found_in(predictor, name):
     usage = Usage.of(predictor.plant, predictor.traces)
-    found = signatures(predictor, (), usage, names=["torque_limit"])
-    models = [(), *((one.placed,) for one in found)]
-    nominal, *alone = predictor.residuals(models)
-    changes = [
-        one.change - (own - nominal)[one.rows]
+    return signatures(predictor, (), usage, names=[name])
+
+
+def wrong(predictor, name):
+    """The largest error of a signature, in units of noise."""
+    found = found_in(predictor, name)
+    nominal, *alone = predictor.residuals([(), *((one.placed,) for one in found)])
+    return max(
+        float(np.abs(padded(one, len(own)) - (own - nominal)).max())
         for one, own in zip(found, alone, strict=True)
-    ]
-    assert len(found) == 6
-    assert all(len(one.rows) == len(nominal) for one in found) == few
-    largest = max(float(np.abs(one).max()) for one in changes)
-    assert (largest < 1e-6) == few
+    )
+
+
+def padded(signature, entries):
+    change = np.zeros(entries)
+    change[signature.rows] = signature.change
+    return change
