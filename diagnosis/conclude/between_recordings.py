@@ -3,20 +3,22 @@
 A robot is not the same in all recordings: clocks, temperatures and loads change a
 little. Rows of one recording share such a difference, so that their number makes an
 effect no surer. Where recordings disagree, only what all of them together show beyond
-their own scatter is evidence.
+their own scatter is evidence. If parts of one recording disagree as much, the model
+fits some motions worse than others, and each part says how much that is.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import chi2, t
+from scipy.stats import chi2, f, t
 
 from diagnosis.effects.library import lasts
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import FittedModel
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import FloatArray, IntArray
 
 LEVEL = 0.05
 """Probability at which recordings of one robot would scatter as much by noise alone;
@@ -46,35 +48,74 @@ def scattered(
     return found
 
 
-def may_be_scatter(seen: Sequence[tuple[FloatArray, FloatArray]]) -> bool:
-    """Whether sizes of an effect, by recording, disagree and are not surely non-zero.
+class Sizes(NamedTuple):
+    """(k,) sizes of an effect in parts of recordings.
 
-    Each item of `seen` has (k,) sizes and their (k,) weights, the inverse of their
-    variances by noise: those of the diagnosed recordings first, then others of the
-    healthy robot. The scatter around each item's mean widens the error of the first
-    mean (Birge 1932, "The calculation of errors by the method of least squares").
+    Attributes:
+      sizes: in units of the size that fits all best.
+      weights: the inverse of their variances by noise.
+      recording: number of the recording of each part.
     """
-    scatter, free = 0.0, 0
-    for sizes, weights in seen:
-        tells = weights > LEAST_WEIGHT * max(float(weights.max(initial=0.0)), 1e-12)
-        if tells.sum() < 2:
-            continue
-        own, power = sizes[tells], weights[tells]
-        scatter += float(power @ (own - power @ own / power.sum()) ** 2)
-        free += int(tells.sum()) - 1
+
+    sizes: FloatArray
+    weights: FloatArray
+    recording: IntArray
+
+
+def may_be_scatter(seen: Sequence[Sizes]) -> bool:
+    """Whether sizes of an effect disagree between recordings and may be zero.
+
+    The diagnosed recordings come first in `seen`, then others of the healthy robot. The
+    scatter around each mean widens the error of the first one (Birge 1932, "The
+    calculation of errors by the method of least squares"): that of recordings, and that
+    of their parts unless it is surely less (analysis of variance, Fisher 1925).
+    """
+    between, within = (0.0, 0), (0.0, 0)
+    for one in seen:
+        means = _of_each_recording(one)
+        between = _plus(between, _scatter(means))
+        for number in means.recording:
+            own = one.recording == number
+            within = _plus(within, _scatter(Sizes(*(part[own] for part in one))))
+    (scatter, free), (inside, more) = between, within
     if not free or chi2.sf(scatter, free) > LEVEL:
         return False
-    sizes, weights = seen[0]
-    total = float(weights.sum())
+    if more and f.sf(scatter / free / max(inside / more, 1.0), free, more) > LEVEL:
+        scatter, free = _plus(between, within)
+    total = float(seen[0].weights.sum())
     error = np.sqrt(scatter / free / max(total, 1e-12))
-    mean = float(weights @ sizes) / max(total, 1e-12)
+    mean = float(seen[0].weights @ seen[0].sizes) / max(total, 1e-12)
     return bool(abs(mean) < error * t.isf(LEVEL / 2, free))
 
 
-def _sizes(
-    both: Predictor, fitted: FittedModel, group: Model
-) -> tuple[FloatArray, FloatArray]:
-    """(k,) sizes of an effect in each recording, 1 on average, and (k,) weights.
+def _plus(one: tuple[float, int], other: tuple[float, int]) -> tuple[float, int]:
+    return one[0] + other[0], one[1] + other[1]
+
+
+def _of_each_recording(some: Sizes) -> Sizes:
+    """The mean size in each recording, with its weight."""
+    numbers, own = np.unique(some.recording, return_inverse=True)
+    weights = np.asarray(np.bincount(own, some.weights), float)
+    sums = np.bincount(own, some.weights * some.sizes)
+    return Sizes(sums / np.maximum(weights, 1e-12), weights, numbers)
+
+
+def _scatter(some: Sizes) -> tuple[float, int]:
+    """Scatter of sizes around their mean, in units of noise, and degrees of freedom.
+
+    Where the effect hardly shows its size says nothing.
+    """
+    least = LEAST_WEIGHT * float(some.weights.max(initial=0.0))
+    tells = some.weights > max(least, 1e-12)
+    if tells.sum() < 2:
+        return 0.0, 0
+    own, power = some.sizes[tells], some.weights[tells]
+    mean = power @ own / power.sum()
+    return float(power @ (own - mean) ** 2), int(tells.sum()) - 1
+
+
+def _sizes(both: Predictor, fitted: FittedModel, group: Model) -> Sizes:
+    """Sizes of an effect in each part of the recordings, 1 on average.
 
     Beside the other effects, whose values may differ as well.
     """
@@ -84,23 +125,20 @@ def _sizes(
     others = fitted.jacobian_of(less)
     if others.shape[1]:
         change = change - others @ np.linalg.lstsq(others, change, rcond=None)[0]
-    return _by_recording(both, along + change, change)
+    return _by_part(both, along + change, change)
 
 
-def _sizes_before(
-    healthy: Predictor, group: Sequence[PlacedEffect]
-) -> tuple[FloatArray, FloatArray]:
-    """(k,) sizes of an effect in recordings of the healthy robot, and (k,) weights."""
+def _sizes_before(healthy: Predictor, group: Sequence[PlacedEffect]) -> Sizes:
+    """Sizes of an effect in recordings of the healthy robot."""
     without, along = healthy.residuals([(), tuple(group)])
-    return _by_recording(healthy, without, without - along)
+    return _by_part(healthy, without, without - along)
 
 
-def _by_recording(
-    some: Predictor, left: FloatArray, change: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """(k,) shares of a change (N,) that explain what is left (N,), and (k,) weights."""
+def _by_part(some: Predictor, left: FloatArray, change: FloatArray) -> Sizes:
+    """Shares of a change (N,) that explain what is left (N,) in each part."""
     names = [trace.recording for trace in some.traces]
-    number = np.unique(names, return_inverse=True)[1][some.trace]
-    weights = np.asarray(np.bincount(number, change**2), float)
-    sums = np.bincount(number, change * left)
-    return sums / np.maximum(weights, 1e-12), weights
+    recording = np.unique(names, return_inverse=True)[1]
+    count = len(names)
+    weights = np.bincount(some.trace, change**2, count).astype(float)
+    sums = np.bincount(some.trace, change * left, count)
+    return Sizes(sums / np.maximum(weights, 1e-12), weights, recording)

@@ -9,7 +9,7 @@ from made_up_traces import NOISE_RAD, arm, recorded
 from scipy.stats import norm, t
 
 from diagnosis.conclude import between_recordings
-from diagnosis.conclude.between_recordings import may_be_scatter, scattered
+from diagnosis.conclude.between_recordings import Sizes, may_be_scatter, scattered
 from diagnosis.conclude.guards import established
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.channels import Channels
@@ -73,7 +73,8 @@ def test_what_does_not_last_need_not_be_in_all_recordings():
 
 
 def of(*sizes, weight=100.0):
-    return np.array(sizes), np.full(len(sizes), weight)
+    every = np.full(len(sizes), weight)
+    return Sizes(np.array(sizes), every, np.arange(len(sizes)))
 
 
 def test_scatter_widens_the_error_of_the_mean():
@@ -91,10 +92,26 @@ def test_scatter_that_may_be_noise_widens_nothing():
 
 
 def test_recordings_in_which_the_effect_hardly_shows_say_nothing():
-    sizes, weights = of(1.0, 1.02, 9.0, weight=1e4)
-    assert may_be_scatter([(sizes, weights)])
-    assert not may_be_scatter([(sizes, weights * [1, 1, 1e-3])])
+    three = of(1.0, 1.02, 9.0, weight=1e4)
+    assert may_be_scatter([three])
+    hardly = three._replace(weights=three.weights * [1, 1, 1e-3])
+    assert not may_be_scatter([hardly])
     assert not may_be_scatter([of(1.0)])
+
+
+def test_parts_of_recordings_that_disagree_as_much_say_how_much():
+    """By two recordings t is 3.3, with one degree; by four parts of each 5.2, of 7."""
+    alone = of(1.3, 0.7, weight=400.0)
+    assert may_be_scatter([alone])
+    sizes = np.array([1.8, 0.8, 1.6, 1.0, 1.2, 0.2, 1.0, 0.4])
+    parts = Sizes(sizes, np.full(8, 100.0), np.repeat([0, 1], 4))
+    assert not may_be_scatter([parts])
+
+
+def test_parts_that_agree_do_not_make_up_for_recordings_that_do_not():
+    sizes = np.array([1.52, 1.48, 1.51, 1.49, 0.52, 0.48, 0.51, 0.49])
+    parts = Sizes(sizes, np.full(8, 100.0), np.repeat([0, 1], 4))
+    assert may_be_scatter([parts])
 
 
 @pytest.mark.parametrize("constant", ["LEVEL", "LEAST_WEIGHT"])
