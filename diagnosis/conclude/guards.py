@@ -28,7 +28,7 @@ from diagnosis.search.fitting import (
     ran_into_bound,
 )
 from diagnosis.search.judging import gain_of_noise
-from diagnosis.verdict import Errors, Fit
+from diagnosis.verdict import Errors
 
 HALF = 0.5
 """Share of what could be explained that an answer must explain, and of what it explains
@@ -176,11 +176,11 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
     """Sentences on why effects are not established, from errors on held-out data.
 
     `timed` says that they acted for a while only, perhaps not in the held-out data.
-    Only channels in which the nominal sim is off count, if there are any: in many
-    others an effect at one joint would be lost.
+    Only channels in which the nominal sim is off count, if there are any, else those in
+    which the effects show: in many others an effect at one joint would be lost.
     """
     hardly_more = judged.hardly_more
-    fit = _telling(judged.fit, hardly_more)
+    fit = _telling(judged)
     gained = fit.nominal**2 - fit.corrected**2
     if timed and gained >= -(fit.floor**2):
         return ()
@@ -228,12 +228,20 @@ def _possible(fit: Errors, hardly_more: float) -> float:
     return min(options, default=0.0)
 
 
-def _telling(fit: Fit, hardly_more: float) -> Errors:
-    """The errors, by noise floors, over channels in which the nominal sim is off."""
+def _telling(judged: Judgement) -> Errors:
+    """The errors, by noise floors, over channels in which the nominal sim is off.
+
+    If it is in none, over those in which effects change half as much as where most.
+    """
+    fit, most = judged.fit, max(judged.changed.values(), default=0.0)
     own = [
         one
         for one in fit.channels.values()
-        if one.nominal**2 > (1 + hardly_more) * one.floor**2
+        if one.nominal**2 > (1 + judged.hardly_more) * one.floor**2
+    ] or [
+        one
+        for name, one in fit.channels.items()
+        if judged.changed.get(name, 0.0) > HALF * most
     ]
     if not own:
         return fit

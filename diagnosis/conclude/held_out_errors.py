@@ -88,7 +88,8 @@ def held_out_errors(
         if key in CONTROLS
     }
     fit = _fit(test, judged, wider[1])
-    judgement = Judgement(fit, worse, said, hardly_more_than_noise(test))
+    changed = dict(zip(channels.names, _changed(test, model).tolist(), strict=True))
+    judgement = Judgement(fit, worse, said, hardly_more_than_noise(test), changed)
     return _fit(test, measured, wider[0]), judgement
 
 
@@ -104,12 +105,14 @@ class Judgement:
       limits: a sentence for the limits of the verdict if all data count.
       hardly_more: share of the squared noise up to which what is left above it is
         hardly more than noise.
+      changed: for each channel, rms of what the model changes [noise].
     """
 
     fit: Fit
     worse: Mapping[str, float] = field(default_factory=dict)
     limits: tuple[str, ...] = ()
     hardly_more: float = MOST_LEFT
+    changed: Mapping[str, float] = field(default_factory=dict)
 
 
 def hardly_more_than_noise(test: Predictor) -> float:
@@ -141,6 +144,12 @@ def _worse(
     every = np.sign(every) * np.sqrt(np.abs(every))
     deviation = float(np.std(every, ddof=1)) if len(every) > 1 else np.inf
     return float(every.sum() / max(deviation * np.sqrt(len(every)), 1e-12))
+
+
+def _changed(test: Predictor, model: Model) -> FloatArray:
+    """(c,) rms of what a model changes in each channel, in units of noise."""
+    with_it, without = test.residuals([model, ()])
+    return channel_rms(test, with_it - without)
 
 
 def _shown(test: Predictor, model: Model, rest: Model) -> float:

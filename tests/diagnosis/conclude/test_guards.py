@@ -24,8 +24,8 @@ GOOD = Fit(
 )
 
 
-def said(timed=False, worse=None, **changes):
-    judged = Judgement(replace(GOOD, **changes), worse or {})
+def said(timed=False, worse=None, changed=None, **changes):
+    judged = Judgement(replace(GOOD, **changes), worse or {}, changed=changed or {})
     return " ".join(objections(judged, timed))
 
 
@@ -89,6 +89,27 @@ def test_an_effect_at_one_of_many_joints_is_judged_by_its_own():
     assert said(wrong_place=None, ceiling=None, channels=channels, **diluted) == ""
     as_good = channels | {"position.own": replace(loud, wrong_effect=2.3)}
     assert "another effect" in said(wrong_place=None, channels=as_good, **diluted)
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
+def test_an_effect_below_the_noise_is_judged_where_it_shows(factor):
+    """Nothing is off by more than noise; regression explains a little everywhere."""
+    errors = {"floor": 1.0, "unit": "rad"}
+    quiet = ChannelFit(
+        nominal=0.7, corrected=0.7, ceiling=0.6, wrong_place=0.69, **errors
+    )
+    own = ChannelFit(
+        nominal=0.7, corrected=0.5, ceiling=0.6, wrong_place=0.69, **errors
+    )
+    channels = {f"position.{k}": quiet for k in range(19)} | {"position.own": own}
+    changed = {name: 0.1 * factor for name in channels} | {"position.own": 0.5}
+    diluted = {"nominal": 0.7, "corrected": 0.691, "ceiling": 0.6, "wrong_place": 0.69}
+    options = {"wrong_effect": None, "channels": channels, **diluted}
+    assert "less than half" in said(**options)
+    assert said(changed=changed, **options) == ""
+    as_good = channels | {"position.own": replace(own, wrong_place=0.52)}
+    options["channels"] = as_good
+    assert "at another place" in said(changed=changed, **options)
 
 
 def test_what_acted_for_a_while_need_not_be_in_the_held_out_data():
