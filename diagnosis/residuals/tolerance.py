@@ -44,9 +44,7 @@ class Tolerance:
         self.changes, self._names = signatures, tuple(names)
         self._sizes = np.zeros(len(signatures)) if sizes is None else sizes
         self._spread = spread
-        root = (
-            signatures if spread is None else np.linalg.cholesky(spread).T @ signatures
-        )
+        root = signatures if spread is None else _root(spread).T @ signatures
         power, turn = np.linalg.eigh(root @ root.T)
         kept = power > NEGLIGIBLE
         self._power, turn = power[kept], turn[:, kept]
@@ -99,6 +97,12 @@ class Tolerance:
     def without(self, residuals: FloatArray) -> FloatArray:
         """(n, N) residuals, whitened."""
         return np.asarray(residuals - (residuals @ self._axes.T) @ self._axes)
+
+
+def _root(spread: FloatArray) -> FloatArray:
+    """(k, k) matrix R with R R' = spread, which may be singular to rounding."""
+    power, axes = np.linalg.eigh(spread)
+    return np.asarray(axes * np.sqrt(np.maximum(power, 0.0)))
 
 
 def without_each(

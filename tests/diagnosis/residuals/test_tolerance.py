@@ -106,3 +106,12 @@ def test_pushes_and_limits_have_no_tolerance():
     offset = [one.values for one in usual_errors(arm(), ()) if one.name == "com_offset"]
     assert all(np.count_nonzero(values) == 1 for values in offset)
     assert PlacedEffect("encoder_offset", "elbow", (1e-3,)) in usual_errors(arm(), ())
+
+
+def test_a_spread_that_is_singular_to_rounding_is_no_error():
+    """What a reference tells very well has a variance below rounding errors."""
+    random = np.random.default_rng(4)
+    changes, seen = random.standard_normal((3, 20)), np.array([[1.0, 1.0, 0.0]])
+    spread = np.eye(3) - (1 + 1e-15) * seen.T @ seen / 2
+    found = Tolerance(changes, spread=spread).without(random.standard_normal((2, 20)))
+    assert np.isfinite(found).all()
