@@ -131,28 +131,30 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
 
     An effect may be nothing if the neutral value of each of its parameters that has one
     lies in its 80 % interval. Where that is infinite, as without a speed limit, it is
-    the end of the possible values on that side. What ended again may also have lasted
-    for no time if nothing stronger, for a shorter time, could have been instead.
+    the end of the possible values on that side. A motor that was off for a while may be
+    nothing, too, if that may have been no time: it cannot have been more than off.
     """
     errors = standard_errors(both, fitted)
     x = fitted.coordinates.of(fitted.model)
     last_s = max(float(trace.time_s[-1]) for trace in both.traces)
     worst, least = None, 1.0
     for placed, own in zip(fitted.model, fitted.coordinates.columns, strict=True):
-        ratios, lasted, is_full = [], np.inf, True
+        sizes, lasted = dict[str, float](), np.inf
         for i in own:
             parameter = fitted.coordinates.parameters[i]
             nothing = np.clip(parameter.neutral, parameter.low, parameter.high)
+            if not np.isfinite(nothing):
+                continue
             neutral = fitted.coordinates.scaled(i, float(nothing))
             ratio = abs(x[i] - neutral) / (Z_80 * errors[i])
-            if parameter.name == "duration":
+            if parameter.name not in SECONDARY:
+                sizes[parameter.name] = ratio
+            if parameter.name == "duration" and sum(placed.values[-2:]) < last_s:
                 lasted = ratio
-            elif np.isfinite(nothing) and parameter.name not in SECONDARY:
-                ratios.append(ratio)
-                is_full &= parameter.full
-        sure = max(ratios, default=1.0)
-        if is_full and effect(placed.name).timed and sum(placed.values[-2:]) < last_s:
-            sure = min(sure, lasted)
+        every = effect(placed.name).parameters(both.plant, placed.place)
+        if not all(one.full for one in every if one.name in sizes):
+            lasted = np.inf  # what was stronger may have been as short as any
+        sure = min(max(sizes.values(), default=1.0), lasted)
         if sure < least:
             worst, least = placed, sure
     return worst

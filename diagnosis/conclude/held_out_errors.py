@@ -88,7 +88,8 @@ def held_out_errors(
         if key in CONTROLS
     }
     fit = _fit(test, judged, wider[1])
-    changed = dict(zip(channels.names, _changed(test, model).tolist(), strict=True))
+    rms = _changed([sims[i] for i in parts], model)
+    changed = dict(zip(channels.names, rms.tolist(), strict=True))
     judgement = Judgement(fit, worse, said, hardly_more_than_noise(test), changed)
     return _fit(test, measured, wider[0]), judgement
 
@@ -146,10 +147,10 @@ def _worse(
     return float(every.sum() / max(deviation * np.sqrt(len(every)), 1e-12))
 
 
-def _changed(test: Predictor, model: Model) -> FloatArray:
-    """(c,) rms of what a model changes in each channel, in units of noise."""
-    with_it, without = test.residuals([model, ()])
-    return channel_rms(test, with_it - without)
+def _changed(parts: Sequence[Predictor], model: Model) -> FloatArray:
+    """(c,) rms of what a model changes in parts of the data, in units of noise."""
+    changes = [np.subtract(*one.residuals([model, ()])) for one in parts]
+    return _rms(parts, changes)
 
 
 def _shown(test: Predictor, model: Model, rest: Model) -> float:
@@ -209,7 +210,13 @@ def above_nominal(fit: Fit, nominal: Predictor) -> Fit:
 
 def _error(parts: Sequence[Predictor], model: Model) -> FloatArray:
     """(c,) rms error of a model on parts of the data, in units of noise."""
-    rms = np.array([channel_rms(one, one.residuals([model])[0]) for one in parts])
+    return _rms(parts, [one.residuals([model])[0] for one in parts])
+
+
+def _rms(parts: Sequence[Predictor], errors: Sequence[FloatArray]) -> FloatArray:
+    """(c,) rms over parts of the data of errors (N,) in each, in units of noise."""
+    each = zip(parts, errors, strict=True)
+    rms = np.array([channel_rms(one, error) for one, error in each])
     rows = np.array([one.scored.sum() for one in parts])
     return np.asarray(np.sqrt(rows @ rms**2 / rows.sum()))
 

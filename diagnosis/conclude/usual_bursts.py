@@ -61,8 +61,8 @@ def burst_nats(
 ) -> FloatArray:
     """(w,) energy above noise [nats] in each channel in windows that do not overlap.
 
-    `residual` (N,) is in units of noise. A window `lasted_s`; recordings that are
-    shorter have none.
+    A window lasts for `lasted_s`, and at least for 50 ms; recordings that are shorter
+    have none. `residual` (N,) is in units of noise.
     """
     bins = max(round(lasted_s / BIN_S), 1)
     found = []
@@ -76,9 +76,9 @@ def burst_nats(
 
 
 def largest_by_chance(nats: FloatArray) -> float:
-    """The largest of (w,) bursts that as many exceed in 1 of 100 cases [nats].
+    """What the largest of as many bursts as (w,) given ones exceeds in 1 of 100 cases.
 
-    0 if there are too few to tell.
+    In nats, as these. 0 if there are too few to tell.
     """
     if len(nats) < FEWEST:
         return 0.0

@@ -24,9 +24,8 @@ SURE = 0.97
 
 SHARP = 2.0
 """A delay counts if others, as far from it as a stall makes them, fit worse by this
-factor in rms: a joint that moves evenly is like its command after any delay. True
-delays fit ten times better, others as well, so that the factor may be anything
-between (tested)."""
+factor in rms: a joint that moves evenly is like its command after any delay. A factor
+of one or four tells the same (tested)."""
 
 APART = 4
 """Number of 0.5 s steps between the two windows whose lags are compared: 2 s."""

@@ -100,7 +100,7 @@ def test_recordings_in_which_the_effect_hardly_shows_say_nothing():
 
 
 def test_parts_of_recordings_that_disagree_as_much_say_how_much():
-    """By two recordings t is 3.3, with one degree; by four parts of each 5.2, of 7."""
+    """The t of two recordings is 3.3 (1 degree of freedom), of 8 parts 5.2 (7)."""
     alone = of(1.3, 0.7, weight=400.0)
     assert may_be_scatter([alone])
     sizes = np.array([1.8, 0.8, 1.6, 1.0, 1.2, 0.2, 1.0, 0.4])

@@ -6,6 +6,7 @@ from made_up_traces import arm
 from scipy.optimize import lsq_linear
 
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.small_mismatch import nuisance_fit
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from diagnosis.residuals.small_mismatch.nuisance_fit import ENOUGH_NATS, NuisanceFit
 from diagnosis.residuals.small_mismatch.usual_errors import USUAL
@@ -136,8 +137,10 @@ def test_small_errors_do_not_stand_for_what_they_cannot_explain():
     assert not found.sizes.any()
 
 
-def test_a_robot_is_predicted_by_errors_and_values_together_whatever_is_left():
+@pytest.mark.parametrize("falls", [0.025, 0.05, 0.1])
+def test_a_robot_is_predicted_by_errors_and_values_whatever_is_left(falls, monkeypatch):
     """Three times the noise is left; the elbow's gain is a value, not an error."""
+    monkeypatch.setattr(nuisance_fit, "SETTLED", 1 - falls)
     world = Linear({GAIN: 4.0, "servo_gain@shoulder": -1.2}, noise=3.0, bend=0.2)
     start = (PlacedEffect("servo_gain", "elbow", (1.0,)),)
     fit = NuisanceFit(world.ask, world.correct, start)
