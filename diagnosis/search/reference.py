@@ -272,18 +272,31 @@ def _with_small_mismatch(
     """A model, and the small mismatch that is likely beside it in recordings.
 
     What is larger than usual becomes an effect without bounds: the rest would look new.
+    Of the models on the way that which leaves least is taken: the integration error of
+    each is measured only there, and can be larger than what the step to it gained.
     """
     predictor = sims.uncalibrated(traces, None)
     model = predictor.calibrate_with(model)
+    found = [_with_likely(predictor, model)]
     for _ in range(MOST_FREED):
         larger = _larger_than_usual(predictor, model)
         if not larger:
             break
         own = predictor.with_tolerances_beside((*model, *larger))
         model = predictor.calibrate_with(fit_all(own, [(*model, *larger)])[0].model)
-    if predictor.nuisance is None:
-        return model
-    return (*predictor.nuisance.beside({one.key for one in model}), *model)
+        found.append(_with_likely(predictor, model))
+    return min(found, key=lambda one: one[0])[1]
+
+
+def _with_likely(predictor: Predictor, model: Model) -> tuple[float, Model]:
+    """What a model leaves [nats] beside likely small mismatch, and both as one model.
+
+    Its integration error is the one that was measured last.
+    """
+    (left,) = predictor.without_tolerances().residuals([model])
+    nuisance = predictor.nuisance
+    likely = () if nuisance is None else nuisance.beside({one.key for one in model})
+    return 0.5 * float(left @ left), (*likely, *model)
 
 
 def _larger_than_usual(predictor: Predictor, model: Model) -> Model:

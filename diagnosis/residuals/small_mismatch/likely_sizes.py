@@ -15,6 +15,7 @@ def likeliest(
     free: BoolArray,
     low: FloatArray,
     high: FloatArray,
+    damping: float = 0.0,
 ) -> FloatArray:
     """(k,) sizes between `low` and `high` that are likeliest; 0 where not `free`.
 
@@ -25,13 +26,18 @@ def likeliest(
       free: (k,) whether each may have a size.
       low: (k,) smallest ones.
       high: (k,) largest ones.
+      damping: weight of squared steps from the present sizes, in units of the squares
+        that each alone would change of the residual; 0 for none.
     """
     own, found = changes[free], np.zeros(len(free))
     if len(own):
-        root = np.linalg.cholesky(own @ own.T + np.eye(len(own)))
-        wanted = own @ (left - sizes[free] @ own)
+        power = own @ own.T
+        kept = damping * np.diag(power)
+        root = np.linalg.cholesky(power + np.diag(1 + kept))
+        wanted = own @ (left - sizes[free] @ own) - kept * sizes[free]
         ends = low[free] - 1e-9, high[free] + 1e-9
-        found[free] = lsq_linear(root.T, -np.linalg.solve(root, wanted), ends).x
+        best = lsq_linear(root.T, -np.linalg.solve(root, wanted), ends).x
+        found[free] = np.clip(best, low[free], high[free])
     return found
 
 

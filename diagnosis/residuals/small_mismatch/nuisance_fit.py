@@ -1,6 +1,6 @@
 """Fits the small mismatch of a robot model beside effects that it is to have."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,8 +38,14 @@ SETTLED = 0.95
 """The same share where errors and values are to predict a robot that no model is exact
 of: what falls by less than 5 % has settled."""
 
-SHARES = (1.0, 0.5, 0.25)
-"""Shares of a linear step that are tried, of which the best is taken."""
+TRIED = ((1.0, 0.0), (0.5, 0.0), (0.25, 0.0), (1.0, 0.1), (1.0, 1.0))
+"""Shares and dampings of the steps that are tried, of which the best is taken. Damped
+steps (Marquardt 1963, "An algorithm for least-squares estimation of nonlinear
+parameters") move least what the data tell least, where a linear step would go far."""
+
+LAST_TRIED = ((1.0, 10.0), (1.0, 100.0), (1.0, 1000.0))
+"""The same where none of those helps: dry friction and backlash can bend the way so
+much that far less than a quarter of a step is right."""
 
 ENOUGH, ENOUGH_NATS = 1e-3, 1.0
 """Share of the energy, and energy [nats], by which a step must lower it; otherwise the
@@ -102,8 +108,10 @@ class NuisanceFit:
     def _converged(self, now: FitPoint, closer: float = CLOSER) -> FitPoint:
         """The point after rounds of steps, as long as these approach the noise.
 
-        Far from it a round may leave a share `closer` of the mean square at most.
+        Far from it a round may leave a share `closer` of the mean square at most. The
+        best point is taken of those whose own integration error was measured.
         """
+        best = now
         for _ in range(MOST_SEEN):
             before = _mean_square(now.left)
             now = self._descended(now)
@@ -112,9 +120,11 @@ class NuisanceFit:
             self.correct(self._beside(now.errors, now.x))
             now = self._at(now)
             if now.is_near:
-                return self._descended(now)
+                now = self._descended(now)
+                break
+            best = min(best, now, key=lambda point: point.goal)
             now = self._linear(now)
-        return now
+        return min(now, best, key=lambda point: point.goal)
 
     def moved(self, start: Nuisance) -> Nuisance:
         """The likeliest errors by what they changed where another fit ended."""
@@ -155,6 +165,11 @@ class NuisanceFit:
 
     def _step(self, now: FitPoint) -> FitPoint:
         """The best point on the way to the likeliest one."""
+        other = self._best(now, TRIED)
+        return other if other is not now else self._best(now, LAST_TRIED)
+
+    def _best(self, now: FitPoint, tried: Sequence[tuple[float, float]]) -> FitPoint:
+        """The best of `now` and where steps by shares and dampings lead."""
         errors, k = now.errors, len(now.errors.units)
         low, high = errors.bounds()
         free = errors.free_of(self._keys)
@@ -166,13 +181,12 @@ class NuisanceFit:
             free = np.append(free, np.ones(len(now.x), bool))
             changes = np.vstack([changes, FLAT * now.slopes])
             sizes = np.append(sizes, np.zeros(len(now.x)))  # what is unknown stays
-        wanted = np.clip(
-            likeliest(changes, now.left, sizes, free, low, high), low, high
-        )
+        known = changes, now.left, sizes, free, low, high
+        wanted = {damping: likeliest(*known, damping) for _, damping in tried}
         steps = [
             (errors.at(one[:k]), now.x + FLAT * one[k:])
-            for share in SHARES
-            for one in [sizes + share * (wanted - sizes)]
+            for share, damping in tried
+            for one in [sizes + share * (wanted[damping] - sizes)]
         ]
         others = self.ask([self._beside(*one) for one in steps])
         points = [

@@ -32,6 +32,22 @@ def test_bounds_hold_and_the_others_take_over():
     assert only == pytest.approx([2.0, 0.0], abs=1e-6)
 
 
+def test_damping_holds_sizes_back_by_how_much_they_change():
+    """Each is the minimum of a parabola: the squares left, its own, those of its step.
+
+    What changes three times as much has nine times the weight in both.
+    """
+    changes = np.array([[3.0, 0.0], [0.0, 1.0]])
+    left = -np.array([6.0, 2.0])
+    ends = np.full(2, -9.0), np.full(2, 9.0)
+    found = likeliest(changes, left, np.zeros(2), ALL, *ends, damping=2.0)
+    assert found == pytest.approx([2 * 9 / (10 + 18), 2 * 1 / (2 + 2)])
+    begun = np.array([1.0, 4.0])
+    left = left + begun @ changes
+    found = likeliest(changes, left, begun, ALL, *ends, damping=1e6)
+    assert found == pytest.approx(begun, abs=1e-4)
+
+
 def test_a_gain_is_the_energy_that_falls():
     rng = np.random.default_rng(3)
     changes, sizes = rng.standard_normal((3, 40)), np.array([3.0, 0.5, 1.0])

@@ -14,6 +14,7 @@ from diagnosis.residuals.small_mismatch.usual_errors import USUAL
 PLANT = arm()
 ROWS = 300
 GAIN = "servo_gain@elbow"
+OTHERS = "coulomb_friction@elbow", "servo_damping@elbow"
 
 
 class Linear:
@@ -149,6 +150,37 @@ def test_a_robot_is_predicted_by_errors_and_values_whatever_is_left(falls, monke
     assert np.mean(left**2) < 1.1 * np.mean(world.noise**2)
     sizes = found.sizes + world.far(model)
     np.testing.assert_allclose(sizes, world.true, atol=0.5)
+
+
+SHARES = tuple(one for one in nuisance_fit.TRIED if not one[1])
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize(
+    ("world", "tried"),
+    [
+        (dict(reach=30.0), ("TRIED", "LAST_TRIED")),
+        (dict(reach=3.0, alike=(GAIN, *OTHERS)), ("LAST_TRIED",)),
+    ],
+)
+def test_damped_steps_go_where_no_share_of_a_linear_step_does(
+    world, tried, factor, monkeypatch
+):
+    """Errors that the data hardly tell go far, where nothing is as predicted."""
+
+    def left():
+        one = Linear({GAIN: 0.5, "servo_gain@shoulder": -0.5}, bend=300.0, **world)
+        fit = NuisanceFit(one.ask, one.correct, ())
+        found, _ = fit.fitted_with_values(one.nuisance)
+        return np.mean(one.ask([found.beside(())])[0] ** 2)
+
+    for name in tried:
+        steps = [(share, factor * by) for share, by in getattr(nuisance_fit, name)]
+        monkeypatch.setattr(nuisance_fit, name, steps)
+    assert left() < 1.1
+    for name in tried:
+        monkeypatch.setattr(nuisance_fit, name, SHARES)
+    assert left() > 2.0
 
 
 def test_no_error_is_larger_than_usual_and_friction_is_never_negative():
