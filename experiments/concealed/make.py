@@ -39,7 +39,8 @@ class ConcealedMake:
       seed: a case depends on this seed and its own number, in set 2 also on the number
         of cases.
       set: which kind of cases: 1, exact models with one thing wrong; 2, models with
-        many small errors, too, on more robots (docs/concealed.md).
+        many small errors, too, on more robots; 4, arms recorded with the identical
+        model, in which nothing is missing (docs/concealed.md).
       real: folder with real recordings, of which one thing is made wrong in two of
         three cases (docs/concealed.md); `set` does not matter then.
       threads: number of processes; 0 for one per core.

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from experiments.concealed.case import first_case
 from experiments.concealed.doctored.case import doctored_case
+from experiments.concealed.identical import identical_case
 from experiments.concealed.second.case import second_case
 from experiments.concealed.written import MadeCase, case_name, write_case
 
@@ -16,7 +17,7 @@ CaseMaker = Callable[[int, int, int], MadeCase]
 """Function of a set's seed, the case's number and the number of cases that makes the
 case."""
 
-SETS: Mapping[int, CaseMaker] = {1: first_case, 2: second_case}
+SETS: Mapping[int, CaseMaker] = {1: first_case, 2: second_case, 4: identical_case}
 """Makers of the simulated cases of each set, by its number (docs/concealed.md)."""
 REAL_SET = 3
 """Number of the set whose cases are doctored real recordings."""
