@@ -6,7 +6,7 @@ from made_up_traces import arm
 from scipy.optimize import lsq_linear
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.small_mismatch import nuisance_fit
+from diagnosis.residuals.small_mismatch import fit_point, nuisance_fit
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from diagnosis.residuals.small_mismatch.nuisance_fit import ENOUGH_NATS, NuisanceFit
 from diagnosis.residuals.small_mismatch.usual_errors import USUAL
@@ -150,6 +150,41 @@ def test_a_robot_is_predicted_by_errors_and_values_whatever_is_left(falls, monke
     assert np.mean(left**2) < 1.1 * np.mean(world.noise**2)
     sizes = found.sizes + world.far(model)
     np.testing.assert_allclose(sizes, world.true, atol=0.5)
+
+
+CONSTANTS = {
+    "NUDGE": nuisance_fit,
+    "NUDGE_X": nuisance_fit,
+    "FLAT": nuisance_fit,
+    "MOST_STEPS": nuisance_fit,
+    "MOST_SEEN": nuisance_fit,
+    "CLOSER": nuisance_fit,
+    "ENOUGH": nuisance_fit,
+    "ENOUGH_NATS": nuisance_fit,
+    "NEAR": fit_point,
+    "NEAR_X": fit_point,
+}
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("name", CONSTANTS)
+def test_a_factor_of_two_in_a_constant_of_the_fit_does_not_matter(
+    name, factor, monkeypatch
+):
+    """Errors alone, beside values, and more than errors can explain."""
+    value = getattr(CONSTANTS[name], name)
+    monkeypatch.setattr(CONSTANTS[name], name, type(value)(value * factor))
+    world = Linear({GAIN: 1.5, "servo_gain@shoulder": -2.0}, reach=90.0, bend=0.5)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
+    np.testing.assert_allclose(found.sizes, world.true, atol=0.5)
+    world = Linear({GAIN: 4.0, "servo_gain@shoulder": -1.2}, noise=3.0, bend=0.2)
+    start = (PlacedEffect("servo_gain", "elbow", (1.0,)),)
+    fit = NuisanceFit(world.ask, world.correct, start)
+    found, model = fit.fitted_with_values(world.nuisance)
+    np.testing.assert_allclose(found.sizes + world.far(model), world.true, atol=0.5)
+    world = Linear({GAIN: 1.5}, noise=3.0)
+    found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
+    assert not found.sizes.any()
 
 
 SHARES = tuple(one for one in nuisance_fit.TRIED if not one[1])
