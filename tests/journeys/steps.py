@@ -159,6 +159,9 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             writes=("set/score.json", "set/score.md", "set/score.png")
         ),
         "make results-concealed": make("results-concealed", "two hours"),
+        "groundwalk concealed make runs/identical --set 4 --cases 60": Run(
+            "--cases 1", writes=("runs/identical/cases/case_000/recordings/*.parquet",)
+        ),
         "groundwalk concealed make set --real data": NotRun(
             "recordings of real robots are needed",
             "groundwalk concealed make --help",
