@@ -15,12 +15,13 @@ MOTIONS = ("multisine", "ramps", "steps")
 """Motions of a case, a recording each."""
 
 MOST_JOINTS = 7
+"""Largest number of joints; cases have one joint, two and so on in turn."""
 
 _MODEL = "arm.xml"
 _RATES_HZ = (50.0, 100.0, 200.0, 500.0, 1000.0)
 _DURATION_S = 8.0
 _CLEAN_RAD, _NOISY_RAD = (1e-5, 3e-4), (3e-4, 3e-3)
-"""Ranges of the encoder's noise, of every other case each."""
+"""Ranges of the encoder's noise, for 14 cases each in turn."""
 _CENTRE_RAD, _RANGE_RAD, _SPEED_RAD_S = 0.5, 1.2, 6.0
 """Largest angle at which a motion is centred, reach of the motion from there, and speed
 limit of its commands."""

@@ -10,10 +10,13 @@ import numpy as np
 from groundwalk.arrays import FloatArray
 from worlds.recordings.metadata import ServoGains
 
-STEP_S = 1e-4
-"""Physics step: short, so that the recordings obey the model and not its integrator."""
-
-_AXES = ("0 0 1", "0 1 0", "1 0 0")
+_STEP_S = 1e-4
+"""Physics step [s]: short, so that recordings obey the model and not its integrator."""
+_SETTLED_S = 3.0
+"""Time [s] in which an arm comes to rest at its first command."""
+_AXES = ("0 0 1", "0 1 0")
+"""Axes of joints; links lie along x. The first joint has the second one, so that it
+carries weight."""
 _LINK_M, _LINK_KG = (0.12, 0.35), (0.2, 2.0)
 """Ranges of a link's length and of the first link's mass; each further one has 0.7 of
 the mass before."""
@@ -26,6 +29,9 @@ _OWN_RAD_S, _RATIO = (12.0, 25.0), (0.5, 1.0)
 """Ranges of the servo's own frequency and damping ratio with the inertia at rest."""
 _MOST_TORQUE_NM = 1e4
 """Torque limit that is stated, far beyond what is needed."""
+
+_ACTUATORS = "<!-- actuators -->"
+"""Where actuators are put once the inertia of an arm is known."""
 
 Drive = Literal["actuators", "loop"]
 """What moves an arm: MuJoCo's position actuators, or motors and a loop of its own."""
@@ -51,8 +57,8 @@ class RandomArm:
     def drawn(cls, joints: int, drive: Drive, rng: np.random.Generator) -> "RandomArm":
         """Draw an arm with so many joints."""
         names = tuple(f"joint{number}" for number in range(1, joints + 1))
-        bare = _model(_bodies(names, rng), "")
-        inertia = _inertia(mujoco.MjModel.from_xml_string(bare))
+        bare = _model(_bodies(names, rng))
+        inertia = mujoco.MjModel.from_xml_string(bare).dof_M0  # the arm is stretched
         own, ratio = rng.uniform(*_OWN_RAD_S, joints), rng.uniform(*_RATIO, joints)
         kp, kd = inertia * own**2, 2 * ratio * own * inertia
         gains = {
@@ -60,7 +66,7 @@ class RandomArm:
             for name, p, d in zip(names, kp, kd, strict=True)
         }
         actuators = "\n".join(_actuator(name, gains[name], drive) for name in names)
-        return cls(bare.replace(_NO_ACTUATORS, actuators), names, gains, drive)
+        return cls(bare.replace(_ACTUATORS, actuators), names, gains, drive)
 
     def moved(self, command_rad: FloatArray, tick_s: float) -> FloatArray:
         """(T, j) angles at each tick when commands (T, j) are held for a tick each.
@@ -81,29 +87,25 @@ class RandomArm:
                     data.ctrl[:] = kp * (target - data.qpos) - kd * data.qvel
                 mujoco.mj_step(model, data)
 
-        advance(command_rad[0], round(_SETTLED_S / STEP_S))
-        steps, angles = round(tick_s / STEP_S), np.empty_like(command_rad)
+        advance(command_rad[0], round(_SETTLED_S / _STEP_S))
+        steps, angles = round(tick_s / _STEP_S), np.empty_like(command_rad)
         for row, target in enumerate(command_rad):
             angles[row] = data.qpos
             advance(target, steps)
         return angles
 
 
-_SETTLED_S = 3.0
-_NO_ACTUATORS = "<!-- actuators -->"
-
-
-def _model(bodies: str, actuators: str) -> str:
-    """MJCF of an arm without contacts."""
+def _model(bodies: str) -> str:
+    """MJCF of an arm without contacts, and without actuators yet."""
     return f"""<mujoco model="arm">
   <compiler angle="radian"/>
-  <option timestep="{STEP_S}" integrator="implicitfast">
+  <option timestep="{_STEP_S}" integrator="implicitfast">
     <flag contact="disable"/>
   </option>
   <worldbody>
 {bodies}  </worldbody>
   <actuator>
-{actuators or _NO_ACTUATORS}
+{_ACTUATORS}
   </actuator>
 </mujoco>
 """
@@ -115,7 +117,7 @@ def _bodies(joints: tuple[str, ...], rng: np.random.Generator) -> str:
     text, ends, start_m = "", "", 0.0
     for number, joint in enumerate(joints):
         length_m = rng.uniform(*_LINK_M)
-        axis = _AXES[int(rng.integers(len(_AXES) - 1)) if number else 1]
+        axis = _AXES[int(rng.integers(len(_AXES))) if number else 1]
         low, high = np.log(_DRY_NM)
         dry_nm = math.exp(rng.uniform(low, high)) if dry else 0.0
         text += (
@@ -129,15 +131,6 @@ def _bodies(joints: tuple[str, ...], rng: np.random.Generator) -> str:
         ends += "    </body>\n"
         mass_kg, start_m = _LIGHTER * mass_kg, length_m
     return text + ends
-
-
-def _inertia(model: mujoco.MjModel) -> FloatArray:
-    """(j,) inertia [kg m^2] that each joint has to move when the arm is stretched."""
-    data: Any = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    full = np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, full)
-    return np.asarray(np.diag(full).copy())
 
 
 def _actuator(joint: str, gains: ServoGains, drive: Drive) -> str:

@@ -35,8 +35,8 @@ CLOSER = 0.5
 the noise is left: what falls slower does not end at the noise in a few rounds."""
 
 SETTLED = 0.95
-"""The same share where errors and values are to predict a robot that no model is exact
-of: what falls by less than 5 % has settled."""
+"""Largest share of the mean square that a round may leave where errors and values are
+to predict a robot that no model is exact of: what falls by less has settled."""
 
 TRIED = ((1.0, 0.0), (0.5, 0.0), (0.25, 0.0), (1.0, 0.1), (1.0, 1.0))
 """Shares and dampings of the steps that are tried, of which the best is taken. Damped
@@ -44,8 +44,9 @@ steps (Marquardt 1963, "An algorithm for least-squares estimation of nonlinear
 parameters") move least what the data tell least, where a linear step would go far."""
 
 LAST_TRIED = ((1.0, 10.0), (1.0, 100.0), (1.0, 1000.0))
-"""The same where none of those helps: dry friction and backlash can bend the way so
-much that far less than a quarter of a step is right."""
+"""Shares and dampings of steps that are tried where none of `TRIED` helps: dry friction
+and backlash can bend the way so much that far less than a quarter of a step is right.
+"""
 
 ENOUGH, ENOUGH_NATS = 1e-3, 1.0
 """Share of the energy, and energy [nats], by which a step must lower it; otherwise the

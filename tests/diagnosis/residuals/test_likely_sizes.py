@@ -33,7 +33,7 @@ def test_bounds_hold_and_the_others_take_over():
 
 
 def test_damping_holds_sizes_back_by_how_much_they_change():
-    """Each is the minimum of a parabola: the squares left, its own, those of its step.
+    """A size is least for the squares left, its own and those of its step together.
 
     What changes three times as much has nine times the weight in both.
     """
