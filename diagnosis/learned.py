@@ -20,10 +20,16 @@ from diagnosis.residuals.steps import precise
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
-from diagnosis.search.reference import learn_reference, reference_checks
+from diagnosis.search.reference import (
+    established_changes,
+    learn_reference,
+    learn_torques,
+    reference_checks,
+)
 from diagnosis.search.result import SearchResult, keys_of
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
+from diagnosis.traces.trace import asked
 from diagnosis.verdict import VerdictKind
 from groundwalk.arrays import FloatArray
 
@@ -40,6 +46,10 @@ MOST_KNOWN = 2
 after one that has found more of it. Where its model is far from exact it has several
 explanations, and each further time it may change to another one, which explains what is
 new as well."""
+
+MOST_BESIDE, SETTLED = 5, 0.02
+"""Most times that differences between recordings are learned beside what has changed,
+and largest change of its values, as a share, at which that ends."""
 
 FIT_REPLAYS = 150
 """Rough number of replays of the recordings in sim before the search; it only scales
@@ -87,6 +97,8 @@ class Learned:
         channels = precise(material.plant, traces, material.channels, threads)
         given = _rules(material.plant, rules)
         first = cls._of(material, channels, given, threads, hooks)
+        if first.noise and first.noise.healthy:
+            return first._beside_changes(channels, given, threads, hooks)
         timed = first._timed_anew()
         if timed is not None:
             channels, found = timed, _best_of_each_size(first.search, first.result)
@@ -108,6 +120,36 @@ class Learned:
             return replace(first, data=data, inexact=True)
         found = _best_of_each_size(first.search, first.result)
         return cls._of(material, wide, given.again, threads, hooks, found)
+
+    def _beside_changes(
+        self, channels: Channels, rules: Rules, threads: int, hooks: Hooks
+    ) -> "Learned":
+        """A search beside differences between recordings that do not hold the change.
+
+        At first they are learned as if nothing had changed, and so are too large.
+        """
+        material, found = self.material, self
+        sets = material.before, material.reference, (material.plant, material.traces)
+        model: Model = ()
+        for _ in range(MOST_BESIDE):
+            winner = found.result.winner
+            if winner is None:
+                break
+            least = self.search.judge.least_gain
+            model = established_changes(*sets, channels, winner.model, least)
+            gone = tuple(one for one in winner.model if one not in model)
+            if not model:
+                judge = self.search.judge
+                own = self.result.winner
+                result = without(judge, self.result, own.model if own else ())
+                kind = verdict_kind(result, material.plant, material.audited)
+                return replace(self, result=result, kind=kind)
+            options = replace(rules.again, largest=len(model)), threads, hooks, [model]
+            found = self._of(material, channels, *options, beside=model)
+            again = found.result.winner
+            if again is not None and not gone and settled(winner.model, again.model):
+                break
+        return found
 
     def _timed_anew(self) -> Channels | None:
         """The channels as the best model shows their noise; None if that is no other.
@@ -140,6 +182,7 @@ class Learned:
         threads: int,
         hooks: Hooks,
         promising: Sequence[Model] = (),
+        beside: Model = (),
     ) -> "Learned":
         """A search, which also tries the models `promising`.
 
@@ -149,7 +192,7 @@ class Learned:
         known: Model | None = None
         for number in range(MOST_KNOWN):
             data, noise, search = _divided(
-                material, channels, rules, threads, hooks, promising, known
+                material, channels, rules, threads, hooks, promising, known, beside
             )
             result, everywhere = found_by(search)
             old = old_effects(search.judge, result)
@@ -167,6 +210,15 @@ class Learned:
         kind = verdict_kind(result, material.plant, material.audited)
         everywhere = everywhere and result.chosen > 0
         return cls(material, data, noise, search, result, kind, everywhere)
+
+
+def settled(before: Model, after: Model) -> bool:
+    """Whether two models have the same effects with nearly the same values."""
+    known = {one.key: np.array(one.values) for one in before}
+    return keys_of(before) == keys_of(after) and all(
+        np.allclose(known[one.key], one.values, rtol=SETTLED, atol=1e-9)
+        for one in after
+    )
 
 
 def _not_small(
@@ -209,6 +261,7 @@ def _divided(
     hooks: Hooks,
     promising: Sequence[Model] = (),
     known: Model | None = None,
+    beside: Model = (),
 ) -> tuple[DataSets, ReferenceNoise | None, Search]:
     """The data by use, the healthy robot's model errors, and a search ready to run.
 
@@ -219,7 +272,12 @@ def _divided(
     noise, healthy = None, list[Predictor]()
     if reference:
         options = rules, threads, hooks, known
-        noise = learn_reference(before, reference, channels, *options)
+        if asked(reference):
+            noise = learn_torques(
+                before, reference, (plant, material.traces), channels, beside
+            )
+        else:
+            noise = learn_reference(before, reference, channels, *options)
     hooks.stage("fit", FIT_REPLAYS)
     data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
     if noise:

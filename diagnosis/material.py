@@ -13,6 +13,7 @@ from diagnosis.audit.audit import audit
 from diagnosis.audit.result import Audit
 from diagnosis.audit.suspicions import contradicted_ranges
 from diagnosis.plant.plant import Plant
+from diagnosis.residuals.asked_torques import with_asked_torques
 from diagnosis.residuals.channels import Channels, shared_channels
 from diagnosis.residuals.torque_evidence import (
     torques_tell,
@@ -85,6 +86,11 @@ class Material:
             plant, before = (with_used_torques(one, both) for one in (plant, before))
             every = with_motions(plant, both)
             ready, healthy = tuple(every[: len(ready)]), tuple(every[len(ready) :])
+            said = (*said, why)
+        elif asked := with_asked_torques((plant, before), ready, healthy):
+            ready, healthy, why = asked
+            both = (*ready, *healthy)
+            plant, before = (with_used_torques(one, both) for one in (plant, before))
             said = (*said, why)
         return cls(
             plant,

@@ -14,7 +14,7 @@ from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import Trace, asked
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import PlacedEffect
 from groundwalk.arrays import FloatArray
@@ -287,6 +287,13 @@ class EndStop(JointEffect):
         "{joint} hits a stop at {angle} {lacking}",
         "Something stops the joint before the end of its nominal range.",
     )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of all joints, if motions are replayed or torques were measured.
+
+        A joint against a stop hardly moves, so that the law of its servo tells nothing.
+        """
+        return () if asked(traces) else super().places(plant, traces)
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """Angle of the stop [rad], and side, whose sign says which way it blocks."""

@@ -7,7 +7,7 @@ import numpy as np
 from diagnosis.effects.effect import JointEffect, NumberEffect
 from diagnosis.effects.parts import EffectWords, Parameter
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import Trace, asked
 
 
 class TorqueScale(NumberEffect, JointEffect):
@@ -38,7 +38,7 @@ class TorqueScale(NumberEffect, JointEffect):
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of all joints if measured torques are compared, else ()."""
         compared = bool(traces) and all(trace.motion is not None for trace in traces)
-        return plant.joints if compared else ()
+        return plant.joints if compared and not asked(traces) else ()
 
     def tolerance(self, plant: Plant, place: str) -> float:
         """2 %: the accuracy to which the constants of a motor are known."""
@@ -75,7 +75,8 @@ class SensorDelay(NumberEffect):
 
         Late encoders then cannot be distinguished from late commands.
         """
-        other = any(trace.torque_nm is not None for trace in traces)
+        measured = any(trace.torque_nm is not None for trace in traces)
+        other = measured and not asked(traces)
         return ("encoders",) if plant.base == "floating" or other else ()
 
 

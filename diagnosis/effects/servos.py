@@ -23,7 +23,7 @@ from diagnosis.effects.parts import (
 from diagnosis.effects.scales import speed_rad_s, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import Trace, asked
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import PlacedEffect, When
 from groundwalk.arrays import FloatArray
@@ -243,8 +243,12 @@ class SpeedLimit(NumberEffect, ServoEffect):
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-        """Names of joints with a servo, if a recording has position commands."""
-        if all(trace.command_rad is None for trace in traces):
+        """Names of joints with a servo, if a recording has position commands.
+
+        None if only the torque is compared for which servos ask: any motion that does
+        not follow its commands would look like one with slow targets.
+        """
+        if asked(traces) or all(trace.command_rad is None for trace in traces):
             return ()
         return super().places(plant, traces)
 

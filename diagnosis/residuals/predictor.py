@@ -252,6 +252,15 @@ class Predictor(Doubted):
         """Whether recordings of the healthy robot show errors, which are taken out."""
         return self._doubts.noise is not None
 
+    @property
+    def knows_healthy_torques(self) -> bool:
+        """Whether torques are compared, of which the healthy robot's errors are known.
+
+        Then these are what its recordings differ by, and effects are few.
+        """
+        noise = self._doubts.noise
+        return noise is not None and noise.healthy is not None
+
     def residuals(self, models: Sequence[Model], exactly: bool = False) -> FloatArray:
         """(n, N) measured less predicted values of n models, in units of noise.
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.healthy_torques import HealthyTorques
 from diagnosis.traces.windows import FLOATING_WINDOW_S, Run
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError
@@ -92,6 +93,8 @@ class ReferenceNoise:
       rows: median number of rows of the blocks from which these were learned.
       spread: (k, k) covariance, in usual standard deviations, of what is left unknown
         of small mismatch of the robot model; None if nothing was learned of it.
+      healthy: errors in torque, if torques are compared and the robot's model is far
+        from it; then all others are none.
     """
 
     model: tuple[PlacedEffect, ...]
@@ -100,6 +103,7 @@ class ReferenceNoise:
     axes: FloatArray
     rows: float
     spread: FloatArray | None = None
+    healthy: HealthyTorques | None = None
 
     @classmethod
     def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":

@@ -115,15 +115,18 @@ def with_used_torques(plant: Plant, traces: Sequence[Trace]) -> Plant:
     return replace(plant, used_nm=used_nm)
 
 
-def with_motions(plant: Plant, traces: Sequence[Trace]) -> list[Trace]:
+def with_motions(
+    plant: Plant, traces: Sequence[Trace], least_s: float = 0.0
+) -> list[Trace]:
     """The traces, with the smoothed motions from which needed torques follow.
 
     Motions are smoothed below one cut-off frequency, see `cutoff_hz`. Torques will be
-    averaged over blocks of rows, see `block_s`. All traces have measured torques.
+    averaged over blocks of rows, see `block_s`, of `least_s` at least. All traces have
+    measured torques.
     """
     some = shortened(traces, CHOSEN_S)
     highest_hz = cutoff_hz(plant, some)
-    longest_s = block_s(plant, some, highest_hz)
+    longest_s = max(block_s(plant, some, highest_hz), least_s)
     return [
         replace(one, motion=_motion(plant, one, highest_hz, longest_s))
         for one in traces

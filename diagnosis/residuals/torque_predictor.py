@@ -5,14 +5,17 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from diagnosis.plant.plant import Plant
+from diagnosis.replay.asked import AskedTorques, centred
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.channels import LEAST_TORQUE, Channels
+from diagnosis.residuals.healthy_torques import HealthyTorques, Means
 from diagnosis.residuals.predictor import WORST, Model, Predictor
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise, waves
 from diagnosis.residuals.replays import variants_of
+from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from diagnosis.residuals.stop_contact import StopContact
 from diagnosis.residuals.tolerance import Tolerance
-from diagnosis.traces.trace import Trace
+from diagnosis.traces.trace import Trace, asked
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
 FEWEST = 0.25
@@ -42,6 +45,7 @@ class TorquePredictor(Predictor):
         """
         plant, traces = self.plant, self.traces
         self._needed = NeededTorques(plant, traces)
+        self._asked = AskedTorques(traces) if asked(traces) else None
         motions = [trace.motion for trace in traces if trace.motion is not None]
         known = np.isfinite(self._measured)
         self._counts = np.concatenate([one.counts for one in motions]) & known
@@ -64,6 +68,8 @@ class TorquePredictor(Predictor):
         rows = [motion.block_rows for motion in motions]
         noise = self.channels.noise
         self._stops = StopContact.of(plant, traces, rows, largest, noise)
+        self._whitening: list[FloatArray] | None = None
+        self._habits: FloatArray | None = None
 
     @property
     def by_torque(self) -> bool:
@@ -82,7 +88,13 @@ class TorquePredictor(Predictor):
         torque = np.empty((len(models), *self._measured.shape))
         given = [self._doubts.given(model) for model in models]
         for rows, _, acting, _ in self._replays.together(given):
-            torque[:, rows] = self._needed.of(variants_of(self.plant, acting))[:, rows]
+            variants = variants_of(self.plant, acting)
+            needed = self._needed.of(variants)
+            if self._healthy is not None:
+                needed = needed + self._usual_nm(self._healthy)
+            if self._asked is not None:
+                needed = self._asked.of(needed, variants)
+            torque[:, rows] = needed[:, rows]
         if self._on_replay is not None:
             self._on_replay(len(models))
         return torque
@@ -99,7 +111,103 @@ class TorquePredictor(Predictor):
         wrong[:, own] = self._stops.rested(
             wrong[:, own], variants_of(self.plant, given)
         )
+        if self._healthy is not None:
+            wrong = self._less_usual(wrong, self._healthy)
         return wrong
+
+    @property
+    def _healthy(self) -> HealthyTorques | None:
+        """The torque errors of the healthy robot, if they are known."""
+        noise = self._doubts.noise
+        return None if noise is None else noise.healthy
+
+    def fit_nuisance(self, model: Model) -> None:
+        """Find likely small mismatch, unless the healthy robot's errors are known."""
+        if self._healthy is None:
+            super().fit_nuisance(model)
+
+    def take_nuisance(self, errors: Nuisance | None, model: Model) -> None:
+        """Take small mismatch, unless the healthy robot's errors are known."""
+        if self._healthy is None:
+            super().take_nuisance(errors, model)
+
+    def means(self, model: Model = ()) -> Means:
+        """Mean torques [N m] that a model lacks, and what they may go with."""
+        bare = self._with(noise=None)
+        needed = bare.predict([model])[0]
+        scored, starts = self._scored[self._starts], self._starts
+        missing = self._averages(self._measured - needed)
+        columns = self._columns()
+        k = columns.shape[2]
+        averages = [self._averages(columns[:, :, i]) for i in range(k)]
+        first = np.concatenate([[0], np.cumsum([t.ticks for t in self.traces])])
+        recording = np.searchsorted(first, starts, side="right") - 1
+        block = np.concatenate(
+            [np.arange(int((recording == i).sum())) for i in range(len(self.traces))]
+        )
+        return Means(
+            np.where(scored, missing, np.nan),
+            np.stack(averages, axis=2),
+            self._averages(needed),
+            recording,
+            block,
+            tuple(trace.recording for trace in self.traces),
+        )
+
+    def _averages(self, values: FloatArray) -> FloatArray:
+        """(blocks, j) averages of values (rows, j) over the rows that count."""
+        counted = np.where(self._counts, np.nan_to_num(values), 0.0)
+        sums = np.add.reduceat(counted, self._starts, axis=0)
+        return np.asarray(sums / np.maximum(self._rows, 1.0))
+
+    def _columns(self) -> FloatArray:
+        """(rows, j, k) what torque errors may go with, `healthy_torques.COLUMNS`."""
+        needed = self._needed.of(variants_of(self.plant, [()]))[0]
+        parts, first = [], 0
+        for trace in self.traces:
+            motion = trace.motion
+            assert motion is not None
+            q, v = motion.position_rad, motion.velocity_rad_s
+            own = needed[first : first + trace.ticks]
+            first += trace.ticks
+            late = np.zeros_like(q)
+            if trace.command_rad is not None:
+                rate = np.gradient(centred(trace), trace.time_s, axis=0)
+                late = trace.servo.kp_nm_rad * rate
+            every = (
+                np.ones_like(q),
+                v,
+                np.sign(v),
+                q,
+                np.sin(q),
+                np.cos(q),
+                motion.acceleration_rad_s2,
+                own,
+                np.abs(own) * np.sign(v),
+                late,
+            )
+            parts.append(np.stack(every, axis=2))
+        return np.concatenate(parts)
+
+    def _usual_nm(self, healthy: HealthyTorques) -> FloatArray:
+        """(rows, j) torque errors that the healthy robot has in this motion."""
+        if self._habits is None:
+            self._habits = healthy.torque(self._columns())
+        return self._habits
+
+    def _less_usual(self, wrong: FloatArray, healthy: HealthyTorques) -> FloatArray:
+        """(n, rows, c) errors, whitened with what recordings usually differ by."""
+        if self._whitening is None:
+            self._whitening = healthy.whitening(self.means())
+        found = np.zeros_like(wrong)
+        full = 1 / (self._weight**2 * np.maximum(self._rows, 1.0))
+        weight = np.sqrt(np.maximum(self._rows, 1.0) / full)
+        for j, matrix in enumerate(self._whitening):
+            some = np.flatnonzero(self._scored[self._starts, j])
+            rows = self._starts[some]
+            mean_nm = wrong[:, rows, j] * self.channels.noise[j] / weight[some, j]
+            found[:, rows, j] = mean_nm @ matrix.T
+        return np.clip(found, -WORST, WORST)
 
     def _means(self, torque_nm: FloatArray) -> FloatArray:
         """(n, rows, c) means of torques (n, rows, c) over blocks, in units of noise."""

@@ -24,7 +24,10 @@ def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
     searched for at once, elsewhere where few effects leave much. Unless `tested` is
     false, few effects also have to pass closer tests.
     """
-    judge, result = search.judge, search.run()
+    judge = search.judge
+    if judge.fit.knows_healthy_torques:
+        return accepted(judge, search.run(anyway=True)), False
+    result = search.run()
     if search.widespread:
         wide = everywhere(judge, result)
         if wide is not result:

@@ -1,6 +1,7 @@
 """Learns the errors of a robot model from recordings of the healthy robot."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,12 +11,13 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.data_sets import longest_window_s
 from diagnosis.residuals.doubted import no_nuisance
+from diagnosis.residuals.healthy_torques import HealthyTorques
 from diagnosis.residuals.left_out import left_out
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.steps import with_best_steps
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torque_predictor import TorquePredictor, predictor_of
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.hooks import Hooks
@@ -149,6 +151,58 @@ def learn_reference(
         model = _with_small_mismatch(sims, traces, found)
     hooks.stage("noise", REPLAYS)
     return _learned(sims, traces, model)
+
+
+def learn_torques(
+    before: Plant,
+    reference: Sequence[Trace],
+    other: tuple[Plant, Sequence[Trace]],
+    channels: Channels,
+    model: Model = (),
+) -> ReferenceNoise:
+    """Learn the torque errors of the healthy robot, as its recordings show them.
+
+    `before` is the model of the healthy robot, `other` the model and the recordings to
+    be diagnosed: how much recordings differ is learned of what the effects of `model`
+    leave of these as well. All traces have a `motion`.
+    """
+    found = [
+        TorquePredictor(plant, shortened(traces, MOST_S), channels).means(effects)
+        for plant, traces, effects in ((before, reference, ()), (*other, model))
+    ]
+    known = ReferenceNoise.known((), len(channels.names))
+    return replace(known, healthy=HealthyTorques.of(*found))
+
+
+def established_changes(
+    before: Plant,
+    reference: Sequence[Trace],
+    other: tuple[Plant, Sequence[Trace]],
+    channels: Channels,
+    model: Model,
+    least_gain: float,
+) -> Model:
+    """The effects of a model without which recordings are much less likely.
+
+    Each alternative may have its own differences between recordings: what these can
+    be explains an effect away if it makes them as likely. Arguments are those of
+    `learn_torques`; `least_gain` is what an effect must gain at least [nats].
+    """
+
+    def evidence(some: Model) -> float:
+        found = learn_torques(before, reference, other, channels, some).healthy
+        assert found is not None
+        return found.evidence
+
+    while model:
+        whole = evidence(model)
+        rest = [model[:i] + model[i + 1 :] for i in range(len(model))]
+        gains = [whole - evidence(one) for one in rest]
+        worst = int(np.argmin(gains))
+        if gains[worst] > least_gain:
+            break
+        model = rest[worst]
+    return model
 
 
 def _learned(

@@ -182,8 +182,14 @@ def pack_noise(noise: ReferenceNoise) -> Saved:
 
 def unpack_noise(saved: Saved) -> ReferenceNoise:
     """Restore noise that `pack_noise` has converted, exact to the last digit."""
+    arrays = saved.arrays
     return ReferenceNoise(
-        _model(saved.plain["model"]), rows=saved.plain["rows"], **saved.arrays
+        _model(saved.plain["model"]),
+        arrays["scale"],
+        arrays["power"],
+        arrays["axes"],
+        saved.plain["rows"],
+        arrays.get("spread"),
     )
 
 

@@ -21,6 +21,8 @@ class Motion:
         the torque that the motion needs, by sensor noise.
       left_nm: (j,) standard deviation of that average of what regression of the
         measured torque on the joint's motion leaves.
+      by_servo: whether torques are those that servos ask for by their declared law, not
+        measured ones.
     """
 
     position_rad: FloatArray
@@ -30,6 +32,7 @@ class Motion:
     block_rows: int
     noise_nm: FloatArray
     left_nm: FloatArray
+    by_servo: bool = False
 
     def part(self, start: int, stop: int) -> "Motion":
         """Rows `start` to `stop - 1`."""

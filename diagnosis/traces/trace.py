@@ -229,3 +229,9 @@ def stretches(flags: BoolArray) -> list[tuple[int, int]]:
 def runs(flags: BoolArray) -> list[tuple[int, int]]:
     """First row of each run of (T,) flagged rows, and the row after its last one."""
     return [(rows.start, rows.stop) for (rows,) in find_objects(label(flags)[0])]
+
+
+def asked(traces: Sequence[Trace]) -> bool:
+    """Whether torques are compared, and those of servos are what their law asks for."""
+    motions = [trace.motion for trace in traces]
+    return any(motion is not None and motion.by_servo for motion in motions)

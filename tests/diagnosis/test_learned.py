@@ -25,7 +25,8 @@ class Scene:
         for name in ("_divided", "found_by", "old_effects", "without", "verdict_kind"):
             patch.setattr(learned, name, getattr(self, name.strip("_")))
 
-    def divided(self, material, channels, rules, threads, hooks, promising, known):
+    def divided(self, material, channels, rules, *options):
+        _, _, promising, known, _ = options
         self.known.append(known)
         self.tried.append([list(model) for model in promising])
         noise = ReferenceNoise.known((USUAL, *(known or ())), 2)

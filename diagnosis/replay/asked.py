@@ -1,0 +1,84 @@
+"""The torque that servos ask for, as effects of servos and commands change it.
+
+Where servos with known gains drive the joints, their law says what torque they ask for
+in a recorded motion: kp (command - q) - kd v. It is compared with the torque that the
+motion needs. A servo that is not as declared needs another error, and so asks for
+another torque by the declared law, for the same motion. What effects change is added to
+the torque that the motion needs, which is known without the noise of the error.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnosis.effects.variants import Variants
+from diagnosis.traces.trace import Trace
+from groundwalk.arrays import FloatArray
+
+LEAST = 0.02
+"""Smallest share of a servo's stiffness: a motor that is off asks for any torque."""
+
+
+class AskedTorques:
+    """Computes what servos ask for, by their declared law, in recorded motions."""
+
+    def __init__(self, traces: Sequence[Trace]) -> None:
+        """Take the commands, servos and motions of traces, which have all of them."""
+        self._traces = list(traces)
+
+    def of(self, needed_nm: FloatArray, variants: Variants) -> FloatArray:
+        """(n, rows, j) torques that servos ask for where motions need (n, rows, j)."""
+        asked = np.empty_like(needed_nm)
+        for row in range(variants.n):
+            first = 0
+            for trace in self._traces:
+                own = slice(first, first + trace.ticks)
+                asked[row, own] = _asked(trace, needed_nm[row, own], variants, row)
+                first += trace.ticks
+        return asked
+
+
+def _asked(
+    trace: Trace, needed_nm: FloatArray, variants: Variants, row: int
+) -> FloatArray:
+    """(T, j) torques by the declared law of servos that are a variant's."""
+    joints = {name: one[row] for name, one in vars(variants.joints).items()}
+    kp = trace.servo.kp_nm_rad
+    kd = trace.servo.kd_nm_s_rad + trace.servo.back_emf_nm_s_rad
+    assert trace.motion is not None
+    v, since_s = trace.motion.velocity_rad_s, trace.time_s[:, None]
+    off = (since_s >= joints["off_start_s"]) & (since_s < joints["off_end_s"])
+    on = 1 - joints["off_share"] * off
+    stiffness = joints["kp_factor"] * np.maximum(1 - joints["fade_1_s"] * since_s, 0)
+    damping = on * joints["damping_factor"]
+    pull = (needed_nm + damping * kd * v) / np.maximum(on * stiffness, LEAST)
+    asked = pull - kd * v
+    delay_s = float(variants.signals.command_delay_s[row])
+    if delay_s:
+        asked += kp * (centred(trace) - centred(trace, delay_s))
+    return np.asarray(asked)
+
+
+def centred(trace: Trace, delay_s: float = 0.0) -> FloatArray:
+    """(T, j) commands that hold at each row's time, if they are late by `delay_s`.
+
+    A command holds from its row to the next one, so that on average it is that of the
+    middle between them.
+    """
+    assert trace.command_rad is not None
+    middles = trace.time_s + np.diff(trace.time_s, append=np.nan) / 2
+    middles[-1] = trace.time_s[-1] + trace.tick_s / 2
+    early = trace.time_s - delay_s
+    return np.stack(
+        [np.interp(early, middles, one) for one in trace.command_rad.T], axis=1
+    )
+
+
+def by_servos(trace: Trace) -> FloatArray:
+    """(T, j) torques [N m] that the declared servos ask for at the measured motion."""
+    kp, kd = trace.servo.kp_nm_rad, trace.servo.kd_nm_s_rad
+    q = trace.position_rad
+    v = np.stack([np.gradient(one, trace.time_s) for one in q.T], axis=1)
+    pull = kp * (centred(trace) - q) - kd * v
+    limit = trace.servo.max_torque_nm
+    return np.asarray(np.clip(pull, -limit, limit) - trace.servo.back_emf_nm_s_rad * v)

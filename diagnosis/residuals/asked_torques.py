@@ -1,0 +1,90 @@
+"""Decides whether the torques that servos ask for are compared with those needed.
+
+A replay follows a robot's motion to the noise of its sensors, if the model does. Where
+the model of a real robot leaves many times as much, even of the healthy robot, errors
+of all joints mix in replays, and what is left of them goes with nothing. Torques do not
+mix: what a joint's servo asks for by its declared gains, less what the motion needs, is
+that joint's own error, and how it goes with the joint's motion is learned from the
+healthy robot (`healthy_torques.py`).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.plant.plant import Plant
+from diagnosis.replay.asked import by_servos
+from diagnosis.residuals.doubted import no_nuisance
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.torque_evidence import with_motions
+from diagnosis.traces.split import shortened
+from diagnosis.traces.trace import Trace
+
+FAR = 5.0
+"""Multiple of the sensors' noise that replays of the healthy robot leave, beside what
+small mismatch of its model explains to first order, from which on it is far from its
+model. Where small mismatch is all there is, 1 to 4 times the noise is left; of five
+real robots 8 to 40 times."""
+
+MOST_S = 10.0
+"""Most seconds of the healthy robot's recordings that are replayed for that."""
+
+LASTS_S = 0.25
+"""Time [s] for which torque that no effect explains stays alike: its means over as long
+count as independent."""
+
+ASKED = (
+    "the healthy robot moves otherwise than its model, by {times:.0f} times the "
+    "sensors' noise beside small mismatch: the torques for which servos ask by their "
+    "declared gains are compared with those that the recorded motion needs, and what "
+    "the healthy robot shows of their difference is taken as given"
+)
+"""Sentence for the report where asked torques are compared."""
+
+
+def with_asked_torques(
+    plants: tuple[Plant, Plant], traces: Sequence[Trace], healthy: Sequence[Trace]
+) -> tuple[tuple[Trace, ...], tuple[Trace, ...], str] | None:
+    """Traces with smoothed motions and asked torques; None if motions are compared.
+
+    `plants` are the nominal model now, and that of the healthy robot, of which
+    `healthy` are recordings. Needed are a fixed base, and at all joints servos with
+    known gains and commands. Returns both kinds of traces, and a sentence.
+    """
+    both = (*traces, *healthy)
+    if not healthy or plants[0].base == "floating" or not all(map(_is_asked, both)):
+        return None
+    times = times_noise(plants[1], healthy)
+    if times < FAR:
+        return None
+    torques = [replace(one, torque_nm=by_servos(one)) for one in both]
+    ready = [
+        replace(one, motion=replace(one.motion, by_servo=True))
+        for one in with_motions(plants[0], torques, LASTS_S)
+        if one.motion is not None
+    ]
+    now, before = tuple(ready[: len(traces)]), tuple(ready[len(traces) :])
+    return now, before, ASKED.format(times=times)
+
+
+def times_noise(plant: Plant, healthy: Sequence[Trace]) -> float:
+    """Rms of what replays of the healthy robot leave beside small mismatch [noise].
+
+    The likeliest small mismatch is that of ridge regression on what each usual error of
+    the model changes, which is right to first order.
+    """
+    predictor = Predictor(plant, shortened(healthy, MOST_S))
+    predictor.correct()
+    errors = predictor.nuisance_fit(()).seen(no_nuisance(predictor))
+    (left,) = predictor.residuals([()])
+    changes = errors.changes.reshape(len(errors.changes), -1)
+    known = np.linalg.solve(np.eye(len(changes)) + changes @ changes.T, changes @ left)
+    rest = (left - known @ changes)[predictor.scored]
+    return float(np.sqrt(np.mean(rest**2)))
+
+
+def _is_asked(trace: Trace) -> bool:
+    """Whether servos with known gains follow commands at all joints of a recording."""
+    known = trace.command_rad is not None and trace.command_torque_nm is None
+    return known and not trace.unheld and bool((trace.servo.kp_nm_rad > 0).all())
