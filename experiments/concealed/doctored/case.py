@@ -235,5 +235,8 @@ def _differ(recording: Recording, one: str, other: str) -> bool:
 
 def _each(parts: Parts, change: Callable[[Recording], Recording]) -> Parts:
     """The parts with every recording of the case changed; the reference stays."""
-    changed = {name: change(one) for name, one in parts.recordings.items()}
-    return replace(parts, recordings=changed)
+    own, reference = (
+        {name: change(one) for name, one in every.items()}
+        for every in (parts.recordings, parts.reference)
+    )
+    return replace(parts, recordings=own, wrong_reference=reference)

@@ -2,8 +2,11 @@
 
 Torques are compared, since they need no simulation: those that drive the joints, less
 those that the model needs for the recorded motion. A doctoring changes the difference.
-It shows if that change is large beside what is left of the difference once everything
-is taken out of it that a regression learns from the reference. No code of the
+It shows if that change is large beside two things, once everything is taken out of the
+difference that a regression learns from other recordings: beside what is left, and
+beside what undoctored recordings seem to have of the same change by themselves, since
+no robot is the same in all recordings. Both are those of the reference, so that the
+noise of the case's own recordings does not decide whether it is drawn. No code of the
 diagnosis is used: what is drawn must not change with what it judges.
 """
 
@@ -27,9 +30,14 @@ _SMOOTHED_S, _DEGREE = 0.1, 3
 (Savitzky and Golay 1964)."""
 _CREEPING = 0.05
 """Speed, as a share of the rms, at which dry friction changes its sign gradually."""
+_RESTS = 0.15
+"""Speed, as a share of the rms, below which a joint rests."""
 _LEAST = 0.02
 """Smallest rms of what is unexplained, as a share of that of all torque: no
 gear is better, even where a joint hardly moves."""
+_DRAWN = 0.1
+"""Squared ratio of what regression leaves to what each of its columns usually explains:
+that of noise to coefficients in ridge regression."""
 _TINY = 1e-12
 
 
@@ -45,8 +53,17 @@ class _Torques:
 
     @property
     def missing_nm(self) -> FloatArray:
-        """(T, j) torque that the model does not explain."""
-        return self.drive_nm - self.needed_nm
+        """(T, j) torque that the model does not explain, 0 where a joint rests.
+
+        There dry friction may have any value.
+        """
+        return (self.drive_nm - self.needed_nm) * self.moves
+
+    @property
+    def moves(self) -> FloatArray:
+        """(T, j) 1 where a joint moves, else 0."""
+        usual = np.sqrt(np.mean(self.speed**2, axis=0))
+        return np.asarray(np.abs(self.speed) > _RESTS * usual, float)
 
     def columns(self, joint: int) -> FloatArray:
         """(T, k) what a joint's unexplained torque may be in proportion to.
@@ -60,7 +77,7 @@ class _Torques:
         if self.drive_nm[:, joint].any():
             a, needed = self.acceleration[:, joint], self.needed_nm[:, joint]
             every += [q, np.sin(q), np.cos(q), a, needed]
-        return np.stack(every, axis=1)
+        return np.stack(every, axis=1) * self.moves[:, [joint]]
 
     def most_nm(self) -> FloatArray:
         """(j,) rms of the joints' driving torques, or of those needed if larger."""
@@ -80,36 +97,80 @@ def nats_of(
       driven_by_torque: whether measured torques drive the joints, not servos.
     """
     models = [InverseDynamics.of_text(text) for text, _ in (real, doctored)]
+    parts, wrong = real[1], doctored[1]
+    own, healthy = (
+        [_torques(models[0], one, driven_by_torque) for one in every.values()]
+        for every in (parts.recordings, parts.reference)
+    )
 
-    def torques(model: InverseDynamics, one: Recording) -> _Torques:
-        return _torques(model, one, driven_by_torque)
+    def changed(was: _Torques, now: Recording) -> FloatArray:
+        then = _torques(models[1], now, driven_by_torque)
+        rows = min(len(was.speed), len(then.speed))
+        change = then.missing_nm[:rows] - was.missing_nm[:rows]
+        return np.asarray(_means(change, tick_s(now)) / noise)
 
-    parts = real[1]
-    learned = [torques(models[0], one) for one in parts.reference.values()]
+    seconds = [tick_s(one) for one in parts.reference.values()]
+    leaves = _left_of_each(healthy, own, seconds)
+    most = np.max([one.most_nm() for one in (*own, *healthy)], axis=0)
+    rms = np.sqrt(np.mean(np.concatenate(leaves) ** 2, axis=0))
+    noise = np.maximum(rms, _LEAST * most + _TINY)
+    again = zip(healthy, wrong.reference_as_well.values(), strict=True)
+    shown = [changed(was, now) for was, now in again]
+    seems = [_size(one / noise, of) ** 2 for one, of in zip(leaves, shown, strict=True)]
     told = []
-    for name, one in parts.recordings.items():
-        was = torques(models[0], one)
-        now = torques(models[1], doctored[1].recordings[name])
-        rows = min(len(was.speed), len(now.speed))
-        changed = now.missing_nm[:rows] - was.missing_nm[:rows]
-        seconds = tick_s(one)
-        left = np.stack(
-            [_unexplained(was, learned, j) for j in range(was.speed.shape[1])], axis=1
-        )
-        usual = np.sqrt(np.mean(_means(left, seconds) ** 2, axis=0))
-        least = _LEAST * was.most_nm() + _TINY
-        shown = _means(changed, seconds) / np.maximum(usual, least)
-        told.append(0.5 * float(np.sum(shown**2)))
+    for was, now in zip(own, wrong.recordings.values(), strict=True):
+        square = float(np.sum(changed(was, now) ** 2))
+        told.append(0.5 * square / (1 + square * np.mean(seems)))
     return float(np.median(told))
 
 
-def _unexplained(one: _Torques, learned: Sequence[_Torques], joint: int) -> FloatArray:
-    """(T,) what a regression that is learned elsewhere leaves of a joint's torque."""
-    columns = np.concatenate([each.columns(joint) for each in learned])
-    target = np.concatenate([each.missing_nm[:, joint] for each in learned])
-    size = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-12)
-    found = np.linalg.lstsq(columns / size, target, rcond=1e-6)[0] / size
-    return np.asarray(one.missing_nm[:, joint] - one.columns(joint) @ found)
+def _left_of_each(
+    healthy: Sequence[_Torques], own: Sequence[_Torques], seconds: Sequence[float]
+) -> list[FloatArray]:
+    """(blocks, j) means of the torques of each healthy recording that others leave.
+
+    Of a single one it is what the case's `own` recordings leave. The recordings' rows
+    are so many `seconds` apart.
+    """
+    found = []
+    for i, one in enumerate(healthy):
+        others = [*healthy[:i], *healthy[i + 1 :]] or own
+        joints = range(one.speed.shape[1])
+        parts = [_unexplained(one, others, j, seconds[i]) for j in joints]
+        found.append(np.stack(parts, axis=1))
+    return found
+
+
+def _size(seen: FloatArray, change: FloatArray) -> float:
+    """How many times (blocks, j) torques seem to have a change in them."""
+    rows = min(len(seen), len(change))
+    square = float(np.sum(change[:rows] ** 2))
+    product = float(np.sum(change[:rows] * seen[:rows]))
+    return product / square if square > 0 else 0.0
+
+
+def _unexplained(
+    one: _Torques, learned: Sequence[_Torques], joint: int, seconds: float
+) -> FloatArray:
+    """(blocks,) means of what regression that is learned elsewhere leaves of a torque.
+
+    It is ridge regression: motions that the others do not have are not guessed at.
+    """
+
+    def means(some: _Torques) -> tuple[FloatArray, FloatArray]:
+        columns = _means(some.columns(joint), seconds)
+        return columns, _means(some.missing_nm[:, joint : joint + 1], seconds)[:, 0]
+
+    parts = [means(each) for each in learned]
+    columns = np.concatenate([x for x, _ in parts])
+    target = np.concatenate([y for _, y in parts])
+    own, wanted = means(one)
+    both = np.concatenate([columns, own])
+    size = np.maximum(np.sqrt(np.mean(both**2, axis=0)), _TINY)
+    design = columns / size
+    gram = design.T @ design + _DRAWN * np.eye(len(size))
+    found = np.linalg.solve(gram, design.T @ target)
+    return np.asarray(wanted - own / size @ found)
 
 
 def _means(values: FloatArray, seconds: float) -> FloatArray:

@@ -24,12 +24,24 @@ two or three; with fewer, a case has half."""
 class Parts:
     """Recordings of a case and of its reference, by name, all different.
 
+    Attributes:
+      recordings: those of the case.
+      reference: those of the healthy robot.
+      wrong_reference: the latter with the label wrong that is wrong in the case, to see
+        how large that is beside what differs between recordings; None if no label is.
+
     Example:
       >>> drawn_parts(data, REAL_SETS["so101"], "nominal.urdf", rng).moving()
     """
 
     recordings: Mapping[str, Recording]
     reference: Mapping[str, Recording]
+    wrong_reference: Mapping[str, Recording] | None = None
+
+    @property
+    def reference_as_well(self) -> Mapping[str, Recording]:
+        """The reference with the same label wrong, if any is."""
+        return self.wrong_reference or self.reference
 
     def moving(self) -> tuple[str, ...]:
         """Joints that move in the reference, and in two of the case's recordings."""

@@ -79,15 +79,9 @@ REAL_SETS: Mapping[str, RealSet] = {
         folder="so101",
         model="so101",
         share=0.28,
-        doctorings=("servo_gain", "command_latency", "payload_mass", *OUTSIDE),
+        doctorings=("command_latency", *OUTSIDE),
         # data sheet of the servo (Feetech STS3215) at 12 V, as in docs/diagnosis.md
         gains=ServoGains(7.8, 0.62, 2.94),
-        links={
-            "upper_arm_link": "shoulder_lift",
-            "lower_arm_link": "elbow_flex",
-            "wrist_link": "wrist_flex",
-            "gripper_link": "wrist_flex",
-        },
     ),
     "go2": RealSet(
         folder="go2",

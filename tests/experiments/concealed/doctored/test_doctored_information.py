@@ -68,3 +68,27 @@ def test_a_servo_tells_of_its_gain_by_its_torque():
     assert np.sqrt(np.mean(torque**2)) > 1.0
     same = nats_of((ARM, parts), (ARM, parts), driven_by_torque=False)
     assert same == 0.0
+
+
+def test_what_differs_between_healthy_recordings_hides_it():
+    """Forces of the healthy robot are off by 10 % or more to either side themselves."""
+
+    def both(factor, reference):
+        parts = Parts({"a": shaken(1)}, reference)
+        case, again = (
+            {n: scale_torque(one, "carriage", factor) for n, one in every.items()}
+            for every in (parts.recordings, reference)
+        )
+        wrong = Parts(case, reference, again)
+        return nats_of((CARRIAGE, parts), (CARRIAGE, wrong), driven_by_torque=True)
+
+    steady = {"b": shaken(2), "c": shaken(3)}
+    restless = {
+        "b": scale_torque(shaken(2), "carriage", 1.1),
+        "c": scale_torque(shaken(3), "carriage", 0.9),
+    }
+    # left out, each recording is off by a fifth from the other: half of 0.1 / 0.2
+    # squared is the most that any noise lets show
+    assert both(1.1, restless) < 0.5 * 0.5**2 * 1.2
+    assert both(1.1, steady) > 20 * both(1.1, restless)
+    assert both(2.0, restless) < 0.5 * 5.0**2 * 1.2
