@@ -126,30 +126,41 @@ class Learned:
     ) -> "Learned":
         """A search beside differences between recordings that do not hold the change.
 
-        At first they are learned as if nothing had changed, and so are too large.
+        At first they are learned as if nothing had changed, and so are too large. If
+        nothing is found beside these, what is found beside those of the healthy robot's
+        recordings alone is tried.
         """
         material, found = self.material, self
+        if self.result.winner is None:
+            found = self._of(material, channels, rules, threads, hooks, beside=None)
         sets = material.before, material.reference, (material.plant, material.traces)
-        model: Model = ()
+        judge = self.search.judge
+
+        def least(one: Model) -> float:
+            return judge.least_gain + judge.price(one)
+
         for _ in range(MOST_BESIDE):
-            winner = found.result.winner
-            if winner is None:
-                break
-            least = self.search.judge.least_gain
-            model = established_changes(*sets, channels, winner.model, least)
-            gone = tuple(one for one in winner.model if one not in model)
+            before = found.result.winner
+            if before is None:
+                return self._less_all()
+            model = established_changes(*sets, channels, before.model, least)
             if not model:
-                judge = self.search.judge
-                own = self.result.winner
-                result = without(judge, self.result, own.model if own else ())
-                kind = verdict_kind(result, material.plant, material.audited)
-                return replace(self, result=result, kind=kind)
+                return self._less_all()
             options = replace(rules.again, largest=len(model)), threads, hooks, [model]
             found = self._of(material, channels, *options, beside=model)
-            again = found.result.winner
-            if again is not None and not gone and settled(winner.model, again.model):
+            winner = found.result.winner
+            if winner is not None and settled(before.model, winner.model):
                 break
         return found
+
+    def _less_all(self) -> "Learned":
+        """The same with nothing found."""
+        winner, material = self.result.winner, self.material
+        if winner is None:
+            return self
+        result = without(self.search.judge, self.result, winner.model)
+        kind = verdict_kind(result, material.plant, material.audited)
+        return replace(self, result=result, kind=kind)
 
     def _timed_anew(self) -> Channels | None:
         """The channels as the best model shows their noise; None if that is no other.
@@ -182,7 +193,7 @@ class Learned:
         threads: int,
         hooks: Hooks,
         promising: Sequence[Model] = (),
-        beside: Model = (),
+        beside: Model | None = (),
     ) -> "Learned":
         """A search, which also tries the models `promising`.
 
@@ -261,7 +272,7 @@ def _divided(
     hooks: Hooks,
     promising: Sequence[Model] = (),
     known: Model | None = None,
-    beside: Model = (),
+    beside: Model | None = (),
 ) -> tuple[DataSets, ReferenceNoise | None, Search]:
     """The data by use, the healthy robot's model errors, and a search ready to run.
 

@@ -118,7 +118,7 @@ class Judge:
     def worth(self, smaller: Judged, larger: Judged) -> bool:
         """Whether a larger model explains more than effects do by chance."""
         gain = smaller.evidence - larger.evidence
-        least = self.least_gain + self._price(larger.model) - self._price(smaller.model)
+        least = self.least_gain + self.price(larger.model) - self.price(smaller.model)
         matters = self._matters(smaller.selected - larger.selected)
         return gain > least and matters
 
@@ -134,8 +134,8 @@ class Judge:
         """
         energy = smaller.selected if smaller else self.nothing
         fitted = smaller.fit.energy if smaller else self.nothing_fit
-        least = self.least_gain + self._price(best.model)
-        least -= self._price(smaller.model if smaller else ())
+        least = self.least_gain + self.price(best.model)
+        least -= self.price(smaller.model if smaller else ())
         gained, selected = fitted - best.fit.energy, energy - best.selected
         is_free = self.fit.plant.base == "floating"
         here = selected > (least if is_free else -CONTRADICTED)
@@ -155,7 +155,7 @@ class Judge:
         correlated = max(self.least_gain / independent, 1.0)
         return correlated * gain_of_noise(self.rules.finished)
 
-    def _price(self, model: Model) -> float:
+    def price(self, model: Model) -> float:
         """Gain [nats] that a model needs beyond that of effects with one value each.
 
         More values, and start and end chosen freely, fit more by chance.

@@ -1,6 +1,6 @@
 """Learns the errors of a robot model from recordings of the healthy robot."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -158,17 +158,21 @@ def learn_torques(
     reference: Sequence[Trace],
     other: tuple[Plant, Sequence[Trace]],
     channels: Channels,
-    model: Model = (),
+    model: Model | None = (),
 ) -> ReferenceNoise:
     """Learn the torque errors of the healthy robot, as its recordings show them.
 
     `before` is the model of the healthy robot, `other` the model and the recordings to
     be diagnosed: how much recordings differ is learned of what the effects of `model`
-    leave of these as well. All traces have a `motion`.
+    leave of these as well, for None of the healthy robot only. All traces have a
+    `motion`.
     """
+    sets: list[tuple[Plant, Sequence[Trace], Model]] = [(before, reference, ())]
+    if model is not None:
+        sets.append((*other, model))
     found = [
         TorquePredictor(plant, shortened(traces, MOST_S), channels).means(effects)
-        for plant, traces, effects in ((before, reference, ()), (*other, model))
+        for plant, traces, effects in sets
     ]
     known = ReferenceNoise.known((), len(channels.names))
     return replace(known, healthy=HealthyTorques.of(*found))
@@ -180,13 +184,13 @@ def established_changes(
     other: tuple[Plant, Sequence[Trace]],
     channels: Channels,
     model: Model,
-    least_gain: float,
+    least: Callable[[Model], float],
 ) -> Model:
     """The effects of a model without which recordings are much less likely.
 
     Each alternative may have its own differences between recordings: what these can
     be explains an effect away if it makes them as likely. Arguments are those of
-    `learn_torques`; `least_gain` is what an effect must gain at least [nats].
+    `learn_torques`; `least` is what a model of one effect must gain [nats].
     """
 
     def evidence(some: Model) -> float:
@@ -197,9 +201,12 @@ def established_changes(
     while model:
         whole = evidence(model)
         rest = [model[:i] + model[i + 1 :] for i in range(len(model))]
-        gains = [whole - evidence(one) for one in rest]
-        worst = int(np.argmin(gains))
-        if gains[worst] > least_gain:
+        spare = [
+            whole - evidence(without) - least((one,))
+            for one, without in zip(model, rest, strict=True)
+        ]
+        worst = int(np.argmin(spare))
+        if spare[worst] > 0:
             break
         model = rest[worst]
     return model
