@@ -217,7 +217,10 @@ def _swapped(trace: Trace, plant: Plant, follow: Following) -> Iterator[Finding]
     """Find cycles of joints that each follow the command of the next one."""
     if len(follow.columns) < 2:
         return
-    _, of_command = linear_sum_assignment(follow.misfit**2)
+    cost = follow.misfit**2
+    # commands may be alike: a joint keeps its own unless another is far better
+    np.fill_diagonal(cost, _FAR_BETTER**2 * np.diag(cost))
+    _, of_command = linear_sum_assignment(cost)
     source = np.argsort(of_command)  # the command that explains each position best
     positions = np.arange(len(source))
     own = follow.misfit[positions, positions]

@@ -41,6 +41,24 @@ def test_swapped_joints(trace, plant):
     assert len(texts([turned], plant, "refuse")) == 3
 
 
+def test_swapped_joints_are_found_beside_one_with_the_same_command(trace, plant):
+    """As at the legs of a robot that trots: which of both commands fits is chance."""
+    little = 1.2e-3 * np.sin(2 * np.pi * 0.5 * trace.time_s)
+    command = changed(trace.command_rad, 2, trace.command_rad[:, 0] + little)
+    noise = trace.position_rad[:, 0] - motions(trace.time_s)[:, 0]
+    own = changed(trace.position_rad, 2, command[:, 0] + noise[::-1])
+    swapped = replace(
+        trace,
+        command_rad=command,
+        position_rad=changed(own[:, [1, 0, 2]], 1, command[:, 2] + noise),
+        velocity_rad_s=None,
+    )
+    found = texts([swapped], plant, "refuse")
+    assert len(found) == 2
+    one(found, "position.a of good follows the command of b")
+    one(found, "position.b of good follows the command of")
+
+
 def test_a_bad_joint_is_not_taken_for_a_swapped_one(trace, plant):
     # b hardly follows and happens to look like a; a is healthy
     weak = 0.9 * motions(trace.time_s)[:, 0]
