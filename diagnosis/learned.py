@@ -17,15 +17,11 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.steps import precise
+from diagnosis.search.changes import established_changes, learn_torques
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
 from diagnosis.search.judging import Judge
-from diagnosis.search.reference import (
-    established_changes,
-    learn_reference,
-    learn_torques,
-    reference_checks,
-)
+from diagnosis.search.reference import learn_reference, reference_checks
 from diagnosis.search.result import SearchResult, keys_of
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
@@ -149,9 +145,9 @@ class Learned:
             options = replace(rules.again, largest=len(model)), threads, hooks, [model]
             found = self._of(material, channels, *options, beside=model)
             winner = found.result.winner
-            if winner is not None and settled(before.model, winner.model):
+            if winner is not None and _settled(before.model, winner.model):
                 break
-        return found
+        return found if found.result.winner else self._less_all()
 
     def _less_all(self) -> "Learned":
         """The same with nothing found."""
@@ -223,7 +219,7 @@ class Learned:
         return cls(material, data, noise, search, result, kind, everywhere)
 
 
-def settled(before: Model, after: Model) -> bool:
+def _settled(before: Model, after: Model) -> bool:
     """Whether two models have the same effects with nearly the same values."""
     known = {one.key: np.array(one.values) for one in before}
     return keys_of(before) == keys_of(after) and all(

@@ -13,9 +13,9 @@ from diagnosis.audit.audit import audit
 from diagnosis.audit.result import Audit
 from diagnosis.audit.suspicions import contradicted_ranges
 from diagnosis.plant.plant import Plant
-from diagnosis.residuals.asked_torques import with_asked_torques
 from diagnosis.residuals.channels import Channels, shared_channels
-from diagnosis.residuals.torque_evidence import (
+from diagnosis.residuals.torques.asked_torques import with_asked_torques
+from diagnosis.residuals.torques.torque_evidence import (
     torques_tell,
     with_motions,
     with_used_torques,

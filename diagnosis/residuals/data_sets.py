@@ -13,7 +13,7 @@ from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.steps import PRECISE_S, exact_steps, with_best_steps
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.traces.split import LEAST_FLOATING_S, LEAST_S, Split, shortened, split
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Recordings

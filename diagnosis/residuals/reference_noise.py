@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.healthy_torques import HealthyTorques
+from diagnosis.residuals.torques.healthy_torques import HealthyTorques
 from diagnosis.traces.windows import FLOATING_WINDOW_S, Run
 from groundwalk.arrays import BoolArray, FloatArray
 from groundwalk.errors import BadRecordingError

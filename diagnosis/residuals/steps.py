@@ -16,7 +16,7 @@ from diagnosis.plant.plant import Plant
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.traces.split import shortened
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage

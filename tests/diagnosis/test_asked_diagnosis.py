@@ -7,7 +7,7 @@ from torque_arm import loaded
 
 from diagnosis.material import Material
 from diagnosis.pipeline import diagnose
-from diagnosis.residuals.asked_torques import FAR, times_noise
+from diagnosis.residuals.torques.asked_torques import FAR, times_noise
 from diagnosis.traces.reference import Reference
 
 

@@ -7,8 +7,8 @@ from torque_arm import arm, moved, rubbing
 from diagnosis.conclude.estimates import estimates, spread_of_joints
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.ties import tied
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
 
 EACH = tuple(

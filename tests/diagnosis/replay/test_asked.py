@@ -10,7 +10,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.replay.asked import AskedTorques, by_servos, centred
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.replays import variants_of
-from diagnosis.residuals.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_evidence import with_motions
 
 
 @pytest.fixture(scope="module")

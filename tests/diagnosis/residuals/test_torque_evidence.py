@@ -7,8 +7,8 @@ import pytest
 from joint_rigs import PENDULUM, SLED, plant_of, servo_of, ticks, trace_of
 from torque_arm import arm, moved
 
-from diagnosis.residuals import torque_evidence
-from diagnosis.residuals.torque_evidence import (
+from diagnosis.residuals.torques import torque_evidence
+from diagnosis.residuals.torques.torque_evidence import (
     block_s,
     cutoff_hz,
     torques_tell,

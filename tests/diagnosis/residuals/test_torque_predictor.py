@@ -5,12 +5,12 @@ import pytest
 from torque_arm import JOINTS, arm, loaded, moved, rubbing
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals import torque_evidence
 from diagnosis.residuals.channels import Channels, shared_channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import TorquePredictor, predictor_of
+from diagnosis.residuals.torques import torque_evidence
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import TorquePredictor, predictor_of
 from diagnosis.search.chance import independent_blocks
 from diagnosis.search.fitting import fit_all
 

@@ -4,8 +4,8 @@ from torque_arm import arm, moved, rubbing
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.coordinates import Coordinates
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.nudges import nudges_of
 

@@ -11,8 +11,8 @@ from torque_arm import arm, moved, rubbing
 from diagnosis.conclude.answer import gap, probability
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.few_or_many import more_is_missing
 from diagnosis.search.fitting import fit_all, ran_into_bound
 from diagnosis.search.judging import Judge

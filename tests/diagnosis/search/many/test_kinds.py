@@ -7,8 +7,8 @@ from torque_arm import arm, moved, rubbing
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.signatures import signatures
 from diagnosis.residuals.ties import number_of_values, tied
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.kinds import kinds_to_add

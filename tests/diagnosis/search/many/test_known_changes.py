@@ -6,8 +6,8 @@ from torque_arm import arm, moved, rubbing
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.signatures import signatures
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.many.known_changes import KnownChanges
 from diagnosis.search.many.shared_first import united

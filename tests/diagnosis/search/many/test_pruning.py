@@ -4,8 +4,8 @@ import pytest
 from torque_arm import arm, moved, rubbing
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.torque_evidence import with_motions
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.fits import Fits
 from diagnosis.search.many.pruning import pruned

@@ -12,7 +12,7 @@ from made_up_data import write_arm, write_data
 from diagnosis.audit.audit import audit
 from diagnosis.effects import PlacedEffect, all_effects, effect
 from diagnosis.material import Material
-from diagnosis.residuals.torque_predictor import predictor_of
+from diagnosis.residuals.torques.torque_predictor import predictor_of
 from experiments.concealed.doctored import case as doctored
 from experiments.concealed.doctored.case import LEAST_NATS, doctored_case
 from experiments.concealed.doctored.plan import planned_real

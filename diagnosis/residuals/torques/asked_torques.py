@@ -17,14 +17,14 @@ from diagnosis.plant.plant import Plant
 from diagnosis.replay.asked import by_servos
 from diagnosis.residuals.doubted import no_nuisance
 from diagnosis.residuals.predictor import Predictor
-from diagnosis.residuals.torque_evidence import with_motions
+from diagnosis.residuals.torques.torque_evidence import with_motions
 from diagnosis.traces.split import shortened
 from diagnosis.traces.trace import Trace
 
 FAR = 5.0
 """Multiple of the sensors' noise that replays of the healthy robot leave, beside what
 small mismatch of its model explains to first order, from which on it is far from its
-model. Where small mismatch is all there is, 1 to 4 times the noise is left; of five
+model. Where small mismatch is all there is, 1 to 4 times the noise is left; of four
 real robots 8 to 40 times."""
 
 MOST_S = 10.0

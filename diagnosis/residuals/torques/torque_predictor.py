@@ -8,13 +8,14 @@ from diagnosis.plant.plant import Plant
 from diagnosis.replay.asked import AskedTorques, centred
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.channels import LEAST_TORQUE, Channels
-from diagnosis.residuals.healthy_torques import HealthyTorques, Means
 from diagnosis.residuals.predictor import WORST, Model, Predictor
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise, waves
 from diagnosis.residuals.replays import variants_of
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
-from diagnosis.residuals.stop_contact import StopContact
 from diagnosis.residuals.tolerance import Tolerance
+from diagnosis.residuals.torques.healthy_torques import HealthyTorques
+from diagnosis.residuals.torques.joint_errors import Means
+from diagnosis.residuals.torques.stop_contact import StopContact
 from diagnosis.traces.trace import Trace, asked
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
@@ -69,7 +70,7 @@ class TorquePredictor(Predictor):
         noise = self.channels.noise
         self._stops = StopContact.of(plant, traces, rows, largest, noise)
         self._whitening: list[FloatArray] | None = None
-        self._habits: FloatArray | None = None
+        self._usual: FloatArray | None = None
 
     @property
     def by_torque(self) -> bool:
@@ -161,7 +162,7 @@ class TorquePredictor(Predictor):
         return np.asarray(sums / np.maximum(self._rows, 1.0))
 
     def _columns(self) -> FloatArray:
-        """(rows, j, k) what torque errors may go with, `healthy_torques.COLUMNS`."""
+        """(rows, j, k) what torque errors may go with, `joint_errors.COLUMNS`."""
         needed = self._needed.of(variants_of(self.plant, [()]))[0]
         parts, first = [], 0
         for trace in self.traces:
@@ -191,9 +192,9 @@ class TorquePredictor(Predictor):
 
     def _usual_nm(self, healthy: HealthyTorques) -> FloatArray:
         """(rows, j) torque errors that the healthy robot has in this motion."""
-        if self._habits is None:
-            self._habits = healthy.torque(self._columns())
-        return self._habits
+        if self._usual is None:
+            self._usual = healthy.torque(self._columns())
+        return self._usual
 
     def _less_usual(self, wrong: FloatArray, healthy: HealthyTorques) -> FloatArray:
         """(n, rows, c) errors, whitened with what recordings usually differ by."""
