@@ -44,13 +44,14 @@ class Replayed:
     gyroscope_rad_s: FloatArray
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def replay(
     runs: Sequence[Run], variants: Variants, step_s: float = STEP_S, threads: int = 1
 ) -> list[Replayed]:
     """Simulate every variant of a robot model under the commands of every recording.
 
     Returns for each run the predicted measurements of all variants. A run has its own
-    start state.
+    start state. Simulations that diverge hold numbers that are not finite.
 
     Example:
       >>> predicted = replay(runs, variants, threads=4)

@@ -274,7 +274,8 @@ class Predictor(Doubted):
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less predicted values of n models [noise]."""
         predicted = self.exact(models) if exactly else self.predict(models)
-        wrong = (self._measured - predicted) / self.channels.noise
+        with np.errstate(over="ignore", invalid="ignore"):  # simulations diverge
+            wrong = (self._measured - predicted) / self.channels.noise
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
         return np.where(self._scored, wrong, 0.0)
 

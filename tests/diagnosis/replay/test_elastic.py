@@ -122,3 +122,10 @@ def test_an_offset_is_the_encoders():
     found, _ = replayed(rig, commanded(rig), ELASTIC, offset)
     without, _ = replayed(rig, commanded(rig), ELASTIC)
     np.testing.assert_allclose(found, without, atol=1e-9)
+
+
+def test_motors_whose_speeds_overflow_say_so_by_their_values_only():
+    """Warnings are errors in tests; a search sees by the values what diverged."""
+    rig = plant()
+    run = commanded(rig, command=np.full_like(COMMAND, 1e308))
+    assert not np.isfinite(replayed(rig, run, ELASTIC)).all()
