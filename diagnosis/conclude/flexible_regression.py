@@ -6,7 +6,7 @@ has structure that no known effect has (model discrepancy, Kennedy and O'Hagan 2
 
 import numpy as np
 
-from diagnosis.residuals.predictor import Predictor
+from diagnosis.residuals.predictor import WORST, Predictor
 from diagnosis.traces.trace import filled
 from groundwalk.arrays import BoolArray, FloatArray
 
@@ -100,10 +100,10 @@ def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, BoolArray
 
     Where torques are compared, positions and velocities take the place of the first
     two. Also (rows, c) errors of the nominal sim, in units of noise, and whether each
-    counts.
+    counts. Simulations that diverge are cut off, so that all values are finite.
     """
     c = len(predictor.channels.names)
-    nominal = predictor.predict([()])[0]
+    nominal = np.nan_to_num(np.clip(predictor.predict([()])[0], -WORST, WORST))
     wrong = predictor.residuals([()])[0].reshape(-1, c)
     scored = predictor.scored.reshape(-1, c)
     blocks, first = [], 0

@@ -179,7 +179,9 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
 
     `timed` says that they acted for a while only, perhaps not in the held-out data.
     Only channels in which the nominal sim is off count, if there are any, else those in
-    which the effects show: in many others an effect at one joint would be lost.
+    which the effects show: in many others an effect at one joint would be lost. A
+    control that explains half because the effect is real, such as the same mass one
+    link further, says nothing against the effect.
     """
     hardly_more = judged.hardly_more
     fit = _telling(judged)
@@ -211,6 +213,7 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
         f"In held-out motions {words} explains about as much."
         for key, words in controls.items()
         if judged.worse.get(key, 0.0) < SURELY
+        and judged.follows.get(key, 0.0) <= HALF
         and getattr(fit, key) is not None
         and _does_as_well(fit, getattr(fit, key), hardly_more)
     ]

@@ -89,10 +89,18 @@ def held_out_errors(
         for key, (pair, own) in found.items()
         if key in CONTROLS
     }
+    follows = {
+        key: share_that_follows(
+            [sims[i] for i in parts], model, found[key][1], found["without"][1]
+        )
+        for key in worse
+    }
     fit = _fit(test, judged, wider[1])
     rms = _changed([sims[i] for i in parts], model)
     changed = dict(zip(channels.names, rms.tolist(), strict=True))
-    judgement = Judgement(fit, worse, said, hardly_more_than_noise(test), changed)
+    judgement = Judgement(
+        fit, worse, said, hardly_more_than_noise(test), changed, follows
+    )
     return _fit(test, measured, wider[0]), judgement
 
 
@@ -109,6 +117,8 @@ class Judgement:
       hardly_more: share of the squared noise up to which what is left above it is
         hardly more than noise.
       changed: for each channel, rms of what the model changes [noise].
+      follows: for each control, the share of what the main effect explains that the
+        control explains as well if the main effect is real.
     """
 
     fit: Fit
@@ -116,6 +126,7 @@ class Judgement:
     limits: tuple[str, ...] = ()
     hardly_more: float = MOST_LEFT
     changed: Mapping[str, float] = field(default_factory=dict)
+    follows: Mapping[str, float] = field(default_factory=dict)
 
 
 def hardly_more_than_noise(test: Predictor) -> float:
@@ -147,6 +158,22 @@ def _worse(
     every = np.sign(every) * np.sqrt(np.abs(every))
     deviation = float(np.std(every, ddof=1)) if len(every) > 1 else np.inf
     return float(every.sum() / max(deviation * np.sqrt(len(every)), 1e-12))
+
+
+def share_that_follows(
+    parts: Sequence[Predictor], model: Model, control: Model, rest: Model
+) -> float:
+    """Squared cosine of the angle between what a control and a model change.
+
+    Both add one effect to the effects `rest`. So large a share of what the model's
+    explains the control's explains, too, if the model is right.
+    """
+    products = np.zeros(3)
+    for one in parts:
+        without, own, other = one.residuals([rest, model, control])
+        u, v = without - own, without - other
+        products += u @ v, u @ u, v @ v
+    return float(products[0] ** 2 / max(products[1] * products[2], 1e-300))
 
 
 def _changed(parts: Sequence[Predictor], model: Model) -> FloatArray:

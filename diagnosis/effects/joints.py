@@ -9,6 +9,7 @@ from diagnosis.effects.effect import (
     NumberEffect,
     ServoEffect,
     TorqueEffect,
+    driven_joints,
 )
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
@@ -123,7 +124,8 @@ class Backlash(NumberEffect, ServoEffect):
 class JointElasticity(JointEffect):
     """A spring from motor theta to link q: torque k (theta - q) + d (theta' - q').
 
-    The joint's rotor inertia is on the motor's side, and so is the encoder.
+    The joint's rotor inertia is on the motor's side, and so is the encoder. A joint
+    that nothing drives has no motor.
 
     Source: Spong 1987, "Modeling and control of elastic joint robots", equations of
     motion with diagonal rotor inertia; damping beside the spring as in De Luca and
@@ -143,6 +145,10 @@ class JointElasticity(JointEffect):
         "A gear or shaft that winds up like a spring, so that the link lags behind its "
         "motor and rings.",
     )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of joints that a servo or a torque drives."""
+        return driven_joints(plant, traces)
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """Stiffness k [N m/rad] and damping d [N m s/rad].

@@ -10,6 +10,7 @@ from diagnosis.effects.effect import (
     JointEffect,
     NumberEffect,
     ServoEffect,
+    driven_joints,
     joints_where,
 )
 from diagnosis.effects.parts import (
@@ -168,11 +169,7 @@ class ServoOff(JointEffect):
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
         """Names of joints that a servo or a recorded torque drives."""
-        driven = [
-            (one.servo.kp_nm_rad > 0) | (one.unheld and one.torque_nm is not None)
-            for one in traces
-        ]
-        return joints_where(plant, driven or [plant.servo.kp_nm_rad > 0])
+        return driven_joints(plant, traces)
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
         """Switch the motor off in one variant of the model."""

@@ -32,6 +32,9 @@ WORST = 1e7
 """Residuals are clipped to this size [noise]; a simulation that diverges gets it in all
 rows after that."""
 
+MOST_ENTRIES = 2**21
+"""Most values of residuals that are computed at once, to limit memory."""
+
 
 class Predictor(Doubted):
     """Simulates models on recordings, and corrects the integration error.
@@ -186,7 +189,8 @@ class Predictor(Doubted):
         self._error, left = IntegrationError.of(values, self.step_s, self.finest_s)
         known = self._doubts.noise
         noise = self.channels.noise * (1.0 if known is None else known.scale)
-        left = np.nan_to_num(left / noise, nan=WORST)
+        with np.errstate(over="ignore"):  # simulations diverge
+            left = np.nan_to_num(left / noise, nan=WORST)
         return np.asarray(np.sqrt(np.mean(np.clip(left, -WORST, WORST) ** 2, axis=0)))
 
     def _doubt_times(self, model: Model) -> None:
@@ -269,7 +273,14 @@ class Predictor(Doubted):
         healthy robot show, are taken out. `exactly` predicts by `exact` instead of
         `predict`.
         """
-        return self._doubts.without(self._errors(models, exactly), models)
+        some = max(1, MOST_ENTRIES // len(self.scored))
+        parts = [models[i : i + some] for i in range(0, len(models), some)]
+        return np.concatenate(
+            [
+                self._doubts.without(self._errors(part, exactly), part)
+                for part in parts or [models]
+            ]
+        )
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less predicted values of n models [noise]."""

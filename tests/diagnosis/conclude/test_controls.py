@@ -7,7 +7,11 @@ import pytest
 from made_up_traces import arm, recorded
 
 from diagnosis.conclude.controls import controls_of
-from diagnosis.conclude.held_out_errors import FAINT, held_out_errors
+from diagnosis.conclude.held_out_errors import (
+    FAINT,
+    held_out_errors,
+    share_that_follows,
+)
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
 
@@ -130,3 +134,30 @@ def test_what_held_out_data_hardly_show_is_judged_by_all(weak):
     _, judgement = judged(weak, (TRUTH,), least_shown=1e9)
     assert judgement.limits == (FAINT,)
     assert judgement.worse["wrong_place"] > 2.5
+
+
+def test_how_much_a_control_explains_since_the_effect_is_real():
+    """Two parts: what the effect changes, and a control at 60 degrees to it."""
+    changed = {"own": [[3.0, 0.0], [0.0, 4.0]], "same": [[-1.5, 0.0], [0.0, -2.0]]}
+    own = np.array(changed["own"])
+    apart = 0.5 * own + np.sqrt(0.75) * np.array([[0.0, 3.0], [4.0, 0.0]])
+    changed |= {"none": np.zeros((2, 2)), "apart": apart}
+
+    def part(i):
+        def residuals(models):
+            return np.array([np.array([1.0, 2.0]) - changed[one][i] for one in models])
+
+        return SimpleNamespace(residuals=residuals)
+
+    def share(control):
+        return share_that_follows([part(0), part(1)], "own", control, "none")
+
+    assert share("own") == pytest.approx(1.0)
+    assert share("same") == pytest.approx(1.0)
+    assert share("apart") == pytest.approx(0.25)
+    assert share("none") == 0.0
+
+
+def test_a_gain_elsewhere_is_no_twin(weak):
+    _, judgement = judged(weak, (TRUTH,))
+    assert judgement.follows["wrong_place"] < 0.5

@@ -91,3 +91,14 @@ def test_commands_that_are_missing_and_data_that_are_few():
     residual = few.residuals([()])[0].reshape(-1, 2)[few.scored.reshape(-1, 2)[:, 0]]
     wanted = np.sqrt(np.mean(residual**2, axis=0))
     np.testing.assert_allclose(flexible_regression_errors(few, few, SEED), wanted)
+
+
+def test_simulations_that_diverge_leave_finite_errors(monkeypatch):
+    """As of a passive pendulum with a healthy robot's spring; the others stay."""
+    one = predictor_of(nothing, (0,))
+    plain = one.predict([()])
+    for wrong in (np.nan, np.inf, -1e300):
+        values = plain.copy()
+        values[0, 100:, 1] = wrong
+        monkeypatch.setattr(one, "predict", lambda models, values=values: values)
+        assert np.isfinite(flexible_regression_errors(one, one, SEED)).all()

@@ -24,8 +24,11 @@ GOOD = Fit(
 )
 
 
-def said(timed=False, worse=None, changed=None, **changes):
-    judged = Judgement(replace(GOOD, **changes), worse or {}, changed=changed or {})
+def said(timed=False, worse=None, changed=None, follows=None, **changes):
+    errors = replace(GOOD, **changes)
+    judged = Judgement(
+        errors, worse or {}, changed=changed or {}, follows=follows or {}
+    )
     return " ".join(objections(judged, timed))
 
 
@@ -68,6 +71,13 @@ def test_a_wrong_answer_must_not_do_about_as_well(control, words):
     # unless it surely leaves more
     assert words in said(worse={control: 2.0}, **{control: 1.6})
     assert said(worse={control: 2.5}, **{control: 1.6}) == ""
+
+
+@pytest.mark.parametrize("control", ["wrong_place", "wrong_effect"])
+def test_what_must_do_as_well_if_the_effect_is_real_says_nothing_against_it(control):
+    """A mass one link further explains most of what a mass here explains."""
+    assert said(follows={control: 0.51}, **{control: 1.6}) == ""
+    assert "about as much" in said(follows={control: 0.49}, **{control: 1.6})
 
 
 def test_of_several_effects_the_main_one_is_compared():

@@ -1,5 +1,7 @@
 """All effects: their names, their neutral values, one row at a time."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -183,9 +185,22 @@ def test_where_effects_may_be():
     driven = {name for name, found in places.items() if found == ("hip",)}
     assert driven == {
         *("backlash", "servo_gain", "servo_damping", "servo_fade", "servo_off"),
-        "speed_limit",
+        *("speed_limit", "joint_elasticity"),
     }
     assert places["torque_limit"] == ("hip", "knee")
+
+
+def test_only_joints_that_are_driven_have_a_motor():
+    """By a servo, or by a torque that is not always 0."""
+    passive = walker(servo=servo(kp=(0.0, 0.0)))
+    pushed = np.zeros((3, 2))
+    pushed[1, 1] = 0.1
+    for torque, joints in ((None, ()), (np.zeros((3, 2)), ()), (pushed, ("knee",))):
+        own = replace(trace(torque_nm=torque), servo=passive.servo)
+        for name in ("joint_elasticity", "servo_off"):
+            assert effect(name).places(passive, [own]) == joints
+    assert effect("joint_elasticity").places(passive, []) == ()
+    assert effect("joint_elasticity").places(walker(), EVERYTHING) == ("hip",)
 
 
 def test_where_effects_cannot_be():
