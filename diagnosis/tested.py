@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.conclude.guards import established, objections
+from diagnosis.conclude.guards import NO_BETTER, established, is_worse, objections
 from diagnosis.conclude.held_out_errors import (
     above_nominal,
     beside_control,
@@ -107,13 +107,16 @@ def _test_of(
     pair = both, sims[1].with_nuisance_of(both)
     usual = beside_control(nominal, model)
     fit, judged = held_out_errors(usual, pair, learned.result, model, least_gain, seed)
+    fit = above_nominal(fit, data.test.nominal().evenly())
     if model:
         traces = [*data.learned.traces, *data.test.traces]
         timed = not any(lasts(placed, traces) for placed in model)
         left = nominal[1].residuals([()])[0], pair[1].residuals([model])[0]
         refuted = model_refuted(*left, least_gain)
-        said = (*refuted, *said, *objections(judged, timed))
+        against = objections(judged, timed)
+        if not (timed or against) and is_worse(fit, judged.hardly_more):
+            against = (NO_BETTER,)
+        said = (*refuted, *said, *against)
     elif known and not said:
         said = (NOTHING,)
-    fit = above_nominal(fit, data.test.nominal().evenly())
     return Tested(refitted, nominal, pair, fit, said, judged.limits)

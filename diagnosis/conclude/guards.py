@@ -28,7 +28,7 @@ from diagnosis.search.fitting import (
     ran_into_bound,
 )
 from diagnosis.search.judging import gain_of_noise
-from diagnosis.verdict import Errors
+from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
 """Share of what could be explained that an answer must explain, and of what it explains
@@ -48,6 +48,10 @@ SHIFTS, FITTED = (-10, 3), 3
 """First and last shift, in bins of 50 ms, of the start of an effect that does not last,
 and number of the best starts that are fitted: an event shows late, and a fit does not
 find a moment from far away."""
+
+
+NO_BETTER = "The effects found do not predict held-out motions better."
+"""Sentence for the limits of a verdict."""
 
 
 def established(
@@ -189,7 +193,7 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
     if timed and gained >= -(fit.floor**2):
         return ()
     if gained <= 0:
-        return ("The effects found do not predict held-out motions better.",)
+        return (NO_BETTER,)
     said = []
     possible = _possible(fit, hardly_more)
     share = gained / (fit.nominal**2 - fit.floor**2)
@@ -218,6 +222,17 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
         and _does_as_well(fit, getattr(fit, key), hardly_more)
     ]
     return tuple(said)
+
+
+def is_worse(measured: Fit, hardly_more: float) -> bool:
+    """Whether held-out motions are predicted worse than by the nominal sim as it is.
+
+    `measured` are errors as they are measured, while `objections` judges by errors
+    beside wrong starts and small mismatch, which may hide that. Differences of
+    `hardly_more`, a share of the squared noise, do not count.
+    """
+    worse = measured.corrected**2 - measured.nominal**2
+    return worse > hardly_more * measured.floor**2
 
 
 def _possible(fit: Errors, hardly_more: float) -> float:

@@ -115,12 +115,12 @@ class Drag(NumberEffect, BodyEffect):
     )
 
     def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-        """Names of bodies that move, except those that only slide along one line.
+        """Names of bodies that move, except those that a single joint moves.
 
-        Drag of those is the same as viscous friction of their sliding joint.
+        Drag of those is the same as viscous friction of that joint.
         """
         every = super().places(plant, traces)
-        return tuple(name for name in every if not _slides(plant, name))
+        return tuple(name for name in every if not _on_one_joint(plant, name))
 
     def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
         """The coefficient c [N s/m], typically 10 % of the robot's weight at 1 m/s."""
@@ -168,8 +168,8 @@ class ExternalForce(BodyEffect):
             copies.outside.pushes[row].append(push)
 
 
-def _slides(plant: Plant, name: str) -> bool:
-    """Whether a body can only slide along one line."""
+def _on_one_joint(plant: Plant, name: str) -> bool:
+    """Whether a body can only turn about one axis, or slide along one line."""
     model = plant.model
     body = int(model.body(name).id)
     joints = []
@@ -177,4 +177,5 @@ def _slides(plant: Plant, name: str) -> bool:
         first = int(model.body_jntadr[body])
         joints += list(model.jnt_type[first : first + int(model.body_jntnum[body])])
         body = int(model.body_parentid[body])
-    return joints == [mujoco.mjtJoint.mjJNT_SLIDE.value]
+    kinds = mujoco.mjtJoint.mjJNT_HINGE.value, mujoco.mjtJoint.mjJNT_SLIDE.value
+    return len(joints) == 1 and joints[0] in kinds

@@ -1,12 +1,15 @@
 """Effects of friction in joints: viscous, dry, with a peak at rest, and by load."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, NumberEffect
+from diagnosis.effects.effect import JointEffect, NumberEffect, driven_joints
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.scales import brisk_rad_s, torque_nm, weak_friction_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
+from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import PlacedEffect
 from groundwalk.arrays import FloatArray
@@ -188,6 +191,10 @@ class LoadFriction(NumberEffect, JointEffect):
         "{joint} has friction of {share} times its servo's torque {lacking}",
         "Gears and bearings rub harder the more torque passes through them.",
     )
+
+    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
+        """Names of joints that a servo or a torque drives."""
+        return driven_joints(plant, traces)
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) size of the torque by the nominal model, with the velocity's sign."""

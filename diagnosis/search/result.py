@@ -65,6 +65,8 @@ class SearchResult:
       floor, floor_fit: those that noise alone leaves [nats].
       best: the best models of each number of effects, the best first.
       chosen: the number of effects that are believed.
+      most_left: share of the noise's energy by which more may be left and still hardly
+        be more than noise.
     """
 
     nothing: float
@@ -73,6 +75,7 @@ class SearchResult:
     chosen: int
     nothing_fit: float = 0.0
     floor_fit: float = 0.0
+    most_left: float = MOST_LEFT
 
     @property
     def winner(self) -> Judged | None:
@@ -108,8 +111,8 @@ class SearchResult:
         if self.winner:
             selected, fitted = self.winner.selected, self.winner.fit.energy
             closed = self.closed(self.winner)
-        much = selected > (1 + MOST_LEFT) * self.floor
-        much |= fitted > (1 + MOST_LEFT) * self.floor_fit
+        much = selected > (1 + self.most_left) * self.floor
+        much |= fitted > (1 + self.most_left) * self.floor_fit
         return bool(much and closed < least_closed)
 
 

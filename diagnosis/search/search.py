@@ -11,11 +11,12 @@ from collections.abc import Sequence
 
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.residuals.bursts import push_intervals
+from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.signatures import Signature, signatures
 from diagnosis.search.candidates import Candidates, grown, moved
 from diagnosis.search.judging import Judge, distinct, gain_of_noise
-from diagnosis.search.result import Judged, SearchResult, keys_of
+from diagnosis.search.result import MOST_LEFT, Judged, SearchResult, keys_of
 from diagnosis.search.spread import is_widespread
 from diagnosis.traces.usage import Usage
 
@@ -84,9 +85,10 @@ class Search:
         for smaller in range(1, chosen):  # beside small mismatch as the best has it
             some = best[smaller][: self._rules.compared]
             best[smaller] = judge.ranked(judge.again(some))
-        return SearchResult(
-            judge.nothing, judge.floor, best, chosen, judge.nothing_fit, judge.floor_fit
-        )
+        # how much recordings differ by is learned of few, to a factor of two or so
+        rough = MORE_THAN_NOISE**2 - 1 if self._fit.knows_healthy_torques else MOST_LEFT
+        energies = judge.nothing_fit, judge.floor_fit
+        return SearchResult(judge.nothing, judge.floor, best, chosen, *energies, rough)
 
     @property
     def _bare(self) -> Predictor:

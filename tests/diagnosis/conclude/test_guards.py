@@ -7,7 +7,7 @@ import pytest
 from known_arms import CHANNELS, NOISE_RAD
 from made_up_traces import arm, recorded
 
-from diagnosis.conclude.guards import established, objections
+from diagnosis.conclude.guards import established, is_worse, objections
 from diagnosis.conclude.held_out_errors import Judgement
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Predictor
@@ -40,6 +40,15 @@ def test_a_good_answer_meets_no_objection():
 def test_what_predicts_no_better_is_not_established():
     assert "do not predict" in said(corrected=10.0)
     assert "do not predict" in said(corrected=12.0)
+
+
+def test_what_is_measured_must_not_get_worse_either():
+    """Beside wrong starts and small mismatch an answer may look better than it is."""
+    assert is_worse(replace(GOOD, nominal=2.3, corrected=4.1), 0.5)
+    assert not is_worse(GOOD, 0.5)
+    # hardly more than noise: 1.2 squared is 0.44 more than 1, 1.3 squared is 0.69
+    assert not is_worse(replace(GOOD, nominal=1.0, corrected=1.2), 0.5)
+    assert is_worse(replace(GOOD, nominal=1.0, corrected=1.3), 0.5)
 
 
 def test_the_error_must_fall_to_half():

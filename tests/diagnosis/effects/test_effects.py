@@ -185,7 +185,7 @@ def test_where_effects_may_be():
     driven = {name for name, found in places.items() if found == ("hip",)}
     assert driven == {
         *("backlash", "servo_gain", "servo_damping", "servo_fade", "servo_off"),
-        *("speed_limit", "joint_elasticity"),
+        *("speed_limit", "joint_elasticity", "load_friction"),
     }
     assert places["torque_limit"] == ("hip", "knee")
 
@@ -197,7 +197,7 @@ def test_only_joints_that_are_driven_have_a_motor():
     pushed[1, 1] = 0.1
     for torque, joints in ((None, ()), (np.zeros((3, 2)), ()), (pushed, ("knee",))):
         own = replace(trace(torque_nm=torque), servo=passive.servo)
-        for name in ("joint_elasticity", "servo_off"):
+        for name in ("joint_elasticity", "servo_off", "load_friction"):
             assert effect(name).places(passive, [own]) == joints
     assert effect("joint_elasticity").places(passive, []) == ()
     assert effect("joint_elasticity").places(walker(), EVERYTHING) == ("hip",)
