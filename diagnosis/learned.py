@@ -150,7 +150,7 @@ class Learned:
         return found if found.result.winner else self._less_all()
 
     def _less_all(self) -> "Learned":
-        """The same with nothing found."""
+        """This search, as if it had found nothing."""
         winner, material = self.result.winner, self.material
         if winner is None:
             return self

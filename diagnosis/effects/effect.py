@@ -15,12 +15,13 @@ from diagnosis.effects.parts import (
     PlaceKind,
     Values,
 )
+from diagnosis.effects.places import joints_where
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Base, Plant
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import PlacedEffect, When
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 STRETCHES = (0.4, 1.0, 2.5)
 """Factors on a guessed size of an effect that are tried before the size is fitted."""
@@ -342,24 +343,3 @@ class TorqueEffect(JointEffect):
           velocity_rad_s: (rows, j) joint speeds as the step begins.
           time_s: (rows, 1) time in the recording.
         """
-
-
-def joints_where(plant: Plant, masks: Sequence[BoolArray]) -> tuple[str, ...]:
-    """Names of the joints for which at least one of the masks (j,) is true."""
-    found = np.flatnonzero(np.any(masks, axis=0))
-    return tuple(plant.joints[column] for column in found)
-
-
-def driven_joints(plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-    """Names of the joints that a servo or a torque drives in any recording."""
-    driven = [_is_driven(one) for one in traces]
-    return joints_where(plant, driven or [plant.servo.kp_nm_rad > 0])
-
-
-def _is_driven(trace: Trace) -> BoolArray:
-    """(j,) whether a joint has a servo, or a torque that is not always 0."""
-    driven = trace.servo.kp_nm_rad > 0
-    for torque in (trace.torque_nm, trace.command_torque_nm):
-        if trace.unheld and torque is not None:
-            driven = driven | np.nan_to_num(torque).any(axis=0)
-    return np.asarray(driven)

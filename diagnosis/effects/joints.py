@@ -9,9 +9,9 @@ from diagnosis.effects.effect import (
     NumberEffect,
     ServoEffect,
     TorqueEffect,
-    driven_joints,
 )
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
+from diagnosis.effects.places import driven_joints
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant

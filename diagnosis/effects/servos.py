@@ -10,8 +10,6 @@ from diagnosis.effects.effect import (
     JointEffect,
     NumberEffect,
     ServoEffect,
-    driven_joints,
-    joints_where,
 )
 from diagnosis.effects.parts import (
     EARLIEST_S,
@@ -21,6 +19,7 @@ from diagnosis.effects.parts import (
     Parameter,
     Values,
 )
+from diagnosis.effects.places import driven_joints, joints_where
 from diagnosis.effects.scales import speed_rad_s, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant

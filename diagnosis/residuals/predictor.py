@@ -276,10 +276,7 @@ class Predictor(Doubted):
         some = max(1, MOST_ENTRIES // len(self.scored))
         parts = [models[i : i + some] for i in range(0, len(models), some)]
         return np.concatenate(
-            [
-                self._doubts.without(self._errors(part, exactly), part)
-                for part in parts or [models]
-            ]
+            [self._doubts.without(self._errors(one, exactly), one) for one in parts]
         )
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:

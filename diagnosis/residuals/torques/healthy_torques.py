@@ -35,7 +35,8 @@ USUAL, USUAL_COUNT = 0.1, 2.0
 number of coefficients that this is worth."""
 
 BETWEEN, BETWEEN_COUNT = 0.02, 2.0
-"""The same for the differences between recordings."""
+"""Usual differences of coefficients between recordings, as a share of the joint's
+torque, and the number of differences that this is worth."""
 
 ALIKE_COUNT = 5.0
 """Number of means that what is usual for the other joints is worth, for the variance

@@ -52,7 +52,7 @@ class Means:
     names: tuple[str, ...]
 
     def and_of(self, other: "Means") -> "Means":
-        """These and the means of other recordings."""
+        """All means, of these and of other recordings."""
         later = len(self.names)
         return Means(
             np.concatenate([self.missing, other.missing]),

@@ -73,3 +73,10 @@ def test_usual_errors_of_what_a_model_states_are_small(name, value, small):
     """Gains are known to 3 % (one in 400 robots is off by more than 9 %)."""
     placed = PlacedEffect(name, "elbow", (value,))
     assert is_small(ARM, placed) is small
+
+
+def test_how_much_more_than_noise_is_hardly_more():
+    """Noise learned of few recordings may be twice as large: four times the energy."""
+    assert SearchResult(300.0, 100.0, {}, 0).leaves_much(0.5)
+    assert not SearchResult(300.0, 100.0, {}, 0, most_left=3.0).leaves_much(0.5)
+    assert SearchResult(401.0, 100.0, {}, 0, most_left=3.0).leaves_much(0.5)

@@ -194,3 +194,19 @@ def test_gyroscopes_are_a_channel_if_all_traces_have_them():
     assert np.mean(without[rows] ** 2) > 50
     assert np.mean(with_bias[rows] ** 2) < 3
     assert len(Predictor(plant, [trace, still]).channels.names) == 2
+
+
+def test_residuals_are_the_same_in_parts(pendulum, monkeypatch):
+    """One model at a time, to save memory."""
+    plant, trace = pendulum
+    predictor = Predictor(plant, [trace], CHANNELS)
+    models = [(), (PlacedEffect("servo_gain", "elbow", (0.8,)),), ()]
+    whole = predictor.residuals(models)
+    asked = list[int]()
+    predict = predictor.predict
+    monkeypatch.setattr("diagnosis.residuals.predictor.MOST_ENTRIES", 1)
+    monkeypatch.setattr(
+        predictor, "predict", lambda some: asked.append(len(some)) or predict(some)
+    )
+    np.testing.assert_array_equal(predictor.residuals(models), whole)
+    assert asked == [1, 1, 1]
