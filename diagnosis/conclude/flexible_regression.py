@@ -4,6 +4,9 @@ If it removes more of the nominal sim's error than the effects found do, then th
 has structure that no known effect has (model discrepancy, Kennedy and O'Hagan 2001).
 """
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from diagnosis.residuals.predictor import WORST, Predictor
@@ -95,44 +98,58 @@ def _solved(features: FloatArray, wanted: FloatArray, penalty: float) -> FloatAr
     return np.asarray(np.linalg.solve(gram, features.T @ wanted))
 
 
-def _data(predictor: Predictor) -> tuple[list[FloatArray], FloatArray, BoolArray]:
-    """For each recording its (T, c + j + 1) simulated channels, commands and time.
+class _Seen(NamedTuple):
+    """What a regression sees of a recording.
 
-    Where torques are compared, positions and velocities take the place of the first
-    two. Also (rows, c) errors of the nominal sim, in units of noise, and whether each
-    counts. Simulations that diverge are cut off, so that all values are finite.
+    `values` (T, c + j + 1) are simulated channels, commands and time; errors are known
+    of each row whose number is a multiple of `every`.
+    """
+
+    values: FloatArray
+    every: int
+
+
+def _data(predictor: Predictor) -> tuple[list[_Seen], FloatArray, BoolArray]:
+    """What is seen of each recording, its errors, and whether each counts.
+
+    Where torques are compared, positions and velocities take the place of simulated
+    channels and commands. The (rows, c) errors are those of the nominal sim, in units
+    of noise. Simulations that diverge are cut off, so that all values are finite.
     """
     c = len(predictor.channels.names)
     nominal = np.nan_to_num(np.clip(predictor.predict([()])[0], -WORST, WORST))
     wrong = predictor.residuals([()])[0].reshape(-1, c)
     scored = predictor.scored.reshape(-1, c)
-    blocks, first = [], 0
+    found, first = [], 0
     for trace in predictor.traces:
-        last = first + trace.ticks
-        sim, command = nominal[first:last], trace.command_rad
+        rows = predictor.seen_rows(trace)
+        time_s = (trace.time_s[rows] - trace.time_s[0])[:, None]
+        sim = nominal[first : first + len(time_s)]
+        first += len(time_s)
+        command = sim[:, : trace.position_rad.shape[1]]
         if trace.motion is not None:
             sim, command = trace.motion.position_rad, trace.motion.velocity_rad_s
-        elif command is None:
-            command = sim[:, : trace.position_rad.shape[1]]
-        time_s = (trace.time_s - trace.time_s[0])[:, None]
-        blocks.append(np.hstack([sim, filled(command), time_s]))
-        first = last
-    return blocks, wrong, scored
+        elif trace.command_rad is not None:
+            command = filled(trace.command_rad)[rows]
+        every = trace.compared.step // (rows.step or 1)
+        found.append(_Seen(np.hstack([sim, command, time_s]), every))
+    return found, wrong, scored
 
 
-def _inputs(blocks: list[FloatArray], column: int, c: int) -> FloatArray:
-    """(rows, inputs) inputs of the regression for one joint.
+def _inputs(seen: Sequence[_Seen], column: int, c: int) -> FloatArray:
+    """(rows, inputs) inputs of the regression for one joint, in rows with errors.
 
     They are simulated and commanded positions now and some rows before, speed and its
     sign, and time.
     """
     parts = []
-    for block in blocks:
-        own = block[:, [column, c + column]]
+    for values, every in seen:
+        own = values[:, [column, c + column]]
         lagged = [
             np.vstack([own[:1].repeat(lag, axis=0), own[: len(own) - lag]])
             for lag in LAGS
         ]
         speed = np.gradient(own[:, :1], axis=0)
-        parts.append(np.hstack([*lagged, speed, np.sign(speed), block[:, -1:]]))
+        every_row = np.hstack([*lagged, speed, np.sign(speed), values[:, -1:]])
+        parts.append(every_row[::every])
     return np.vstack(parts)

@@ -57,51 +57,48 @@ def held_out_errors(
       Errors as they are measured, and those by which to judge.
     """
     regression, lot = seed.spawn(2)
-    both, test = sims
-    found = {"nominal": (nominal, ()), "corrected": (sims, model)}
-    parts, said = [1], tuple[str, ...]()
-    if model:
-        others = [alike(searched, both.plant, placed) for placed in model]
-        keys = {f"{one.name}@{one.place}" for own in others for one in own}
-        controls = controls_of(both, model, keys, np.random.default_rng(lot))
-        for key, control in controls.items():
-            if control is not None:
-                found[key] = beside_control(sims, model, control), control
-        if _shown(test, model, found["without"][1]) < least_shown:
-            parts, said = [0, 1], (FAINT,)
-        elif test.knows_healthy_torques:  # one recording has few independent means
-            parts = [0, 1]
+    controls = _controls(sims[0], searched, model, lot) if model else {}
+    test, parts, said = sims[1], [1], tuple[str, ...]()
+    if model and _shown(test, model, controls["without"]) < least_shown:
+        parts, said = [0, 1], (FAINT,)
+    elif model and test.knows_healthy_torques:
+        parts = [0, 1]  # one recording has few independent means
+    own = [sims[i] for i in parts]
+    measured, judged = dict[str, FloatArray](), dict[str, FloatArray]()
+    worse, follows = dict[str, float](), dict[str, float]()
+    for key, one in {"nominal": (), "corrected": model, **controls}.items():
+        pair = {"nominal": nominal, "corrected": sims}.get(key)
+        pair = pair or beside_control(sims, model, one)  # takes memory
+        some = [pair[i] for i in parts]
+        measured[key] = _error([pair[1].evenly()], one)
+        judged[key] = _error(some, one)
+        if key in CONTROLS:
+            worse[key] = _worse(own, model, some, one)
+            follows[key] = share_that_follows(own, model, one, controls["without"])
     seeds = regression.spawn(2)
-    measured = {
-        key: _error([pair[1].evenly()], own) for key, (pair, own) in found.items()
-    }
     even = nominal[0].evenly(), nominal[1].evenly()
     measured["ceiling"] = flexible_regression_errors(*even, seeds[0])
-    judged = {
-        key: _error([pair[i] for i in parts], own) for key, (pair, own) in found.items()
-    }
     if parts == [1]:
         judged["ceiling"] = flexible_regression_errors(*nominal, seeds[1])
     channels = test.channels
     wider = channels.noise / channels.floor, channels.wider
-    worse = {
-        key: _worse([sims[i] for i in parts], model, [pair[i] for i in parts], own)
-        for key, (pair, own) in found.items()
-        if key in CONTROLS
-    }
-    follows = {
-        key: share_that_follows(
-            [sims[i] for i in parts], model, found[key][1], found["without"][1]
-        )
-        for key in worse
-    }
     fit = _fit(test, judged, wider[1])
-    rms = _changed([sims[i] for i in parts], model)
+    rms = _changed(own, model)
     changed = dict(zip(channels.names, rms.tolist(), strict=True))
     judgement = Judgement(
         fit, worse, said, hardly_more_than_noise(test), changed, follows
     )
     return _fit(test, measured, wider[0]), judgement
+
+
+def _controls(
+    both: Predictor, searched: SearchResult, model: Model, lot: np.random.SeedSequence
+) -> dict[str, Model]:
+    """The wrong models with which a model is compared, by their names."""
+    others = [alike(searched, both.plant, placed) for placed in model]
+    keys = {f"{one.name}@{one.place}" for own in others for one in own}
+    found = controls_of(both, model, keys, np.random.default_rng(lot))
+    return {key: one for key, one in found.items() if one is not None}
 
 
 @dataclass(frozen=True)

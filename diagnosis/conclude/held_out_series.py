@@ -46,19 +46,21 @@ def held_out_series(
     sim, after = _by_trace(nominal, ()), _by_trace(corrected, model)
     series = []
     for k, trace in enumerate(corrected.traces):
-        real = measured_of(trace, corrected.channels)
+        rows = corrected.seen_rows(trace)
+        real = measured_of(trace, corrected.channels)[rows]
         channels = {
             name: ChannelSeries(real[:, i], sim[k][:, i], after[k][:, i])
             for i, name in enumerate(corrected.channels.names)
         }
-        series.append(HeldOutSeries(trace.name, trace.time_s, channels))
+        series.append(HeldOutSeries(trace.name, trace.time_s[rows], channels))
     return series
 
 
 def _by_trace(predictor: Predictor, model: Model) -> Sequence[FloatArray]:
-    """For each trace the (ticks, channels) values that a model predicts."""
+    """For each trace the (rows, channels) values that a model predicts."""
     predicted = predictor.predict([model])[0]
-    ends = np.cumsum([trace.ticks for trace in predictor.traces])
+    seen = [trace.time_s[predictor.seen_rows(trace)] for trace in predictor.traces]
+    ends = np.cumsum([len(time_s) for time_s in seen])
     return np.split(predicted, ends[:-1])
 
 

@@ -96,8 +96,9 @@ def binned(
     trace, rows = predictor.traces[number], predictor.trace == number
     if channel is not None:
         rows &= predictor.channel == channel
-    bins = ((trace.time_s - trace.time_s[0]) / BIN_S).astype(int)
-    bins = np.repeat(bins, int(rows.sum()) // trace.ticks)
+    time_s = trace.time_s[trace.compared]
+    bins = ((time_s - trace.time_s[0]) / BIN_S).astype(int)
+    bins = np.repeat(bins, int(rows.sum()) // trace.rows)
     scored = np.bincount(bins, predictor.scored[rows])
     energy = np.asarray(np.bincount(bins, residual[rows] ** 2), float)
     return energy, scored.astype(float)
@@ -205,7 +206,10 @@ def faint_pushes(predictor: Predictor, residual: FloatArray) -> list[Span]:
     """
     c = len(predictor.channels.names)
     own = [
-        (trace.time_s, residual[predictor.trace == number].reshape(-1, c))
+        (
+            trace.time_s[trace.compared],
+            residual[predictor.trace == number].reshape(-1, c),
+        )
         for number, trace in enumerate(predictor.traces)
     ]
     best = chain.from_iterable(

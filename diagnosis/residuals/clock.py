@@ -61,7 +61,7 @@ def clock_noise(
 
 
 def speeds(traces: Sequence[Trace], channels: Channels) -> FloatArray:
-    """(rows, c) speeds of the channels, in units of noise for each second.
+    """(rows, c) speeds of the channels in compared rows, in noise for each second.
 
     0 for what is no position of a joint.
     """
@@ -72,7 +72,7 @@ def speeds(traces: Sequence[Trace], channels: Channels) -> FloatArray:
             i for i, name in enumerate(channels.names) if name.startswith("position.")
         ]
         own[:, places] = _speed_rad_s(trace)[:, : len(places)]
-        parts.append(own / channels.noise)
+        parts.append(own[trace.compared] / channels.noise)
     return np.concatenate(parts)
 
 

@@ -70,6 +70,8 @@ class CommandTiming:
 def jumps_of(traces: Sequence[Trace], channels: Channels) -> IntArray:
     """(rows, c) number of the last jump of the command of a channel's joint.
 
+    Of the rows that are compared.
+
     Joints whose commands jump in the same row share a number. 0 before the first jump
     of a recording, and for channels of no joint.
     """
@@ -87,7 +89,7 @@ def jumps_of(traces: Sequence[Trace], channels: Channels) -> IntArray:
                 if channels.names[first].startswith(("position.", "torque.")):
                     own[:, first : first + joints] = last
             count += len(rows)
-        parts.append(own)
+        parts.append(own[trace.compared])
     return np.concatenate(parts)
 
 

@@ -14,7 +14,14 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.steps import PRECISE_S, exact_steps, with_best_steps
 from diagnosis.residuals.torques.torque_predictor import predictor_of
-from diagnosis.traces.split import LEAST_FLOATING_S, LEAST_S, Split, shortened, split
+from diagnosis.traces.split import (
+    LEAST_FLOATING_S,
+    LEAST_S,
+    Split,
+    shortened,
+    split,
+    thinned,
+)
 from diagnosis.traces.trace import Trace
 from diagnosis.verdict import Recordings
 from groundwalk.arrays import FloatArray
@@ -84,6 +91,7 @@ class DataSets:
         errors = errors_of_event(plant, traces, channels, threads, window_s)
         parts = affordable(plant, split(traces, errors))
         every = [*parts.fit, *parts.select, *parts.test]
+        every = thinned(plant, every, len(channels.names))
         options = None, threads, noise, on_replay, window_s
         whole = with_best_steps(predictor_of(plant, every, channels, *options))
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
@@ -181,8 +189,11 @@ def errors_of_event(
     if most < STANDS_OUT * max(float(np.median(others)), 1.0):
         return None
     size = np.abs(left).reshape(-1, len(channels.names)).max(axis=1)
-    ends = np.cumsum([trace.ticks for trace in traces])
-    return np.split(size, ends[:-1])
+    ends = np.cumsum([trace.rows for trace in traces])
+    return [
+        np.repeat(own, trace.compared.step)[: trace.ticks]
+        for own, trace in zip(np.split(size, ends[:-1]), traces, strict=True)
+    ]
 
 
 def affordable(plant: Plant, parts: Split) -> Split:
@@ -219,6 +230,7 @@ def expected_seconds(
     that in `traces` and takes as long.
     """
     fit = affordable(plant, split(traces)).fit
+    fit = tuple(thinned(plant, fit, len(channels.names)))
     predictor = predictor_of(plant, fit, channels, threads=threads)
     models: list[Model] = []
     for name, kind in all_effects().items():

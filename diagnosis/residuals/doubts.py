@@ -17,7 +17,7 @@ from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from diagnosis.residuals.start_state import StartUncertainty
 from diagnosis.residuals.tolerance import Tolerance
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +82,9 @@ class Doubts:
         return sum(one.taken for one in every if one is not None)
 
     def part(
-        self, whole: "Doubts", entries: BoolArray, traces: slice, runs: slice
+        self, whole: "Doubts", entries: slice, traces: slice, runs: slice
     ) -> "Doubts":
-        """What is taken out of the `entries` (N,) of a `whole`.
+        """What is taken out of some `entries` of a residual of a `whole`.
 
         These are of some of its recordings (`traces`), in some of its windows (`runs`).
         Clock, noise and blocks are one's own.

@@ -74,7 +74,8 @@ def _regimes(
     flags = [_flags(t.time_s, t.position_rad[:, index]) for t in predictor.traces]
     found = {}
     for name in flags[0] if all(flags) else ():
-        rows = np.concatenate([each[name] for each in flags]) & scored
+        every = zip(flags, predictor.traces, strict=True)
+        rows = np.concatenate([each[name][t.compared] for each, t in every]) & scored
         if rows.sum() >= FEWEST:
             found[name] = float(np.sqrt(np.mean(own[rows] ** 2)))
     return found
@@ -179,7 +180,8 @@ def _orders(predictor: Predictor, joint: int) -> list[tuple[str, str, FloatArray
         velocity = np.gradient(moving_mean(q, 5), trace.time_s)
         asked = q if trace.command_rad is None else trace.command_rad[:, joint]
         since_s = trace.time_s - trace.time_s[0]
-        parts.append(np.stack([q, velocity, np.nan_to_num(asked), since_s]))
+        values = np.stack([q, velocity, np.nan_to_num(asked), since_s])
+        parts.append(values[:, trace.compared])
     names = f"position.{name}", f"velocity.{name}", f"command.{name}", "time"
     units = "rad", "rad/s", "rad", "s"
     return list(zip(names, units, np.concatenate(parts, axis=1), strict=True))

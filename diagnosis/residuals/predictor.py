@@ -90,10 +90,10 @@ class Predictor(Doubted):
         self._replays = replays or Replays(
             plant, traces, self.channels, threads, window_s
         )
-        rows = [trace.ticks for trace in traces]
+        rows = [trace.rows for trace in traces]
         c = len(self.channels.names)
         self._measured = np.concatenate(
-            [measured_of(trace, self.channels) for trace in traces]
+            [measured_of(trace, self.channels)[trace.compared] for trace in traces]
         )
         self._scored = np.isfinite(self._measured) & ~self._replays.warming()[:, None]
         none = np.zeros((sum(rows), c))
@@ -117,12 +117,10 @@ class Predictor(Doubted):
         replays = self._replays.part(first, last)
         some = self._of(self.traces[first:last], self.step_s, self.finest_s, replays)
         ends = [0, *self._ends]
-        rows = slice(ends[first], ends[last])
+        rows, c = slice(ends[first], ends[last]), len(self.channels.names)
         some._error = self._error.part(rows)
-        within = np.zeros_like(self._scored)
-        within[rows] = True
         runs = slice(self._replays.first_run[first], self._replays.first_run[last])
-        own = within.reshape(-1), slice(first, last), runs
+        own = slice(rows.start * c, rows.stop * c), slice(first, last), runs
         some._doubts = some._doubts.part(self._doubts, *own)
         return some
 
@@ -218,12 +216,18 @@ class Predictor(Doubted):
             return None
         changes = self._replays.start_errors(self._doubts.given(model), self.step_s)
         changes = np.where(self._scored, changes, 0.0) / self.channels.noise
-        ends = np.cumsum([run.trace.ticks for run in self._replays.runs])
+        ends = np.cumsum([run.trace.rows for run in self._replays.runs])
         whiten = self._doubts.timed
         return StartUncertainty(np.nan_to_num(changes), ends.tolist(), whiten)
 
+    def seen_rows(self, trace: Trace) -> slice:
+        """The rows of a trace in which values are predicted."""
+        return trace.compared
+
     def predict(self, models: Sequence[Model]) -> FloatArray:
         """(n, rows, c) values of c channels as n models predict them, for all traces.
+
+        Only those in `seen_rows` of the traces.
 
         A model with a spring between motor and link is simulated with half the time
         step: its motor oscillates too fast for the full one.

@@ -55,7 +55,7 @@ def blocks_of(runs: Sequence[Run], scored: BoolArray) -> list[Block]:
     """
     blocks, first = [], 0
     for run in runs:
-        since_s = run.trace.time_s - run.trace.time_s[0]
+        since_s = (run.trace.time_s - run.trace.time_s[0])[run.trace.compared]
         number = (since_s / FLOATING_WINDOW_S).astype(int)
         starts = np.flatnonzero(np.diff(number, prepend=-1))
         for start, stop in itertools.pairwise([*starts.tolist(), len(number)]):

@@ -26,7 +26,10 @@ WARM_UP_S = 0.4
 state of the simulation is only known up to sensor noise."""
 
 MOST_ROWS = 192
-"""Most simulations in one batch; more would need more memory and save no time."""
+"""Most simulations in one batch; more would save no time."""
+
+MOST_VALUES = 2**23
+"""Most values of a quantity that are simulated in one batch, to limit memory."""
 
 
 SHORTEST_S = 2.5e-4
@@ -36,6 +39,8 @@ saturates lasts longer."""
 
 class Replays:
     """Simulates models on all windows of some recordings, limb by limb.
+
+    Values are those in the rows that are compared.
 
     Attributes:
       runs: the windows of all recordings, one after the other.
@@ -57,9 +62,9 @@ class Replays:
         per_trace = [runs_of(plant, trace, window_s) for trace in traces]
         self.runs = [run for runs in per_trace for run in runs]
         self.first_run = np.cumsum([0, *(len(runs) for runs in per_trace)]).tolist()
-        ticks = [trace.ticks for trace in traces]
-        self._recording = np.repeat([trace.recording for trace in traces], ticks)
-        self._trace = np.repeat(np.arange(len(traces)), ticks)
+        rows = [sum(run.trace.rows for run in runs) for runs in per_trace]
+        self._recording = np.repeat([trace.recording for trace in traces], rows)
+        self._trace = np.repeat(np.arange(len(traces)), rows)
         self.finer = [1] * len(traces)
 
     def part(self, first: int, last: int) -> "Replays":
@@ -129,7 +134,7 @@ class Replays:
         """(rows,) whether errors in a row do not count: at starts, in short windows."""
         flags = []
         for run in self.runs:
-            since_s = run.trace.time_s - run.trace.time_s[0]
+            since_s = (run.trace.time_s - run.trace.time_s[0])[run.trace.compared]
             whole = window_s(self._plant, run.trace) is None
             left_over = is_left_over(self._plant, run.trace)
             flags.append(since_s < WARM_UP_S if whole else (since_s <= 0) | left_over)
@@ -151,7 +156,7 @@ class Replays:
             for same in itertools.zip_longest(*limbs)
         ]
         every = [self.runs, *nudged(self.runs, groups)]
-        most = max(1, MOST_ROWS // len(self.runs))
+        most = _batch(self.runs)
         parts = [
             self._stacked(list(itertools.chain(*every[i : i + most])), variants, step_s)
             for i in range(0, len(every), most)
@@ -172,7 +177,12 @@ class Replays:
     ) -> FloatArray:
         """(rows, c) simulated values of all windows, one after the other."""
         results = replay(runs, variants, step_s, self._threads)
-        return np.concatenate([stacked(one, self._channels)[0] for one in results])
+        return np.concatenate(
+            [
+                stacked(one, self._channels)[0, run.trace.compared]
+                for one, run in zip(results, runs, strict=True)
+            ]
+        )
 
     def _of_limb(
         self,
@@ -184,23 +194,31 @@ class Replays:
     ) -> FloatArray:
         """(n, rows of the runs, channels of the limb) simulated values, in batches."""
         runs = [limb.run(run) for run in some]
-        most = max(1, MOST_ROWS // len(runs))
-        parts = []
+        most, parts = _batch(runs), []
         for first in range(0, len(models), most):
             variants = variants_of(limb.plant, models[first : first + most])
             results = replay(runs, variants, step_s, self._threads)
-            stacks = [stacked(result, own) for result in results]
+            stacks = [
+                stacked(one, own)[:, run.trace.compared]
+                for one, run in zip(results, runs, strict=True)
+            ]
             parts.append(np.concatenate(stacks, axis=1))
         return np.concatenate(parts)
 
 
+def _batch(runs: Sequence[Run]) -> int:
+    """How many times windows are simulated in one batch."""
+    values = sum(run.trace.ticks * len(run.position_rad) for run in runs)
+    return max(1, min(MOST_ROWS // len(runs), MOST_VALUES // values))
+
+
 def time_blocks(traces: Sequence[Trace], length_s: float) -> IntArray:
-    """(rows,) number of the time block of each row of some recordings.
+    """(rows,) number of the time block of each row that is compared.
 
     No block is in two recordings.
     """
     numbers = [
-        (trace.time_s - trace.time_s[0]) // length_s + 1000 * i
+        (trace.time_s[trace.compared] - trace.time_s[0]) // length_s + 1000 * i
         for i, trace in enumerate(traces)
     ]
     return np.unique(np.concatenate(numbers), return_inverse=True)[1]

@@ -17,7 +17,7 @@ from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.clock_at import clock_at
 from diagnosis.residuals.predictor import STEPS_S, Model, Predictor
 from diagnosis.residuals.torques.torque_predictor import predictor_of
-from diagnosis.traces.split import shortened
+from diagnosis.traces.split import shortened, thinned
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.usage import Usage
 from groundwalk.arrays import FloatArray
@@ -133,7 +133,7 @@ def precise(
     channels unless it and small mismatch of the model leave much more than noise in
     most channels. Then fast errors are the model's, too.
     """
-    some = shortened(traces, PRECISE_S)
+    some = thinned(plant, shortened(traces, PRECISE_S), len(channels.names))
     for step_s in STEPS_S[plant.base]:
         predictor = predictor_of(plant, some, channels, step_s, threads)
         error = predictor.correct()

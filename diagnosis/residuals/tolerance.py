@@ -8,24 +8,19 @@ minus the log-likelihood with all tolerances marginalised, to first order.
 """
 
 from collections.abc import Collection, Sequence
+from copy import copy
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from groundwalk.arrays import BoolArray, FloatArray
-
-NEGLIGIBLE = 1e-6
-"""Smallest eigenvalue of the signatures' products [noise^2], as a share of 1, that is
-whitened; what is smaller is far below the noise."""
+from groundwalk.arrays import FloatArray
 
 
 class Tolerance:
-    """The space of changes of a residual that tolerances allow, as orthogonal axes.
+    """The space of changes of a residual that tolerances allow.
 
-    Residuals may be those of a model with likely errors already in it.
-
-    Attributes:
-      changes: (k, N) changes of the residual [noise] by one standard deviation each.
+    Residuals may be those of a model with likely errors already in it. The changes are
+    kept as they are given, not copied: they take most of a diagnosis' memory.
     """
 
     def __init__(
@@ -41,29 +36,36 @@ class Tolerance:
         (k,) are the errors, in standard deviations, that residuals have in them;
         `spread` (k, k) is the errors' covariance, None if they are independent.
         """
-        self.changes, self._names = signatures, tuple(names)
+        self._changes, self._names = signatures, tuple(names)
         self._sizes = np.zeros(len(signatures)) if sizes is None else sizes
-        self._spread = spread
-        root = signatures if spread is None else _root(spread).T @ signatures
-        power, turn = np.linalg.eigh(root @ root.T)
-        kept = power > NEGLIGIBLE
-        self._power, turn = power[kept], turn[:, kept]
-        unit = (turn / np.sqrt(self._power)).T @ root
-        # (I + S'S)^(-1/2) = I - A'A, with A the axes below
-        share = 1 - 1 / np.sqrt(1 + self._power)
-        self._axes = np.sqrt(share)[:, None] * unit
+        self._spread = np.eye(len(signatures)) if spread is None else spread
+        self._products = signatures @ signatures.T
+        self._prepare()
 
-    def part(self, entries: BoolArray) -> "Tolerance":
-        """Tolerances for some of a residual's entries, those where (N,) is true."""
-        some = self.changes[:, entries]
+    def _prepare(self) -> None:
+        """Find how residuals are whitened."""
+        root = _root(self._spread)
+        power, turn = np.linalg.eigh(root.T @ self._products @ root)
+        self._power = np.maximum(power, 0.0)
+        # (I + S'S)^(-1/2) = I - (S'V)(S'V)', with S the changes and V the mix
+        far = np.sqrt(1 + self._power)
+        self._mix = root @ turn / np.sqrt(far * (1 + far))
+
+    def part(self, entries: slice) -> "Tolerance":
+        """Tolerances for some of a residual's entries."""
+        some = self._changes[:, entries]
         return Tolerance(some, self._names, self._sizes, self._spread)
 
     def beside(self, known: Collection[str]) -> "Tolerance":
         """The tolerances of all but what is `known`, by its name, to be fitted."""
-        kept = [i for i, name in enumerate(self._names) if name not in known]
-        names = [self._names[i] for i in kept]
-        spread = None if self._spread is None else self._spread[np.ix_(kept, kept)]
-        return Tolerance(self.changes[kept], names, self._sizes[kept], spread)
+        own = np.array([name not in known for name in self._names], bool)
+        if own.all():
+            return self
+        some = copy(self)
+        some._sizes = np.where(own, self._sizes, 0.0)
+        some._spread = np.where(own & own[:, None], self._spread, 0.0)
+        some._prepare()
+        return some
 
     @property
     def taken(self) -> float:
@@ -72,17 +74,12 @@ class Tolerance:
 
     def and_of(self, other: "Tolerance") -> "Tolerance":
         """These tolerances and others of the same residual."""
-        every = np.vstack([self.changes, other.changes])
+        if not len(other._changes):
+            return self
+        every = np.vstack([self._changes, other._changes])
         sizes = np.concatenate([self._sizes, other._sizes])
-        spread = None
-        if self._spread is not None or other._spread is not None:
-            spread = block_diag(self._covariance(), other._covariance())
+        spread = block_diag(self._spread, other._spread)
         return Tolerance(every, (*self._names, *other._names), sizes, spread)
-
-    def _covariance(self) -> FloatArray:
-        """(k, k) covariance of the errors, in standard deviations."""
-        independent = np.eye(len(self.changes))
-        return independent if self._spread is None else self._spread
 
     def taken_back(self, known: Collection[str]) -> FloatArray:
         """(N,) what the errors that residuals have in them change in these.
@@ -92,11 +89,12 @@ class Tolerance:
         """
         own = np.array([name not in known for name in self._names], bool)
         sizes = self._sizes if not self._names else self._sizes * own
-        return np.asarray(sizes @ self.changes)
+        return np.asarray(sizes @ self._changes)
 
     def without(self, residuals: FloatArray) -> FloatArray:
         """(n, N) residuals, whitened."""
-        return np.asarray(residuals - (residuals @ self._axes.T) @ self._axes)
+        known = (residuals @ self._changes.T) @ self._mix
+        return np.asarray(residuals - (known @ self._mix.T) @ self._changes)
 
 
 def _root(spread: FloatArray) -> FloatArray:

@@ -23,7 +23,7 @@ from diagnosis.search.judging import Judge, gain_of_noise
 from diagnosis.search.result import pack_noise, unpack_noise
 from diagnosis.search.rules import Rules
 from diagnosis.search.search import Search
-from diagnosis.traces.split import LEAST_FLOATING_S, shortened, split
+from diagnosis.traces.split import LEAST_FLOATING_S, shortened, split, thinned
 from diagnosis.traces.trace import Trace
 from diagnosis.traces.windows import FLOATING_WINDOW_S
 from groundwalk.arrays import FloatArray, IntArray
@@ -141,7 +141,7 @@ def learn_reference(
     if refused:
         raise BadRecordingError(f"the reference: {refused[0]}")
     hooks = (hooks or Hooks()).within("reference")
-    traces = shortened(traces, MOST_S)
+    traces = thinned(plant, shortened(traces, MOST_S), len(channels.names))
     sims = _Simulations.of(plant, traces, channels, threads, hooks)
     model = known or ()
     if plant.base == "fixed":
@@ -221,7 +221,7 @@ def reference_checks(
     """
     hooks = (hooks or Hooks()).within("reference check")
     hooks.stage("", 2 * REPLAYS)
-    traces = shortened(traces, MOST_S)
+    traces = thinned(plant, shortened(traces, MOST_S), len(channels.names))
     sims = _Simulations.of(plant, traces, channels, threads, hooks)
     if plant.base == "fixed":
         return [sims.predictor(traces, noise)]

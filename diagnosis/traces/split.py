@@ -1,12 +1,14 @@
 """Shortens recordings, and divides them by use: for fitting, selection and test."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, permutations
 
 import numpy as np
 
+from diagnosis.plant.plant import Plant
 from diagnosis.traces.trace import Trace
+from diagnosis.traces.windows import window_s
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadRecordingError
 
@@ -251,3 +253,25 @@ def _liveliest(trace: Trace, share: float, least_s: float) -> Trace:
     gain = total[rows - 1 :] - total[: trace.ticks - rows + 1]
     start = int(np.argmax(gain))
     return trace.part(start, start + rows)
+
+
+MOST_COMPARED = 2**17
+"""Most values of recordings that are compared with replays: memory grows with them."""
+
+
+def thinned(plant: Plant, traces: Sequence[Trace], channels: int) -> list[Trace]:
+    """Compare fewer rows of recordings that have very many values.
+
+    Every second row, third, and so on: what is left to compare then is as if sensors
+    were slower, while commands are replayed at full rate. Recordings that are replayed
+    in short windows, which have few rows each, stay as they are.
+    """
+    whole = [
+        trace.motion is None and window_s(plant, trace) is None for trace in traces
+    ]
+    values = sum(trace.ticks for trace in traces) * channels
+    every = max(-(-values // MOST_COMPARED), 1)
+    return [
+        replace(trace, every=every) if own else trace
+        for trace, own in zip(traces, whole, strict=True)
+    ]

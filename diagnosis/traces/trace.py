@@ -67,6 +67,8 @@ class Trace:
       base_angular_velocity_rad_s: (T, 3) body frame.
       motion: smoothed motion, if the torque that it needs is compared with the measured
         torque; None if a replayed motion is compared with the measured one.
+      every: only each row whose number is a multiple of this is compared. If torques
+        are, the first row of each block stands for its mean.
 
     Example:
       >>> plant, traces = read_traces(["a.parquet"], "nao")
@@ -92,6 +94,7 @@ class Trace:
     motion: Motion | None = None
     part_of: str = ""
     before: "Trace | None" = None
+    every: int = 1
 
     @property
     def recording(self) -> str:
@@ -102,6 +105,17 @@ class Trace:
     def ticks(self) -> int:
         """Number of rows."""
         return len(self.time_s)
+
+    @property
+    def compared(self) -> slice:
+        """The rows that are compared."""
+        every = self.every if self.motion is None else self.motion.block_rows
+        return slice(0, self.ticks, every)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows that are compared."""
+        return len(range(self.ticks)[self.compared])
 
     @property
     def duration_s(self) -> float:

@@ -9,8 +9,8 @@ from groundwalk.arrays import BoolArray, FloatArray
 
 
 def likeliest(
-    changes: FloatArray,
-    left: FloatArray,
+    products: FloatArray,
+    slopes: FloatArray,
     sizes: FloatArray,
     free: BoolArray,
     low: FloatArray,
@@ -20,8 +20,10 @@ def likeliest(
     """(k,) sizes between `low` and `high` that are likeliest; 0 where not `free`.
 
     Args:
-      changes: (k, N) changes of a residual [noise] by one standard deviation of each.
-      left: (N,) residual [noise] beside errors of the present (k,) `sizes`.
+      products: (k, k) those of changes of a residual [noise] by one standard deviation
+        of each, over its entries.
+      slopes: (k,) products of these with the residual beside errors of the present
+        (k,) `sizes`.
       sizes: in standard deviations.
       free: (k,) whether each may have a size.
       low: (k,) smallest ones.
@@ -29,12 +31,12 @@ def likeliest(
       damping: weight of squared steps from the present sizes, in units of the squares
         that each alone would change of the residual; 0 for none.
     """
-    own, found = changes[free], np.zeros(len(free))
-    if len(own):
-        power = own @ own.T
+    found = np.zeros(len(free))
+    if free.any():
+        power = products[np.ix_(free, free)]
         kept = damping * np.diag(power)
         root = np.linalg.cholesky(power + np.diag(1 + kept))
-        wanted = own @ (left - sizes[free] @ own) - kept * sizes[free]
+        wanted = slopes[free] - power @ sizes[free] - kept * sizes[free]
         ends = low[free] - 1e-9, high[free] + 1e-9
         best = lsq_linear(root.T, -np.linalg.solve(root, wanted), ends).x
         found[free] = np.clip(best, low[free], high[free])
@@ -59,7 +61,7 @@ def gain_of(
     """
     free = np.union1d(np.flatnonzero(~fixed), own)
     prior = np.where(np.isin(free, own), 0.0, 1.0)
-    changes = changes[free]
-    slope = changes @ left + prior * sizes[free]
-    power = np.linalg.pinv(changes @ changes.T + np.diag(prior), hermitian=True)
+    slope = (changes @ left)[free] + prior * sizes[free]
+    products = (changes @ changes.T)[np.ix_(free, free)]
+    power = np.linalg.pinv(products + np.diag(prior), hermitian=True)
     return 0.5 * float(slope @ power @ slope)

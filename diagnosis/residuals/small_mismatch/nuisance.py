@@ -65,8 +65,8 @@ class Nuisance:
         none = np.zeros(len(units)), np.zeros((len(units), entries))
         return cls(plant, units, own, *none)
 
-    def part(self, entries: BoolArray) -> "Nuisance":
-        """These errors, with what they change in some entries: where (N,) is true."""
+    def part(self, entries: slice) -> "Nuisance":
+        """These errors, with what they change in some entries of a residual."""
         return replace(self, changes=self.changes[:, entries])
 
     def key(self, index: int) -> str:

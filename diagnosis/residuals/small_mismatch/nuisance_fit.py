@@ -93,7 +93,7 @@ class NuisanceFit:
             x = self._coordinates(start).of(self.model)
             now = self._converged(self._sloped(self._placed(begun.errors, x)))
         if not _is_far_off(now.left):
-            return now.errors
+            return now.corrected
         errors = begun.errors
         assert errors.seen_at is not None
         nothing = errors.at(np.zeros(len(errors.units)))
@@ -104,7 +104,7 @@ class NuisanceFit:
         x = self._coordinates(start).of(self.model)
         begun = self._linear(self._placed(self._begun(start).errors, x))
         now = self._converged(begun, closer=SETTLED)
-        return now.errors, self._coordinates(start).model_at(now.x)
+        return now.corrected, self._coordinates(start).model_at(now.x)
 
     def _converged(self, now: FitPoint, closer: float = CLOSER) -> FitPoint:
         """The point after rounds of steps, as long as these approach the noise.
@@ -132,7 +132,7 @@ class NuisanceFit:
         now = self._begun(start)
         if now.errors.seen_at is None:
             now = self._linear(now)
-        return self._descended(now).errors
+        return self._descended(now).corrected
 
     def seen(self, errors: Nuisance) -> Nuisance:
         """Given errors, with what they change in these residuals."""
@@ -149,7 +149,7 @@ class NuisanceFit:
     def _placed(self, errors: Nuisance, x: FloatArray) -> FitPoint:
         """A point whose changes by the (p,) values were not simulated."""
         (left,) = self.ask([self._beside(errors, x)])
-        return FitPoint(errors, x, np.zeros((len(x), len(left))), x, left)
+        return FitPoint.of(errors, x, left)
 
     def _at(self, now: FitPoint) -> FitPoint:
         """The point with the residual there, after another error is taken out."""
@@ -174,15 +174,14 @@ class NuisanceFit:
         errors, k = now.errors, len(now.errors.units)
         low, high = errors.bounds()
         free = errors.free_of(self._keys)
-        changes, sizes = errors.changes, errors.sizes
+        sizes = errors.sizes
         if len(now.x):
             ends = self._coordinates(errors).bounds()
             far = [np.clip(end - now.x, -1, 1) / FLAT for end in ends]
             low, high = np.append(low, far[0]), np.append(high, far[1])
             free = np.append(free, np.ones(len(now.x), bool))
-            changes = np.vstack([changes, FLAT * now.slopes])
             sizes = np.append(sizes, np.zeros(len(now.x)))  # what is unknown stays
-        known = changes, now.left, sizes, free, low, high
+        known = *now.products(FLAT), sizes, free, low, high
         wanted = {damping: likeliest(*known, damping) for _, damping in tried}
         steps = [
             (errors.at(one[:k]), now.x + FLAT * one[k:])
@@ -198,7 +197,7 @@ class NuisanceFit:
 
     def _linear(self, now: FitPoint) -> FitPoint:
         """The point, with what errors and values change there."""
-        return self._sloped(replace(now, errors=self._changing(now)))
+        return self._sloped(now.simulated(self._changing(now), now.slopes, now.seen_x))
 
     def _sloped(self, now: FitPoint) -> FitPoint:
         """The point, with what values of the model change there."""
@@ -207,7 +206,8 @@ class NuisanceFit:
         high = self._coordinates(now.errors).bounds()[1]
         far = np.where(now.x + NUDGE_X <= high, NUDGE_X, -NUDGE_X)
         others = self.ask([self._beside(now.errors, x) for x in now.x + np.diag(far)])
-        return replace(now, slopes=(others - now.left) / far[:, None], seen_x=now.x)
+        slopes = (others - now.left) / far[:, None]
+        return now.simulated(now.errors, slopes, now.x)
 
     def _changing(self, now: FitPoint) -> Nuisance:
         """The errors, with what one standard deviation of each would change."""
@@ -221,7 +221,9 @@ class NuisanceFit:
             tried.append((*self._beside(own, now.x), *([unit] if taken else ())))
         changes = errors.changes
         if tried:
-            changes = (self.ask(tried) - now.left) / sizes[:, None]
+            changes = self.ask(tried)  # in place, for memory
+            changes -= now.left
+            changes /= sizes[:, None]
         return replace(errors, changes=changes, seen_at=(errors.sizes, self._keys))
 
     def _beside(self, errors: Nuisance, x: FloatArray) -> Model:

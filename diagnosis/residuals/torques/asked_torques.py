@@ -18,7 +18,7 @@ from diagnosis.replay.asked import by_servos
 from diagnosis.residuals.doubted import no_nuisance
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.torques.torque_evidence import with_motions
-from diagnosis.traces.split import shortened
+from diagnosis.traces.split import shortened, thinned
 from diagnosis.traces.trace import Trace
 
 FAR = 5.0
@@ -74,7 +74,8 @@ def times_noise(plant: Plant, healthy: Sequence[Trace]) -> float:
     The likeliest small mismatch is that of ridge regression on what each usual error of
     the model changes, which is right to first order.
     """
-    predictor = Predictor(plant, shortened(healthy, MOST_S))
+    some = thinned(plant, shortened(healthy, MOST_S), len(plant.joints))
+    predictor = Predictor(plant, some)
     predictor.correct()
     errors = predictor.nuisance_fit(()).seen(no_nuisance(predictor))
     (left,) = predictor.residuals([()])

@@ -7,7 +7,7 @@ import numpy as np
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.asked import AskedTorques, centred
 from diagnosis.replay.inverse import NeededTorques
-from diagnosis.residuals.channels import LEAST_TORQUE, Channels
+from diagnosis.residuals.channels import LEAST_TORQUE, Channels, measured_of
 from diagnosis.residuals.predictor import WORST, Model, Predictor
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise, waves
 from diagnosis.residuals.replays import variants_of
@@ -31,9 +31,8 @@ class TorquePredictor(Predictor):
     """Computes the torques that the motion in recordings needs, without a replay.
 
     Torque is averaged over blocks of successive rows, over which smoothing has made the
-    motion nearly constant: each mean is one entry of a residual, at the first row of
-    its block; entries of all other rows do not count. A mean of fewer rows, since the
-    joint was too slow in others, weighs less.
+    motion nearly constant: each mean is one entry of a residual. A mean of fewer rows,
+    since the joint was too slow in others, weighs less.
 
     What a wrong scale and a wrong zero of the measured torques change lies within the
     tolerances, beside those of the model.
@@ -48,21 +47,24 @@ class TorquePredictor(Predictor):
         self._needed = NeededTorques(plant, traces)
         self._asked = AskedTorques(traces) if asked(traces) else None
         motions = [trace.motion for trace in traces if trace.motion is not None]
+        measured = [measured_of(trace, self.channels) for trace in traces]
+        self._measured = np.concatenate(measured)
         known = np.isfinite(self._measured)
         self._counts = np.concatenate([one.counts for one in motions]) & known
         starts, first, sizes = list[int](), 0, list[int]()
         for trace, motion in zip(traces, motions, strict=True):
-            own = range(first, first + trace.ticks, motion.block_rows)
+            own = range(first, first + trace.ticks)[trace.compared]
             starts += own
             sizes += [motion.block_rows] * len(own)
             first += trace.ticks
         self._starts = np.array(starts)
+        lasts = np.diff(self._starts, append=first)
+        self._block_of = np.repeat(np.arange(len(starts)), lasts)
         self._rows = np.add.reduceat(self._counts.astype(float), self._starts)
         full = np.array(sizes)[:, None]
         # the noise is that of means over whole blocks
         self._weight = 1 / np.sqrt(full * np.maximum(self._rows, 1.0))
-        self._scored = np.zeros_like(self._counts)
-        self._scored[self._starts] = self._rows >= FEWEST * full
+        self._scored = self._rows >= FEWEST * full
         self.scored = self._scored.reshape(-1)
         self.blocks = _blocks(self._starts, self._scored, len(self._counts))
         largest = np.nanmax(np.abs(self._measured), axis=0, initial=0.0)
@@ -84,8 +86,12 @@ class TorquePredictor(Predictor):
     def _start_doubt(self, model: Model) -> None:
         """None, since nothing starts anywhere."""
 
+    def seen_rows(self, trace: Trace) -> slice:
+        """All rows of a trace."""
+        return slice(0, trace.ticks)
+
     def predict(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c) torques that the motion needs by n models, for all traces."""
+        """(n, T, c) torques that the motion needs by n models, in all T rows."""
         torque = np.empty((len(models), *self._measured.shape))
         given = [self._doubts.given(model) for model in models]
         for rows, _, acting, _ in self._replays.together(given):
@@ -95,23 +101,21 @@ class TorquePredictor(Predictor):
                 needed = needed + self._usual_nm(self._healthy)
             if self._asked is not None:
                 needed = self._asked.of(needed, variants)
-            torque[:, rows] = needed[:, rows]
+            own = rows[self._block_of]
+            torque[:, own] = needed[:, own]
         if self._on_replay is not None:
             self._on_replay(len(models))
         return torque
 
     def exact(self, models: Sequence[Model]) -> FloatArray:
-        """(n, rows, c) torques as of `predict`: there is no integration error."""
+        """(n, T, c) torques as of `predict`: there is no integration error."""
         return self.predict(models)
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
-        """(n, rows, c) measured less needed torques in means over blocks [noise]."""
+        """(n, blocks, c) means of measured less needed torques [noise]."""
         wrong = self._means(self._measured - self.predict(models))
         given = [self._doubts.given(model) for model in models]
-        own = self._starts
-        wrong[:, own] = self._stops.rested(
-            wrong[:, own], variants_of(self.plant, given)
-        )
+        wrong = self._stops.rested(wrong, variants_of(self.plant, given))
         if self._healthy is not None:
             wrong = self._less_usual(wrong, self._healthy)
         return wrong
@@ -136,7 +140,7 @@ class TorquePredictor(Predictor):
         """Mean torques [N m] that a model lacks, and what they may go with."""
         bare = self._with(noise=None)
         needed = bare.predict([model])[0]
-        scored, starts = self._scored[self._starts], self._starts
+        scored, starts = self._scored, self._starts
         missing = self._averages(self._measured - needed)
         columns = self._columns()
         k = columns.shape[2]
@@ -197,27 +201,24 @@ class TorquePredictor(Predictor):
         return self._usual
 
     def _less_usual(self, wrong: FloatArray, healthy: HealthyTorques) -> FloatArray:
-        """(n, rows, c) errors, whitened with what recordings usually differ by."""
+        """(n, blocks, c) errors, whitened with what recordings usually differ by."""
         if self._whitening is None:
             self._whitening = healthy.whitening(self.means())
         found = np.zeros_like(wrong)
         full = 1 / (self._weight**2 * np.maximum(self._rows, 1.0))
         weight = np.sqrt(np.maximum(self._rows, 1.0) / full)
         for j, matrix in enumerate(self._whitening):
-            some = np.flatnonzero(self._scored[self._starts, j])
-            rows = self._starts[some]
-            mean_nm = wrong[:, rows, j] * self.channels.noise[j] / weight[some, j]
-            found[:, rows, j] = mean_nm @ matrix.T
+            some = np.flatnonzero(self._scored[:, j])
+            mean_nm = wrong[:, some, j] * self.channels.noise[j] / weight[some, j]
+            found[:, some, j] = mean_nm @ matrix.T
         return np.clip(found, -WORST, WORST)
 
     def _means(self, torque_nm: FloatArray) -> FloatArray:
-        """(n, rows, c) means of torques (n, rows, c) over blocks, in units of noise."""
+        """(n, blocks, c) means of torques (n, T, c), in units of noise."""
         wrong = np.where(self._counts, torque_nm / self.channels.noise, 0.0)
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
-        found = np.zeros_like(wrong)
         sums = np.add.reduceat(wrong, self._starts, axis=1)
-        found[:, self._starts] = sums * self._weight
-        return np.where(self._scored, found, 0.0)
+        return np.where(self._scored, sums * self._weight, 0.0)
 
     def _beyond(self) -> Tolerance:
         """Changes by wrong zeros of the measured torques."""
@@ -255,10 +256,9 @@ def _blocks(starts: IntArray, scored: BoolArray, rows: int) -> list[Block]:
     """Groups of successive means, as blocks of errors that may be correlated."""
     found = []
     for first in range(0, len(starts), WAVE_BLOCKS):
-        own = starts[first : first + WAVE_BLOCKS]
-        after = first + WAVE_BLOCKS
-        stop = int(starts[after]) if after < len(starts) else rows
-        counted = np.asarray(scored[int(own[0]) : stop].any(axis=1))
-        within = np.linspace(0, 1, stop - int(own[0]), endpoint=False)
-        found.append(Block(slice(int(own[0]), stop), waves(within, counted)))
+        own = slice(first, min(first + WAVE_BLOCKS, len(starts)))
+        stop = starts[own.stop] if own.stop < len(starts) else rows
+        within = (starts[own] - starts[first]) / (stop - starts[first])
+        counted = np.asarray(scored[own].any(axis=1))
+        found.append(Block(own, waves(within, counted)))
     return found

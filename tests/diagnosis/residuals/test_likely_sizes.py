@@ -9,15 +9,20 @@ from diagnosis.residuals.small_mismatch.likely_sizes import gain_of, likeliest
 ALL = np.ones(2, bool)
 
 
+def likely(changes, left, *known, **options):
+    """Sizes that are likely, by what each would change of a residual."""
+    return likeliest(changes @ changes.T, changes @ left, *known, **options)
+
+
 def test_sizes_are_drawn_to_zero_as_by_a_ridge():
     changes = np.array([[3.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     left = -np.array([6.0, 2.0, 5.0])  # sizes of 2 explain it but for the last entry
     ends = np.full(2, -9.0), np.full(2, 9.0)
-    found = likeliest(changes, left, np.zeros(2), ALL, *ends)
+    found = likely(changes, left, np.zeros(2), ALL, *ends)
     assert found == pytest.approx([2 * 9 / 10, 2 * 1 / 2])
     # the same from a residual that has some of them
     begun = np.array([1.0, -1.0])
-    found = likeliest(changes, left + begun @ changes, begun, ALL, *ends)
+    found = likely(changes, left + begun @ changes, begun, ALL, *ends)
     assert found == pytest.approx([1.8, 1.0])
 
 
@@ -25,10 +30,10 @@ def test_bounds_hold_and_the_others_take_over():
     changes = np.array([[1.0, 0.0], [1.0, 0.1]])
     left = -np.array([10.0, 0.0])
     low, high = np.zeros(2), np.array([2.0, 9.0])
-    found = likeliest(changes, left, np.zeros(2), ALL, low, high)
+    found = likely(changes, left, np.zeros(2), ALL, low, high)
     rest = minimize(lambda x: (8 - x) ** 2 + (0.1 * x) ** 2 + x**2, 1.0, method="BFGS")
     assert found == pytest.approx([2.0, rest.x[0]], abs=1e-4)
-    only = likeliest(changes, left, np.zeros(2), np.array([True, False]), low, high)
+    only = likely(changes, left, np.zeros(2), np.array([True, False]), low, high)
     assert only == pytest.approx([2.0, 0.0], abs=1e-6)
 
 
@@ -40,11 +45,11 @@ def test_damping_holds_sizes_back_by_how_much_they_change():
     changes = np.array([[3.0, 0.0], [0.0, 1.0]])
     left = -np.array([6.0, 2.0])
     ends = np.full(2, -9.0), np.full(2, 9.0)
-    found = likeliest(changes, left, np.zeros(2), ALL, *ends, damping=2.0)
+    found = likely(changes, left, np.zeros(2), ALL, *ends, damping=2.0)
     assert found == pytest.approx([2 * 9 / (10 + 18), 2 * 1 / (2 + 2)])
     begun = np.array([1.0, 4.0])
     left = left + begun @ changes
-    found = likeliest(changes, left, begun, ALL, *ends, damping=1e6)
+    found = likely(changes, left, begun, ALL, *ends, damping=1e6)
     assert found == pytest.approx(begun, abs=1e-4)
 
 

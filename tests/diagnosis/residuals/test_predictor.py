@@ -210,3 +210,36 @@ def test_residuals_are_the_same_in_parts(pendulum, monkeypatch):
     )
     np.testing.assert_array_equal(predictor.residuals(models), whole)
     assert asked == [1, 1, 1]
+
+
+def test_of_some_rows_residuals_are_those_of_all_rows(pendulum):
+    """Commands of the rows between count in replays; the rows are not compared."""
+    plant, trace = pendulum
+    second = replace(trace, name="second")
+    model = (PlacedEffect("viscous_friction", "elbow", (0.05,)),)
+    whole = Predictor(plant, [trace, second], CHANNELS)
+    some = [replace(one, every=3) for one in (trace, second)]
+    part = Predictor(plant, some, CHANNELS)
+    kept = np.zeros(2 * trace.ticks, bool)
+    kept[: trace.ticks : 3] = kept[trace.ticks :: 3] = True
+    own = np.repeat(kept, 2)
+    assert 3 * own.sum() < len(own) + 12
+    np.testing.assert_array_equal(
+        part.residuals([model]), whole.residuals([model])[:, own]
+    )
+    for name in ("scored", "channel", "trace"):
+        np.testing.assert_array_equal(getattr(part, name), getattr(whole, name)[own])
+    np.testing.assert_array_equal(
+        part.part(1, 2).residuals([model]),
+        whole.part(1, 2).residuals([model])[:, own[2 * trace.ticks :]],
+    )
+
+
+def test_of_some_rows_only_noise_is_left_of_a_right_model(pendulum):
+    plant, trace = pendulum
+    jitter = replace(CHANNELS, own_jitter_s=1e-5, common_jitter_s=1e-5)
+    predictor = Predictor(plant, [replace(trace, every=3)], jitter)
+    predictor.calibrate()
+    (left,) = predictor.residuals([()])
+    assert 0.5 * left @ left == pytest.approx(predictor.noise_energy, rel=0.2)
+    assert rms(predictor, (PlacedEffect("viscous_friction", "elbow", (0.5,)),)) > 3

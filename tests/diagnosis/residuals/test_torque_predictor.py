@@ -70,7 +70,7 @@ def test_parts_have_the_residuals_of_the_whole(trace):
     bare = whole.nominal()
     both = bare.residuals([PAYLOAD])[0]
     second = whole.part(1, 2).nominal().residuals([PAYLOAD])[0]
-    np.testing.assert_allclose(both[3 * rows :], second, atol=1e-9)
+    np.testing.assert_allclose(both[3 * 60 :], second, atol=1e-9)
 
 
 def test_wrong_scales_and_zeros_within_tolerance_are_no_evidence(trace, right):

@@ -1,10 +1,12 @@
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from joint_rigs import ARM, plant_of
 
 from diagnosis.plant.servo import Servo
-from diagnosis.traces.split import split
+from diagnosis.traces.split import MOST_COMPARED, split, thinned
 from diagnosis.traces.trace import Trace
 from groundwalk.errors import BadRecordingError
 
@@ -150,3 +152,30 @@ def test_a_few_recordings_are_cut_if_they_are_long(every, duration_s, cut):
     assert all(names == set(every) for names in names_of) is cut
     if not cut:
         assert sum(len(names) for names in names_of) == len(every)
+
+
+def held(seconds):
+    """A recording of two joints that servos hold."""
+    servo = Servo(*(np.full(2, value) for value in (10.0, 1.0, 5.0, 0.0)))
+    some = trace("held", seconds)
+    return replace(some, servo=servo, command_rad=some.position_rad)
+
+
+def test_of_very_many_values_fewer_rows_are_compared():
+    arm, traces = plant_of(ARM, kp=10.0, kd=1.0), [held(40), held(60)]
+    enough = 2 * MOST_COMPARED // (100 * HZ)
+    assert [one.every for one in thinned(arm, traces, enough // 2)] == [1, 1]
+    fewer = thinned(arm, traces, enough + 1)
+    assert [one.every for one in fewer] == [3, 3]
+    assert sum(one.rows for one in fewer) * (enough + 1) <= MOST_COMPARED
+    assert [one.ticks for one in fewer] == [one.ticks for one in traces]
+    np.testing.assert_array_equal(
+        fewer[0].time_s[fewer[0].compared], fewer[0].time_s[::3]
+    )
+    assert fewer[0].part(7, 100).rows == 31
+
+
+def test_of_short_windows_all_rows_are_compared():
+    arm = plant_of(ARM, kp=10.0, kd=1.0)
+    driven = trace("driven", 60)
+    assert [one.every for one in thinned(arm, [driven], 10**6)] == [1]
