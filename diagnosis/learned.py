@@ -17,6 +17,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.small_mismatch.usual_errors import is_usual
 from diagnosis.residuals.steps import precise
+from diagnosis.residuals.trust import Trust, trust_of
 from diagnosis.search.changes import established_changes, learn_torques
 from diagnosis.search.few_or_many import found_by
 from diagnosis.search.hooks import Hooks
@@ -97,25 +98,45 @@ class Learned:
             return first._beside_changes(channels, given, threads, hooks)
         timed = first._timed_anew()
         if timed is not None:
-            channels, found = timed, _best_of_each_size(first.search, first.result)
-            first = cls._of(material, channels, given.again, threads, hooks, found)
-        soft = first._creeps()
-        wider = np.ones(len(channels.names))
-        if not (first.noise or soft):
-            left = _left(first.data.learned, first.result)
-            wider = np.maximum(left, 1 / channels.wider)
-        if not soft and max(wider.max(), 1 / wider.min()) <= MORE_THAN_NOISE:
-            return first
-        if soft:
-            limits = (*material.limits, CREEPS)
-            plant, before = softly(material.plant), softly(material.before)
-            material = replace(material, plant=plant, before=before, limits=limits)
-        wide = channels.widened(wider)
-        if first.everywhere and not soft:
-            data, *_ = _divided(material, wide, given, threads, hooks)
-            return replace(first, data=data, inexact=True)
-        found = _best_of_each_size(first.search, first.result)
-        return cls._of(material, wide, given.again, threads, hooks, found)
+            channels = timed
+            first = first._again(material, channels, given, threads, hooks)
+        if first._creeps():
+            material = _softened(material)
+            first = first._again(material, channels, given, threads, hooks)
+        return (
+            first if first.noise else first._over_noise(channels, given, threads, hooks)
+        )
+
+    def _again(
+        self,
+        material: Material,
+        channels: Channels,
+        rules: Rules,
+        threads: int,
+        hooks: Hooks,
+    ) -> "Learned":
+        """Another search, which also tries the best models of this one."""
+        found = _best_of_each_size(self.search, self.result)
+        return self._of(material, channels, rules.again, threads, hooks, found)
+
+    def _over_noise(
+        self, channels: Channels, rules: Rules, threads: int, hooks: Hooks
+    ) -> "Learned":
+        """With noise that is as large as what the best model leaves, if that is more.
+
+        Where effects are everywhere, recordings in which more is left weigh less.
+        """
+        left = _left(self.data.learned, self.result)
+        wider = np.maximum(left, 1 / channels.wider)
+        if max(wider.max(), 1 / wider.min()) <= MORE_THAN_NOISE:
+            return self
+        material, wide = self.material, channels.widened(wider)
+        if not self.everywhere:
+            return self._again(material, wide, rules, threads, hooks)
+        model = self.result.winner.model if self.result.winner else ()
+        trust = trust_of([self.data.learned.squares_in(model)])
+        data, *_ = _divided(material, wide, rules, threads, hooks, trust=trust)
+        return replace(self, data=data, inexact=True)
 
     def _beside_changes(
         self, channels: Channels, rules: Rules, threads: int, hooks: Hooks
@@ -219,6 +240,13 @@ class Learned:
         return cls(material, data, noise, search, result, kind, everywhere)
 
 
+def _softened(material: Material) -> Material:
+    """The material with dry friction that lets joints creep."""
+    plant, before = softly(material.plant), softly(material.before)
+    limits = (*material.limits, CREEPS)
+    return replace(material, plant=plant, before=before, limits=limits)
+
+
 def _settled(before: Model, after: Model) -> bool:
     """Whether two models have the same effects with nearly the same values."""
     known = {one.key: np.array(one.values) for one in before}
@@ -269,11 +297,12 @@ def _divided(
     promising: Sequence[Model] = (),
     known: Model | None = None,
     beside: Model | None = (),
+    trust: Trust | None = None,
 ) -> tuple[DataSets, ReferenceNoise | None, Search]:
     """The data by use, the healthy robot's model errors, and a search ready to run.
 
     The search also tries the models `promising`. The healthy robot has `known` effects,
-    which are searched for if None.
+    which are searched for if None. Recordings have the weights `trust`, by default 1.
     """
     plant, before, reference = material.plant, material.before, material.reference
     noise, healthy = None, list[Predictor]()
@@ -286,7 +315,8 @@ def _divided(
         else:
             noise = learn_reference(before, reference, channels, *options)
     hooks.stage("fit", FIT_REPLAYS)
-    data = DataSets.of(plant, material.traces, channels, noise, threads, hooks.advance)
+    own = plant, material.traces, channels, noise, threads, hooks.advance
+    data = DataSets.of(*own, trust=trust)
     if noise:
         healthy = reference_checks(before, reference, channels, noise, threads, hooks)
     judge = Judge(data.fit, data.select, rules, healthy, hooks)
@@ -294,14 +324,17 @@ def _divided(
 
 
 def _best_of_each_size(search: Search, result: SearchResult) -> list[Model]:
-    """The best models of each size that a search can try."""
+    """The best models of each size that a search can try, and one with many effects."""
     rules = search.judge.rules
-    return [
+    found = [
         one.model
         for size, models in result.best.items()
         if size <= rules.largest
         for one in models[: rules.beam]
     ]
+    if result.chosen > rules.largest and result.winner:
+        found.append(result.winner.model)
+    return found
 
 
 def _rules(plant: Plant, rules: Rules | None) -> Rules:

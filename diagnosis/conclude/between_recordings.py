@@ -16,7 +16,7 @@ from scipy.stats import chi2, f, t
 from diagnosis.effects.library import lasts
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.ties import groups_of
+from diagnosis.residuals.ties import kinds_of
 from diagnosis.search.fitting import FittedModel
 from groundwalk.arrays import FloatArray, IntArray
 
@@ -35,10 +35,12 @@ def scattered(
 
     `fitted` is the fit to the recordings of `both`. Recordings of the healthy robot, if
     there are any, show how much recordings of one robot differ. Effects that share
-    their values are one. What does not last need not be in all recordings.
+    their values are one, and so are those of a kind that most joints have: that one
+    joint's friction differs is no sign that it has none. What does not last need not be
+    in all recordings.
     """
     found = []
-    for group in groups_of(fitted.model):
+    for group in kinds_of(fitted.model, len(both.plant.joints)):
         if not lasts(group[0], both.traces):
             continue
         seen = [_sizes(both, fitted, group)]

@@ -80,6 +80,10 @@ class Effect(ABC):
     stiffens: ClassVar[bool] = False
     """Whether the first value is a factor on the stiffness of servos."""
 
+    scales_servo: ClassVar[bool] = False
+    """Whether its torque is a share of its servo's, so that it explains much of what
+    other loads do, such as another mass or friction."""
+
     stiff: ClassVar[bool] = False
     """Whether the effect is a spring in the drive, whose stiffness is the first value.
     If so, it is simulated at half the usual time step."""

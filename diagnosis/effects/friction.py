@@ -185,6 +185,7 @@ class LoadFriction(NumberEffect, JointEffect):
 
     name = "load_friction"
     native = False
+    scales_servo = True
     quantity = "load_share"
     usual = (Parameter("share", "1", 0.0, 0.8, 0.0, 0.1),)
     words = EffectWords(

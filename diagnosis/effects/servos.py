@@ -43,6 +43,7 @@ class ServoGain(NumberEffect, ServoEffect):
 
     name = "servo_gain"
     native = True
+    scales_servo = True
     stiffens = True
     quantity = "kp_factor"
     combined = np.multiply
@@ -82,6 +83,7 @@ class ServoDamping(NumberEffect, JointEffect):
 
     name = "servo_damping"
     native = True
+    scales_servo = True
     rarity_nats = 2.0
     quantity = "damping_factor"
     combined = np.multiply

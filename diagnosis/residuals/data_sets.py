@@ -14,6 +14,7 @@ from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
 from diagnosis.residuals.steps import PRECISE_S, exact_steps, with_best_steps
 from diagnosis.residuals.torques.torque_predictor import predictor_of
+from diagnosis.residuals.trust import Trust
 from diagnosis.traces.split import (
     LEAST_FLOATING_S,
     LEAST_S,
@@ -79,10 +80,12 @@ class DataSets:
         noise: ReferenceNoise | None,
         threads: int,
         on_replay: Callable[[int], None] | None = None,
+        trust: Trust | None = None,
     ) -> "DataSets":
         """Split recordings, shorten the parts and calibrate their predictors.
 
-        Arguments are those of `Predictor`.
+        `trust` are weights of recordings, by default 1. Other arguments are those of
+        `Predictor`.
 
         Raises:
           BadRecordingError: the traces are too short.
@@ -93,7 +96,9 @@ class DataSets:
         every = [*parts.fit, *parts.select, *parts.test]
         every = thinned(plant, every, len(channels.names))
         options = None, threads, noise, on_replay, window_s
-        whole = with_best_steps(predictor_of(plant, every, channels, *options))
+        whole = predictor_of(plant, every, channels, *options)
+        whole.trusting(trust or {})
+        whole = with_best_steps(whole)
         first, last = len(parts.fit), len(parts.fit) + len(parts.select)
         learned, test = _learned_and_test(whole, last, ())
         fit, select = learned.part(0, first), learned.part(first, last)

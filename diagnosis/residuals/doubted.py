@@ -70,7 +70,9 @@ class Doubted(ABC):
         """A copy with residuals in one unit at all speeds; nothing is tolerated."""
         start = self._doubts.start
         start = start.evenly() if start else None
-        return self._with(clock=None, commands=None, start=start, tolerance=None)
+        return self._with(
+            trust=None, clock=None, commands=None, start=start, tolerance=None
+        )
 
     def nominal(self) -> Self:
         """A copy without small mismatch of the model, neither likely nor tolerated."""

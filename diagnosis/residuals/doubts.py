@@ -25,6 +25,7 @@ class Doubts:
     """What is taken out of residuals; None stands for nothing.
 
     Attributes:
+      trust: (rows, c) weights, below 1 where models leave more than in most recordings.
       clock: jitter of the time stamps.
       commands: when commands jump, if that is not known for the same reason.
       start: wrong start states.
@@ -33,6 +34,7 @@ class Doubts:
       tolerance: other small mismatch, which is possible around it.
     """
 
+    trust: FloatArray | None = None
     clock: ClockNoise | None = None
     commands: CommandTiming | None = None
     start: StartUncertainty | None = None
@@ -49,7 +51,8 @@ class Doubts:
         return (*given, *model)
 
     def timed(self, wrong: FloatArray) -> FloatArray:
-        """(n, rows, c) errors, whitened with those of the clock."""
+        """(n, rows, c) errors with their weights, whitened with those of the clock."""
+        wrong = wrong if self.trust is None else wrong * self.trust
         wrong = wrong if self.clock is None else self.clock.without(wrong)
         return wrong if self.commands is None else self.commands.without(wrong)
 
@@ -93,7 +96,11 @@ class Doubts:
         start = whole.start and whole.start.part(runs.start, runs.stop)
         nuisance = whole.nuisance and whole.nuisance.part(entries)
         tolerance = whole.tolerance and whole.tolerance.part(entries)
-        some = replace(self, commands=commands, start=start)
+        trust = whole.trust
+        if trust is not None:
+            c = trust.shape[1]
+            trust = trust[entries.start // c : entries.stop // c]
+        some = replace(self, trust=trust, commands=commands, start=start)
         return replace(some, nuisance=nuisance, tolerance=tolerance)
 
     def taking(self, nuisance: Nuisance, beyond: Tolerance) -> "Doubts":

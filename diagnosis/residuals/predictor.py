@@ -18,6 +18,7 @@ from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
 from diagnosis.residuals.replays import Model as Model
 from diagnosis.residuals.replays import Replays, time_blocks
 from diagnosis.residuals.start_state import StartUncertainty
+from diagnosis.residuals.trust import Trust
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import FloatArray
 
@@ -108,6 +109,31 @@ class Predictor(Doubted):
         self._prepare()
         clock = clock_noise(self.traces, self.channels, self._scored)
         self._doubts = Doubts(clock=clock, noise=noise, blocks=self.blocks)
+        self._trust: Trust = {}
+
+    def trusting(self, trust: Trust) -> None:
+        """Take other weights of recordings; what wrong starts change is to be found."""
+        self._trust, weights = trust, None
+        if trust:
+            c = len(self.channels.names)
+            known = [trust.get(one.recording, np.ones(c)) for one in self.traces]
+            weights = np.stack(known)[self.trace.reshape(-1, c)[:, 0]]
+        self._doubts = replace(self._doubts, trust=weights)
+
+    def squares_in(self, model: Model) -> dict[str, FloatArray]:
+        """What a model leaves in each recording, by its name, without weights.
+
+        (2, c) sums of squares, and numbers of entries, in units of noise.
+        """
+        (left,) = self.evenly().residuals([model])
+        found = dict[str, FloatArray]()
+        for k, trace in enumerate(self.traces):
+            own = (self.trace == k) & self.scored
+            count = np.bincount(self.channel[own], minlength=len(self.channels.names))
+            sums = np.bincount(self.channel[own], left[own] ** 2, len(count))
+            both = np.stack([sums, count.astype(float)])
+            found[trace.recording] = found.get(trace.recording, 0 * both) + both
+        return found
 
     def _prepare(self) -> None:
         """Prepare what another kind of predictor needs beside windows and channels."""
@@ -143,7 +169,9 @@ class Predictor(Doubted):
             self._doubts.noise,
             self._on_replay,
         )
-        return type(self)(plant, self.traces, *own, self._window_s, self.finest_s)
+        some = type(self)(plant, self.traces, *own, self._window_s, self.finest_s)
+        some.trusting(self._trust)
+        return some
 
     def stepped(
         self,
@@ -171,7 +199,9 @@ class Predictor(Doubted):
         """An uncalibrated predictor of some traces."""
         own = self.channels, step_s, self._threads, self._doubts.noise, self._on_replay
         more = self._window_s, finest_s, replays
-        return type(self)(self.plant, traces, *own, *more)
+        some = type(self)(self.plant, traces, *own, *more)
+        some.trusting(self._trust)
+        return some
 
     def correct(self, model: Model = ()) -> FloatArray:
         """Measure the integration error of a model, to be taken out of all residuals.
@@ -206,6 +236,8 @@ class Predictor(Doubted):
         late = *given, late_commands(late_s)
         one, other = self._replays.values([given, late], self.step_s)
         changes = np.where(self._scored, one - other, 0.0) / self.channels.noise
+        if self._doubts.trust is not None:
+            changes = changes * self._doubts.trust
         jumps = jumps_of(self.traces, self.channels)
         return CommandTiming(np.nan_to_num(changes), jumps, self._ends, clock)
 
@@ -277,7 +309,7 @@ class Predictor(Doubted):
         healthy robot show, are taken out. `exactly` predicts by `exact` instead of
         `predict`.
         """
-        some = max(1, MOST_ENTRIES // len(self.scored))
+        some = max(1, MOST_ENTRIES // self._measured.size)
         parts = [models[i : i + some] for i in range(0, len(models), some)]
         return np.concatenate(
             [self._doubts.without(self._errors(one, exactly), one) for one in parts]

@@ -26,6 +26,23 @@ def groups_of(model: Model) -> list[Model]:
     return [tuple(one) for one in found.values()]
 
 
+def is_everywhere(places: int, joints: int) -> bool:
+    """Whether a kind of effect at so many places is at half of all joints or more."""
+    return places >= max(joints / 2, 2)
+
+
+def kinds_of(model: Model, joints: int) -> list[Model]:
+    """The effects of a model; those of a kind that is everywhere are together.
+
+    Others are together if they share their values.
+    """
+    found = list[Model]()
+    for name in dict.fromkeys(placed.name for placed in model):
+        own = tuple(placed for placed in model if placed.name == name)
+        found += [own] if is_everywhere(len(own), joints) else groups_of(own)
+    return found
+
+
 def without_each(model: Model) -> list[Model]:
     """The models that arise when each effect is removed in turn, tied ones together."""
     gone = [{placed.key for placed in group} for group in groups_of(model)]

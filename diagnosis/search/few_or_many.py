@@ -29,14 +29,16 @@ def found_by(search: Search, tested: bool = True) -> tuple[SearchResult, bool]:
         return accepted(judge, search.run(anyway=True)), False
     result = search.run()
     if search.widespread:
-        wide = everywhere(judge, result)
+        wide = everywhere(judge, result, search.large)
         if wide is not result:
             return wide, True
         judge.calibrate(())
         result = search.run(anyway=True)
         return (accepted(judge, result) if tested else result), False
     few = accepted(judge, result) if tested else result
-    wide = everywhere(judge, few) if more_is_missing(judge.fit, few) else few
+    if not more_is_missing(judge.fit, few):
+        return few, False
+    wide = everywhere(judge, few, search.large)
     return wide, wide is not few
 
 

@@ -109,6 +109,12 @@ class Search:
         left = leader.fit.energy - self.judge.floor_fit
         return starts.promised(leader) < ONE_MORE * left
 
+    @property
+    def large(self) -> Model:
+        """A promising model with more effects than are searched for; () for none."""
+        most = self._rules.largest
+        return next((one for one in self._promising if len(one) > most), ())
+
     def _with_promising(self, size: int, starts: list[Model]) -> list[Model]:
         """The models to start from, if any, and the promising ones of their size."""
         return [*starts, *(m for m in self._promising if len(m) == size)]

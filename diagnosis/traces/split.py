@@ -255,7 +255,7 @@ def _liveliest(trace: Trace, share: float, least_s: float) -> Trace:
     return trace.part(start, start + rows)
 
 
-MOST_COMPARED = 2**17
+MOST_COMPARED = 100_000
 """Most values of recordings that are compared with replays: memory grows with them."""
 
 

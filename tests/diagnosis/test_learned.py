@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 from made_up_traces import arm
 
 from diagnosis import learned
@@ -90,3 +91,74 @@ def test_it_ends(monkeypatch):
     scene.run()
     assert [len(one or ()) for one in scene.known] == list(range(MOST_KNOWN))
     assert scene.left_out == (others[MOST_KNOWN - 1],)
+
+
+class Left:
+    """A search that leaves `times` the noise, and what follows from that."""
+
+    def __init__(self, patch, times, everywhere, creeps=False):
+        self.searched, self.trust = [], None
+        self.creeps, self.everywhere = creeps, everywhere
+        patch.setattr(learned, "precise", lambda plant, traces, channels, threads: self)
+        patch.setattr(learned, "_rules", lambda plant, rules: Rules())
+        patch.setattr(learned, "_left", lambda data, result: np.array(times))
+        patch.setattr(learned, "_divided", self.divided)
+        patch.setattr(learned, "_softened", lambda material: "soft")
+        patch.setattr(learned, "_best_of_each_size", lambda search, result: [])
+        patch.setattr(Learned, "_of", self.of)
+        patch.setattr(Learned, "_timed_anew", lambda one: None)
+        patch.setattr(Learned, "_creeps", lambda one: self.creeps)
+
+    wider = np.ones(2)
+
+    def widened(self, times):
+        return times.tolist()
+
+    def divided(self, material, channels, *options, trust):
+        self.trust = trust
+        return "data", None, None
+
+    def of(self, material, channels, *options):
+        self.searched.append((material, channels))
+        squares = {name: np.ones((2, 2)) for name in "abc"}
+        squares["c"] = np.array([[4.0, 1.0], [1.0, 1.0]])
+        data = SimpleNamespace(
+            learned=SimpleNamespace(squares_in=lambda model: squares)
+        )
+        result = SearchResult(9.0, 1.0, {}, 0)
+        parts = data, None, None, result, "effects", self.everywhere
+        return Learned(material, *parts)
+
+    def run(self):
+        material = SimpleNamespace(plant=None, traces=(), reference=(), channels=None)
+        self.material = material
+        return Learned.of(material, None, 1, None)
+
+
+def test_what_is_left_within_twice_the_noise_is_noise(monkeypatch):
+    scene = Left(monkeypatch, [1.9, 0.6], everywhere=False)
+    assert not scene.run().inexact
+    assert scene.searched == [(scene.material, scene)]
+
+
+def test_what_is_left_beyond_that_is_the_noise_of_another_search(monkeypatch):
+    scene = Left(monkeypatch, [5.0, 1.0], everywhere=False)
+    scene.run()
+    assert scene.searched[1:] == [(scene.material, [5.0, 1.0])]
+
+
+def test_where_effects_are_everywhere_only_tests_follow(monkeypatch):
+    scene = Left(monkeypatch, [5.0, 1.0], everywhere=True)
+    found = scene.run()
+    assert found.inexact
+    assert found.data == "data"
+    assert len(scene.searched) == 1
+    assert scene.trust["c"].tolist() == [0.5, 1.0]
+    assert scene.trust["a"].tolist() == [1.0, 1.0]
+
+
+def test_beside_friction_that_creeps_what_is_left_is_noise_as_well(monkeypatch):
+    scene = Left(monkeypatch, [5.0, 1.0], everywhere=True, creeps=True)
+    found = scene.run()
+    assert scene.searched == [(scene.material, scene), ("soft", scene)]
+    assert (found.inexact, found.material, found.data) == (True, "soft", "data")

@@ -52,20 +52,34 @@ def with_asked_torques(
     `healthy` are recordings. Needed are a fixed base, and at all joints servos with
     known gains and commands. Returns both kinds of traces, and a sentence.
     """
-    both = (*traces, *healthy)
-    if not healthy or plants[0].base == "floating" or not all(map(_is_asked, both)):
-        return None
-    times = times_noise(plants[1], healthy)
+    ready = asked_motions(plants[0], (*traces, *healthy)) if healthy else ()
+    times = times_noise(plants[1], healthy) if ready else 0.0
     if times < FAR:
         return None
-    torques = [replace(one, torque_nm=by_servos(one)) for one in both]
-    ready = [
-        replace(one, motion=replace(one.motion, by_servo=True))
-        for one in with_motions(plants[0], torques, LASTS_S)
-        if one.motion is not None
-    ]
     now, before = tuple(ready[: len(traces)]), tuple(ready[len(traces) :])
     return now, before, ASKED.format(times=times)
+
+
+def asked_motions(plant: Plant, traces: Sequence[Trace]) -> tuple[Trace, ...]:
+    """Traces with the torques that servos ask for, and smoothed motions that need them.
+
+    None of them if the base floats, or some joint lacks a servo with known gains and a
+    command.
+    """
+    if plant.base == "floating" or not all(map(_is_asked, traces)):
+        return ()
+    torques = [_with_asked(one) for one in traces]
+    return tuple(
+        replace(one, motion=replace(one.motion, by_servo=True))
+        for one in with_motions(plant, torques, LASTS_S)
+        if one.motion is not None
+    )
+
+
+def _with_asked(trace: Trace) -> Trace:
+    """A trace, and the rows before it, with the torques that its servos ask for."""
+    before = None if trace.before is None else _with_asked(trace.before)
+    return replace(trace, torque_nm=by_servos(trace), before=before)
 
 
 def times_noise(plant: Plant, healthy: Sequence[Trace]) -> float:

@@ -29,7 +29,8 @@ def _more_detailed(fits: Fits, best: Judged) -> Judged | None:
 
     What does not last is tried where nothing else helps any more.
     """
-    found = signatures(fits.fit, best.model, fits.usage, (), lasting_effects())
+    lasting = fits.allowed(lasting_effects())
+    found = signatures(fits.fit, best.model, fits.usage, (), lasting)
     step = _step(fits, best, found)
     known = KnownChanges(fits.fit, best.fit, found)
     other = _with_more(fits, best, step, known)
@@ -37,8 +38,8 @@ def _more_detailed(fits: Fits, best: Judged) -> Judged | None:
     short = push_intervals(fits.fit, best.fit.residual)[1:]
     if other or not short:
         return other
-    timed = [name for name, kind in all_effects().items() if kind.timed]
-    found = signatures(fits.fit, best.model, fits.usage, short, timed)
+    kinds = (name for name, kind in all_effects().items() if kind.timed)
+    found = signatures(fits.fit, best.model, fits.usage, short, fits.allowed(kinds))
     known = KnownChanges(fits.fit, best.fit, found)
     return _with_more(fits, best, _step(fits, best, found), known) if found else None
 

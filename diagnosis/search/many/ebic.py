@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.residuals.ties import groups_of, number_of_values
+from diagnosis.residuals.ties import kinds_of, number_of_values
 from diagnosis.search.chance import independent_blocks
 from diagnosis.search.judging import places_of_effects
 from diagnosis.search.result import Judged
@@ -80,7 +80,7 @@ class Ebic:
         choices, rare = 0, 0.0
         for name in {placed.name for placed in model}:
             own = tuple(placed for placed in model if placed.name == name)
-            count = 1 if self._is_everywhere(len(own)) else len(groups_of(own))
+            count = len(kinds_of(own, self.joints))
             choices += count
             rare += count * effect(name).rarity_nats
             rare += count * np.log(self.rows) if effect(name).timed else 0.0
@@ -93,6 +93,3 @@ class Ebic:
         keys = {placed.key for placed in group}
         rest = tuple(placed for placed in model if placed.key not in keys)
         return self.price(model) - self.price(rest)
-
-    def _is_everywhere(self, places: int) -> bool:
-        return places >= max(self.joints / 2, 2)

@@ -9,12 +9,18 @@ again. The extended Bayesian information criterion decides (`ebic.py`).
 
 import numpy as np
 
-from diagnosis.residuals.channels import MORE_THAN_NOISE
+from diagnosis.residuals.predictor import Model
 from diagnosis.residuals.ties import without_each
+from diagnosis.residuals.torques.asked_torques import FAR
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.each_joint import each_joint
 from diagnosis.search.many.fits import Fits
+from diagnosis.search.many.in_torques import (
+    best_in_torques,
+    from_asked_torques,
+    may_be_noise,
+)
 from diagnosis.search.many.pruning import pruned, shared
 from diagnosis.search.many.shared_first import shared_first
 from diagnosis.search.result import Judged, SearchResult
@@ -24,13 +30,16 @@ MUCH_BETTER = 0.25
 removes this share of the energy above the noise that the latter leaves."""
 
 
-def everywhere(judge: Judge, result: SearchResult) -> SearchResult:
+def everywhere(
+    judge: Judge, result: SearchResult, promising: Model = ()
+) -> SearchResult:
     """The model with effects at all joints and others if it fits much better.
 
     `result` is that of the search for few effects, which is returned otherwise.
+    `promising` is a model to begin with, () for none.
     """
-    search = Fits(judge)
-    best = best_of_all(search)
+    search = Fits(judge, weighs=is_far(judge, result))
+    best = best_of_all(search, promising)
     nothing = search.nominal()
     winner = search.fitted(result.winner.model) if result.winner else nothing
     few = min(winner.energy, _beside_small_mismatch(judge, result))
@@ -71,26 +80,27 @@ def _beside_small_mismatch(judge: Judge, result: SearchResult) -> float:
     return judge.again([result.winner])[0].energy
 
 
-def best_of_all(fits: Fits) -> Judged:
+def is_far(judge: Judge, few: SearchResult) -> bool:
+    """Whether few effects leave many times the noise, beside small mismatch."""
+    energy = few.winner.energy if few.winner else few.nothing + few.nothing_fit
+    return bool(energy > FAR**2 * (judge.floor + judge.floor_fit))
+
+
+def best_of_all(fits: Fits, promising: Model = ()) -> Judged:
     """The best model; without effects if none explains much at many joints.
 
-    Torques are compared without replays, so that there is time to search both ways.
+    Where replays are far from the noise, so that recordings are weighed, a search
+    begins with a `promising` model, or with models of the torques that servos ask for,
+    if these are known.
     """
-    detailed = each_joint(fits)
-    if not _may_be_noise(fits, detailed):
-        return pruned(fits, shared_first(fits))
-    best = pruned(fits, shared(fits, detailed))
-    if not fits.fit.by_torque:
+    if fits.fit.by_torque:
+        return best_in_torques(fits)
+    if fits.weighs and promising:
+        return pruned(fits, shared_first(fits, promising))
+    best = from_asked_torques(fits) if fits.weighs else None
+    if best is not None:
         return best
-    other = pruned(fits, shared_first(fits))
-    return other if fits.ebic(best).prefers(other, best) else best
-
-
-def _may_be_noise(fits: Fits, best: Judged) -> bool:
-    """Whether what a model leaves is so little that it may be noise."""
-    floors = fits.fit.noise_energy, fits.judge.select.noise_energy
-    left = best.fit.energy, best.selected
-    return all(
-        one <= MORE_THAN_NOISE**2 * floor
-        for one, floor in zip(left, floors, strict=True)
-    )
+    detailed = each_joint(fits)
+    if not may_be_noise(fits, detailed):
+        return pruned(fits, shared_first(fits))
+    return pruned(fits, shared(fits, detailed))

@@ -1,11 +1,12 @@
 """Fits models with effects at many joints and compares them by the extended BIC."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 import numpy as np
 
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model
+from diagnosis.residuals.trust import trust_of
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import Judge
 from diagnosis.search.many.ebic import Ebic
@@ -31,16 +32,27 @@ class Fits:
       judge: fits and judges the models.
       fit: predictor of the fitting data.
       usage: what the joints did in them.
+      without: names of effects that are not tried.
+      weighs: whether recordings in which models leave more than in most weigh less.
     """
 
-    def __init__(self, judge: Judge) -> None:
+    def __init__(
+        self, judge: Judge, without: Collection[str] = (), weighs: bool = False
+    ) -> None:
         """Prepare the fits; the predictors of `judge` must be calibrated already."""
+        self.without, self.weighs = frozenset(without), weighs
         parts = judge.fit.nominal(), judge.select.nominal()
         for part in parts:  # at the nominal model, whatever was found before
             part.calibrate(tolerances=False)
+        self.fit, self._select = parts
+        if weighs:
+            self._weigh(())
         self.judge = Judge(*parts, judge.rules, judge.healthy, judge.hooks)
-        self.fit = parts[0]
         self.usage = Usage.of(self.fit.plant, self.fit.traces)
+
+    def allowed(self, names: Iterable[str]) -> tuple[str, ...]:
+        """Those of some names of effects that are tried."""
+        return tuple(name for name in names if name not in self.without)
 
     def nominal(self) -> Judged:
         """The nominal model, as if it had been fitted."""
@@ -49,13 +61,16 @@ class Fits:
         return self.judge.judge([FittedModel((), residual, *none)])[0]
 
     def improved(
-        self, name: str, better: Callable[["Fits", Judged], Judged | None]
+        self,
+        name: str,
+        better: Callable[["Fits", Judged], Judged | None],
+        first: Model = (),
     ) -> Judged:
-        """The nominal model, made better round by round until `better` returns None.
+        """The `first` model, made better round by round until `better` returns None.
 
         `name` is that of the rounds in the progress display.
         """
-        best = self.nominal()
+        best = self.exact(self.fitted(first)) if first else self.nominal()
         for number in range(MOST_ROUNDS):
             self.judge.hooks.stage(f"{name}, round {number + 1}", REPLAYS)
             other = better(self, best)
@@ -92,11 +107,22 @@ class Fits:
     def exact(self, best: Judged) -> Judged:
         """The model fitted again, with its own integration error taken out.
 
-        That of the nominal model would be explained by further effects.
+        That of the nominal model would be explained by further effects. Recordings
+        weigh as suits what the model leaves in them.
         """
-        for part in (self.fit, self.judge.select):
+        if self.weighs:
+            self._weigh(best.model)
+        for part in (self.fit, self._select):
             part.correct(best.model)
         return self.fitted(best.model)
+
+    def _weigh(self, model: Model) -> None:
+        """Weigh recordings by what a model leaves in them."""
+        parts = self.fit, self._select
+        trust = trust_of([part.squares_in(model) for part in parts])
+        for part in parts:
+            part.trusting(trust)
+            part.doubt(tolerances=False)
 
     def ebic(self, judged: Judged) -> Ebic:
         """The criterion where a model leaves what this one leaves."""

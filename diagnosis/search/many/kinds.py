@@ -4,7 +4,7 @@ A kind is proposed with values that all joints share, with one for each kind of 
 and with one for each joint; or the values of a kind that a model has are untied.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from diagnosis.effects.library import effect, grown_from
@@ -33,7 +33,9 @@ class _Option:
     values: int
 
 
-def kinds_to_add(fit: Predictor, screen: Screen, best: Judged) -> list[list[Model]]:
+def kinds_to_add(
+    fit: Predictor, screen: Screen, best: Judged, without: Collection[str] = ()
+) -> list[list[Model]]:
     """Models to try in turn: first those with shared values, then those without.
 
     Joints with the same motor are alike until the recordings show that they are not, so
@@ -41,14 +43,15 @@ def kinds_to_add(fit: Predictor, screen: Screen, best: Judged) -> list[list[Mode
     each sort come first the models that are estimated to gain most, then those that
     gain most for each value: a single delay may explain all fast motions, although
     friction at all joints gains more in the slow ones. At last come more general forms
-    of the kinds that the model has.
+    of the kinds that the model has, except for kinds `without`.
     """
-    added = list(_added(fit.plant, screen, best))
-    most = len(set(motors(fit.plant).values()))
+    plant = fit.plant
+    added = list(_added(plant, screen, best))
+    most = len(set(motors(plant).values()))
     shared = [one for one in added if one.values <= most]
     apart = [one for one in added if one.values > most]
-    apart += _untied(fit.plant, screen, best)
-    return [_likely(shared), [*_likely(apart), *_grown(best.model)]]
+    apart += _untied(plant, screen, best)
+    return [_likely(shared), [*_likely(apart), *_grown(best.model, without)]]
 
 
 def _likely(options: Sequence[_Option]) -> list[Model]:
@@ -98,13 +101,14 @@ def _shared(plant: Plant, screen: Screen, best: Judged, name: str) -> Iterator[_
             yield _Option((*best.model, *more), gain, number_of_values(more))
 
 
-def _grown(model: Model) -> Iterator[Model]:
+def _grown(model: Model, without: Collection[str]) -> Iterator[Model]:
     """The model with more general forms of a kind of effect at all of its joints."""
     for name in sorted({placed.name for placed in model}):
         rest = tuple(placed for placed in model if placed.name != name)
         own = [grown_from(placed) for placed in model if placed.name == name]
         for forms in zip(*own, strict=True):
-            yield (*rest, *forms)
+            if not any(one.name in without for one in forms):
+                yield (*rest, *forms)
 
 
 def _untied(plant: Plant, screen: Screen, best: Judged) -> Iterator[_Option]:

@@ -28,9 +28,12 @@ FINISHED = 3
 has no new effect on a bound."""
 
 
-def shared_first(fits: Fits) -> Judged:
-    """The best model; without effects if none explains much at all joints."""
-    return _replaced(fits, fits.improved("all joints", _larger))
+def shared_first(fits: Fits, first: Model = ()) -> Judged:
+    """The best model; without effects if none explains much at all joints.
+
+    The search begins with the effects of the model `first`.
+    """
+    return _replaced(fits, fits.improved("all joints", _larger, first))
 
 
 def _larger(fits: Fits, best: Judged) -> Judged | None:
@@ -40,9 +43,10 @@ def _larger(fits: Fits, best: Judged) -> Judged | None:
     not: other effects and further values are tried where no value that they share
     helps any more.
     """
-    found = signatures(fits.fit, best.model, fits.usage, (), servo_effects())
+    kinds = fits.allowed(servo_effects())
+    found = signatures(fits.fit, best.model, fits.usage, (), kinds)
     screen = Screen(fits.fit, found)
-    shared, apart = kinds_to_add(fits.fit, screen, best)
+    shared, apart = kinds_to_add(fits.fit, screen, best, fits.without)
     known = KnownChanges(fits.fit, best.fit, found)
     larger = _best_of(fits, shared, best, known)
     if larger:
@@ -91,7 +95,7 @@ def _singles(
     if not best.model:
         return [], []
     known = servo_effects()
-    others = [name for name in all_effects() if name not in known]
+    others = [one for one in fits.allowed(all_effects()) if one not in known]
     short = push_intervals(fits.fit, best.fit.residual)[1:]
     more = signatures(fits.fit, best.model, fits.usage, short, others)
     candidates = Candidates(fits.fit, [*found, *more], fits.judge.rules)
@@ -111,10 +115,11 @@ def _replaced(fits: Fits, best: Judged) -> Judged:
         if len(own) < FEWEST or not rest:
             continue
         (base,) = fits.tried([rest], [best.fit.jacobian_of(rest)])
-        found = signatures(fits.fit, base.model, fits.usage, (), servo_effects())
+        kinds = fits.allowed(servo_effects())
+        found = signatures(fits.fit, base.model, fits.usage, (), kinds)
         known = KnownChanges(fits.fit, base.fit, found)
         screen = Screen(fits.fit, found)
-        every = itertools.chain(*kinds_to_add(fits.fit, screen, base))
+        every = itertools.chain(*kinds_to_add(fits.fit, screen, base, fits.without))
         models = [one for one in every if one != best.model]
         for tried in fits.tried(models, [known.jacobian(one) for one in models]):
             if not fits.ebic(best).prefers(tried, best):

@@ -47,6 +47,23 @@ def test_an_effect_that_recordings_disagree_on_is_scatter(gains, expected):
     assert (kept is None) == expected
 
 
+def test_of_a_kind_at_all_joints_one_may_differ():
+    """The elbow's gain differs by more than it is off; the shoulder's is surely off."""
+    both = (("elbow", (1.07, 0.99)), ("shoulder", (1.5, 1.5)))
+    traces = [
+        replace(
+            recorded(arm(), *(("servo_gain", j, own[k]) for j, own in both), seed=k),
+            name=str(k),
+        )
+        for k in range(2)
+    ]
+    model = tuple(PlacedEffect("servo_gain", j, (own[0],)) for j, own in both)
+    predictor = Predictor(arm(), traces, CHANNELS)
+    predictor.calibrate(model, tolerances=False)
+    (fitted,) = fit_all(predictor, [model])
+    assert scattered(predictor, [], fitted) == []
+
+
 @pytest.mark.parametrize(
     ("before", "expected"), [((1.0, 1.0), False), ((1.05, 0.95), True)]
 )

@@ -8,6 +8,7 @@ from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.ties import (
     groups_of,
+    kinds_of,
     motors,
     number_of_values,
     tied,
@@ -25,6 +26,14 @@ LATE = PlacedEffect("command_latency", "commands", (0.01,))
 def test_shared_values_count_once():
     assert number_of_values((*EACH, LATE)) == 4
     assert number_of_values((*SHARED, LATE)) == 2
+
+
+def test_a_kind_at_half_of_the_joints_is_one():
+    mass = PlacedEffect("payload_mass", "hand", (0.1,))
+    assert kinds_of((*EACH, LATE, mass), 6) == [EACH, (LATE,), (mass,)]
+    assert kinds_of((*EACH, LATE), 7) == [*((one,) for one in EACH), (LATE,)]
+    assert kinds_of((*SHARED, LATE), 7) == [SHARED, (LATE,)]
+    assert kinds_of((mass,), 1) == [(mass,)]
 
 
 def test_shared_values_are_the_mean_at_first():

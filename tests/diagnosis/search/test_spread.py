@@ -57,9 +57,9 @@ def found(monkeypatch, **truth):
 
     search_for_many = few_or_many.everywhere
 
-    def everywhere(judge, result):
+    def everywhere(judge, result, known):
         ran.append("everywhere")
-        return search_for_many(judge, result)
+        return search_for_many(judge, result, known)
 
     monkeypatch.setattr(few_or_many, "everywhere", everywhere)
     parts = [Predictor(arm(), [measured(seed, **truth)], CHANNELS) for seed in (1, 2)]
