@@ -8,17 +8,16 @@ physics could.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from diagnosis.conclude.between_recordings import scattered
 from diagnosis.conclude.estimates import Z_80, standard_errors
+from diagnosis.conclude.final_form import retimed, simplified
 from diagnosis.conclude.held_out_errors import Judgement
 from diagnosis.conclude.usual_bursts import usual_event
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import groups_of
 from diagnosis.search.fitting import (
@@ -27,7 +26,6 @@ from diagnosis.search.fitting import (
     fit_all,
     ran_into_bound,
 )
-from diagnosis.search.judging import gain_of_noise
 from diagnosis.verdict import Errors, Fit
 
 HALF = 0.5
@@ -44,12 +42,6 @@ SURELY = 2.33
 """Standard errors by which a control that explains much must still leave more than the
 effects found: once in a hundred cases it does so by chance."""
 
-SHIFTS, FITTED = (-10, 3), 3
-"""First and last shift, in bins of 50 ms, of the start of an effect that does not last,
-and number of the best starts that are fitted: an event shows late, and a fit does not
-find a moment from far away."""
-
-
 NO_BETTER = "The effects found do not predict held-out motions better."
 """Sentence for the limits of a verdict."""
 
@@ -65,7 +57,7 @@ def established(
     show how much recordings of one robot differ.
     """
     said = list[str]()
-    model = _simplified(both, _retimed(both.without_tolerances(), model))
+    model = simplified(both, retimed(both.without_tolerances(), model))
     while model:
         fitted = fit_all(both, [model])[0]
         model = fitted.model
@@ -87,47 +79,6 @@ def established(
         group = next(group for group in groups_of(model) if gone in group)
         model = tuple(one for one in model if one not in group)
     return None, tuple(said)
-
-
-def _retimed(both: Predictor, model: Model) -> Model:
-    """The effects, those that do not last at the times that suit all data best.
-
-    A search sees a part of the data only, in which the moment itself may be missing.
-    """
-    for placed in model:
-        if not effect(placed.name).timed:
-            continue
-        rest = tuple(one for one in model if one is not placed)
-        options = [model]
-        for when in push_intervals(both, both.residuals([rest])[0]):
-            end_s = when.start_s + when.duration_s
-            for start_s in when.start_s + BIN_S * np.arange(*SHIFTS):
-                times = (float(start_s), end_s - float(start_s))
-                other = replace(placed, values=(*placed.values[:-2], *times))
-                if when.recording == placed.recording:
-                    options.append((*rest, other))
-        energies = (both.residuals(options) ** 2).sum(axis=1)
-        best = [options[int(k)] for k in np.argsort(energies)[:FITTED]]
-        model = min(fit_all(both, best), key=lambda fit: fit.energy).model
-    return model
-
-
-def _simplified(both: Predictor, model: Model) -> Model:
-    """The effects, in simpler forms where further values explain no more than chance.
-
-    A search compared the forms on a part of the data, and beside other errors.
-    """
-    for placed in model:
-        simpler = effect(placed.name).simpler(placed)
-        others = tuple(one for one in model if one is not placed)
-        taken = {one.key for one in others}
-        if simpler.key in {placed.key, *taken} or placed.tied:
-            continue
-        whole, part = fit_all(both, [model, (*others, simpler)])
-        fewer = len(placed.values) - len(simpler.values)
-        if part.energy - whole.energy < gain_of_noise(1, fewer):
-            model = part.model
-    return model
 
 
 def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None:

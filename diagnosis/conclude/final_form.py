@@ -1,0 +1,77 @@
+"""Gives the effects that a search found their final times, and their simplest forms.
+
+A search compares times and forms on a part of the data. Here all data count but those
+held out.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnosis.effects.library import effect
+from diagnosis.residuals.bursts import BIN_S, push_intervals
+from diagnosis.residuals.channels import MORE_THAN_NOISE
+from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.chance import independent_blocks
+from diagnosis.search.fitting import FittedModel, fit_all
+from diagnosis.search.judging import gain_of_noise
+
+SHIFTS, FITTED = (-10, 3), 3
+"""First and last shift, in bins of 50 ms, of the start of an effect that does not last,
+and number of the best starts that are fitted: an event shows late, and a fit does not
+find a moment from far away."""
+
+
+def retimed(both: Predictor, model: Model) -> Model:
+    """The effects, those that do not last at the times that suit all data best.
+
+    A search sees a part of the data only, in which the moment itself may be missing.
+    """
+    for placed in model:
+        if not effect(placed.name).timed:
+            continue
+        rest = tuple(one for one in model if one is not placed)
+        options = [model]
+        for when in push_intervals(both, both.residuals([rest])[0]):
+            end_s = when.start_s + when.duration_s
+            for start_s in when.start_s + BIN_S * np.arange(*SHIFTS):
+                times = (float(start_s), end_s - float(start_s))
+                other = replace(placed, values=(*placed.values[:-2], *times))
+                if when.recording == placed.recording:
+                    options.append((*rest, other))
+        energies = (both.residuals(options) ** 2).sum(axis=1)
+        best = [options[int(k)] for k in np.argsort(energies)[:FITTED]]
+        model = min(fit_all(both, best), key=lambda fit: fit.energy).model
+    return model
+
+
+def simplified(both: Predictor, model: Model) -> Model:
+    """The effects, in simpler forms where further values explain no more than chance.
+
+    A search compared the forms on a part of the data, and beside other errors.
+    """
+    for placed in model:
+        simpler = effect(placed.name).simpler(placed)
+        others = tuple(one for one in model if one is not placed)
+        taken = {one.key for one in others}
+        if simpler.key in {placed.key, *taken} or placed.tied:
+            continue
+        whole, part = fit_all(both, [model, (*others, simpler)])
+        fewer = len(placed.values) - len(simpler.values)
+        if _nats(both, whole, part) < gain_of_noise(1, fewer):
+            model = part.model
+    return model
+
+
+def _nats(both: Predictor, whole: FittedModel, part: FittedModel) -> float:
+    """Evidence [nats] for a fit against one with fewer values.
+
+    Where more is left than noise, errors last, and blocks of time are what counts.
+    """
+    gain = part.energy - whole.energy
+    if whole.energy <= MORE_THAN_NOISE**2 * both.noise_energy:
+        return gain
+    blocks = independent_blocks(both, whole.residual)[both.scored]
+    channels = len(np.unique(both.channel[both.scored]))
+    samples = len(np.unique(blocks)) * channels
+    return float(min(gain, 0.5 * samples * np.log(part.energy / whole.energy)))
