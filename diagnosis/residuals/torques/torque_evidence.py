@@ -245,7 +245,7 @@ def _motion(plant: Plant, trace: Trace, highest_hz: float, block_s: float) -> Mo
     each = range(len(plant.joints))
     by_torque = np.array([_torque_noise(trace, j) for j in each]) / np.sqrt(rows)
     least = LEAST_TORQUE * _rms(trace.torque_nm)
-    wobble = np.std((again.rate - found.rate)[inside], axis=0)
+    wobble = np.std((again.rate - found.rate)[inside], axis=0) if inside.any() else 0.0
     speed = np.sqrt(np.mean(velocity**2, axis=0))
     slowest = np.maximum(SLOW * speed, SURE * np.nan_to_num(wobble))
     counts = (np.abs(velocity) > slowest) & inside[:, None]

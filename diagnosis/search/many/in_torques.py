@@ -87,6 +87,8 @@ def in_asked_torques(fits: Fits) -> list[Model]:
     plant = with_used_torques(plant, list(known.values()))
     channels = shared_channels(plant, list(known.values()))
     own, other = (TorquePredictor(plant, some, channels) for some in both)
+    if not (own.scored.any() and other.scored.any()):
+        return []
     judge = Judge(own, other, fits.judge.rules, hooks=fits.judge.hooks)
     scaling = [name for name, kind in all_effects().items() if kind.scales_servo]
     tried = [Fits(judge, without, fits.weighs) for without in (scaling, ())]
@@ -98,13 +100,19 @@ def _as_well_known(traces: Sequence[Trace]) -> dict[str, Trace]:
     """Those traces whose torques are known nearly as well as those of most, by name.
 
     The noise of the torque that a motion needs is that of its smoothing, which leaves
-    much where the motion is faster than in other recordings.
+    much where the motion is faster than in other recordings. Where a recording is too
+    short to be smoothed, nothing is known.
     """
-    noise = [one.motion.noise_nm for one in traces if one.motion is not None]
-    usual = np.maximum(np.median(noise, axis=0), 1e-12) if noise else 1.0
-    times = [float(np.mean(one / usual)) for one in noise]
-    every = zip(traces, times, strict=True)
-    return {one.name: one for one, k in every if k <= MORE_THAN_NOISE}
+    noise = {
+        one: one.motion.noise_nm
+        for one in traces
+        if one.motion is not None and one.motion.counts.any()
+    }
+    if not noise:
+        return {}
+    usual = np.maximum(np.median(list(noise.values()), axis=0), 1e-12)
+    times = {one: float(np.mean(own / usual)) for one, own in noise.items()}
+    return {one.name: one for one, k in times.items() if k <= MORE_THAN_NOISE}
 
 
 def best_in_torques(fits: Fits) -> Judged:

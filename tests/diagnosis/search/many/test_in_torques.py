@@ -134,13 +134,30 @@ def test_without_commands_nothing_is_asked():
     assert in_asked_torques(fits_of(*torques)) == []
 
 
+class Recording:
+    """One whose torques have a noise, in rows that count or in none."""
+
+    def __init__(self, name, noise, counts=True):
+        self.name = name
+        self.motion = SimpleNamespace(
+            noise_nm=noise * np.ones(2), counts=np.full((5, 2), counts)
+        )
+
+
 def test_recordings_whose_torques_are_known_far_worse_are_left_out():
     noise = {"a": 1.0, "b": 1.2, "quick": 9.0, "c": 0.9}
-    traces = [
-        SimpleNamespace(name=name, motion=SimpleNamespace(noise_nm=one * np.ones(2)))
-        for name, one in noise.items()
-    ]
-    assert set(_as_well_known(traces)) == {"a", "b", "c"}
+    traces = [Recording(name, one) for name, one in noise.items()]
+    short = Recording("short", 0.0, counts=False)
+    assert set(_as_well_known([short, *traces])) == {"a", "b", "c"}
+    assert _as_well_known([short]) == {}
+
+
+def test_in_recordings_too_short_to_be_smoothed_nothing_is_found(monkeypatch):
+    """Smoothing below 2 Hz has edges of half a second."""
+    own = "diagnosis.residuals.torques.torque_evidence.cutoff_hz"
+    monkeypatch.setattr(own, lambda plant, traces: 2.0)
+    short = [measured(seed, gain=(0.5, 0.5), duration_s=0.8) for seed in range(2)]
+    assert in_asked_torques(fits_of(*short)) == []
 
 
 def test_of_a_promising_model_no_first_one_is_searched_for(rubs, monkeypatch):
