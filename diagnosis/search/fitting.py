@@ -119,11 +119,15 @@ class _Course:
         return self._residuals[x.tobytes()]
 
     def jacobian(self, x: FloatArray) -> FloatArray:
-        """(N, p) Jacobian at a point (p,), whose residual must be known."""
-        if x.tobytes() not in self._jacobians:
-            self._jacobians[x.tobytes()] = self._updated(x)
-        self._last = x.copy()
-        return self._jacobians[x.tobytes()]
+        """(N, p) Jacobian at a point (p,), whose residual must be known.
+
+        It is asked for at points from which the fit goes on. Those of others are not
+        needed any more, and take much memory.
+        """
+        key = x.tobytes()
+        own = self._jacobians[key] if key in self._jacobians else self._updated(x)
+        self._jacobians, self._last = {key: own}, x.copy()
+        return own
 
     def _differences(self, x: FloatArray) -> None:
         """Compute residual and Jacobian at a point (p,) by finite differences."""

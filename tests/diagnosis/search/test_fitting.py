@@ -7,7 +7,8 @@ from made_up_traces import arm, recorded
 from diagnosis.effects.library import all_effects, effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import Channels, Predictor
-from diagnosis.search.fitting import Coordinates, fit_all
+from diagnosis.search.fitting import Coordinates, _Course, fit_all
+from diagnosis.search.nudges import nudges_of
 
 NOISE_RAD = 4e-4
 CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
@@ -192,3 +193,19 @@ def test_values_that_no_data_show_do_not_slow_the_others_down():
     (found,) = fit_all(predictor, [(friction, always)], steps=4)
     assert found.model[0].values[0] == pytest.approx(0.3, rel=0.02)
     assert found.model[1].values[3:] == pytest.approx((-1.0, 30.0))
+
+
+def test_a_fit_keeps_no_more_jacobians_than_it_needs():
+    """That where it goes on from, and those of points tried since."""
+    predictor = predictor_of(("servo_gain", "elbow", 0.7), noise_rad=0.0)
+    start = (PlacedEffect("servo_gain", "elbow", (1.0,)),)
+    coordinates = Coordinates(predictor.plant, start)
+    nudges = nudges_of(predictor, coordinates)
+    for followed in (True, False):
+        course = _Course(coordinates, nudges, followed, predictor.residuals)
+        for x in np.linspace(0.0, 0.3, 4)[:, None]:
+            course.residual(x)
+            assert len(course._jacobians) <= 2
+            own = course.jacobian(x)
+            assert course.jacobian(x) is own
+            assert len(course._jacobians) == 1
