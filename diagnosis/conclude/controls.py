@@ -22,6 +22,9 @@ errors before the fit."""
 STEPS = 4
 """Most steps of the fit of a wrong model, enough for a comparison."""
 
+AT_ONCE = 8
+"""Number of models with many effects that are fitted side by side, to limit memory."""
+
 
 def controls_of(
     predictor: Predictor, model: Model, alike: Collection[str], rng: np.random.Generator
@@ -55,11 +58,15 @@ def _main(predictor: Predictor, model: Model) -> tuple[PlacedEffect, Model]:
         return model[0], ()
     smaller = without_each(model)
     (whole,) = fit_all(predictor, [model], 1)
-    known = [whole.jacobian_of(one) for one in smaller]
-    fits = fit_all(predictor, smaller, STEPS, followed=True, jacobians=known)
-    worst = max(range(len(smaller)), key=lambda i: fits[i].energy)
+    left = list[tuple[float, Model]]()
+    for first in range(0, len(smaller), AT_ONCE):
+        some = smaller[first : first + AT_ONCE]
+        known = [whole.jacobian_of(one) for one in some]
+        fits = fit_all(predictor, some, STEPS, followed=True, jacobians=known)
+        left += [(fit.energy, fit.model) for fit in fits]
+    worst = max(range(len(smaller)), key=lambda i: left[i][0])
     main = next(one for one in model if one not in smaller[worst])
-    return main, fits[worst].model
+    return main, left[worst][1]
 
 
 def _by_lot(
