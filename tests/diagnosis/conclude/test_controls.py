@@ -49,7 +49,9 @@ def test_the_same_effect_elsewhere_does_its_best_and_is_worse(predictor):
     assert energy(predictor, (placed,)) > 20 * energy(predictor, (TRUTH,))
 
 
-def test_of_a_pair_the_main_effect_is_replaced(predictor):
+@pytest.mark.parametrize("at_once", [1, 8])
+def test_of_a_pair_the_main_effect_is_replaced(predictor, monkeypatch, at_once):
+    monkeypatch.setattr("diagnosis.conclude.controls.AT_ONCE", at_once)
     friction = PlacedEffect("viscous_friction", "shoulder", (0.01,))
     for pair in ((TRUTH, friction), (friction, TRUTH)):
         found = controls(predictor, *pair)
