@@ -103,9 +103,9 @@ class Learned:
         if first._creeps():
             material = _softened(material)
             first = first._again(material, channels, given, threads, hooks)
-        return (
-            first if first.noise else first._over_noise(channels, given, threads, hooks)
-        )
+        if first.noise:
+            return first
+        return first._over_noise(channels, given, threads, hooks)
 
     def _again(
         self,

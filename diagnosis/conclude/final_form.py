@@ -12,7 +12,7 @@ from diagnosis.effects.library import effect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.chance import independent_blocks
+from diagnosis.search.chance import independent_samples
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import gain_of_noise
 
@@ -71,7 +71,5 @@ def _nats(both: Predictor, whole: FittedModel, part: FittedModel) -> float:
     gain = part.energy - whole.energy
     if whole.energy <= MORE_THAN_NOISE**2 * both.noise_energy:
         return gain
-    blocks = independent_blocks(both, whole.residual)[both.scored]
-    channels = len(np.unique(both.channel[both.scored]))
-    samples = len(np.unique(blocks)) * channels
+    samples = independent_samples(both, whole.residual)
     return float(min(gain, 0.5 * samples * np.log(part.energy / whole.energy)))

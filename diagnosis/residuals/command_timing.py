@@ -68,9 +68,7 @@ class CommandTiming:
 
 
 def jumps_of(traces: Sequence[Trace], channels: Channels) -> IntArray:
-    """(rows, c) number of the last jump of the command of a channel's joint.
-
-    Of the rows that are compared.
+    """(rows, c) number of the last jump of a channel's command, in compared rows.
 
     Joints whose commands jump in the same row share a number. 0 before the first jump
     of a recording, and for channels of no joint.

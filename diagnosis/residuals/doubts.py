@@ -90,17 +90,13 @@ class Doubts:
         """What is taken out of some `entries` of a residual of a `whole`.
 
         These are of some of its recordings (`traces`), in some of its windows (`runs`).
-        Clock, noise and blocks are one's own.
+        Weights, clock, noise and blocks are one's own.
         """
         commands = whole.commands and whole.commands.part(traces)
         start = whole.start and whole.start.part(runs.start, runs.stop)
         nuisance = whole.nuisance and whole.nuisance.part(entries)
         tolerance = whole.tolerance and whole.tolerance.part(entries)
-        trust = whole.trust
-        if trust is not None:
-            c = trust.shape[1]
-            trust = trust[entries.start // c : entries.stop // c]
-        some = replace(self, trust=trust, commands=commands, start=start)
+        some = replace(self, commands=commands, start=start)
         return replace(some, nuisance=nuisance, tolerance=tolerance)
 
     def taking(self, nuisance: Nuisance, beyond: Tolerance) -> "Doubts":

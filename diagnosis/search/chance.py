@@ -60,6 +60,13 @@ def independent_blocks(predictor: Predictor, residual: FloatArray) -> IntArray:
         length *= 2
 
 
+def independent_samples(predictor: Predictor, residual: FloatArray) -> int:
+    """Number of independent blocks of an (N,) residual, times that of its channels."""
+    blocks = independent_blocks(predictor, residual)[predictor.scored]
+    channels = predictor.channel[predictor.scored]
+    return len(np.unique(blocks)) * len(np.unique(channels))
+
+
 def by_chance(gains: FloatArray) -> float:
     """The gain [nats] that the best candidate exceeds by chance in 1 of 100 cases.
 

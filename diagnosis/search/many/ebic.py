@@ -14,7 +14,7 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.residuals.ties import kinds_of, number_of_values
-from diagnosis.search.chance import independent_blocks
+from diagnosis.search.chance import independent_samples
 from diagnosis.search.judging import places_of_effects
 from diagnosis.search.result import Judged
 from groundwalk.arrays import FloatArray
@@ -42,11 +42,9 @@ class Ebic:
 
         The selection data count as well, with as long blocks.
         """
-        blocks = independent_blocks(fit, residual)
-        counted = len(np.unique(blocks[fit.scored]))
-        channels = len(np.unique(fit.channel[fit.scored]))
         both = fit.scored.sum() + select.scored.sum()
-        samples = float(counted * channels * both / fit.scored.sum())
+        counted = independent_samples(fit, residual)
+        samples = float(counted * both / fit.scored.sum())
         rows = sum(trace.ticks for trace in fit.traces)
         return cls(samples, places_of_effects(fit), len(fit.plant.joints), rows)
 

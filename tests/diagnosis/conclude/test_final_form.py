@@ -20,12 +20,8 @@ def form(monkeypatch, left, gain, blocks):
     whole = SimpleNamespace(model=(PEAK,), energy=left, residual=np.ones(1000))
     part = SimpleNamespace(model=(PLAIN,), energy=left + gain)
     monkeypatch.setattr(final_form, "fit_all", lambda both, models: (whole, part))
-    monkeypatch.setattr(
-        final_form, "independent_blocks", lambda both, left: np.arange(1000) % blocks
-    )
-    both = SimpleNamespace(
-        noise_energy=500.0, scored=np.full(1000, True), channel=np.zeros(1000, int)
-    )
+    monkeypatch.setattr(final_form, "independent_samples", lambda both, left: blocks)
+    both = SimpleNamespace(noise_energy=500.0)
     (placed,) = simplified(both, (PEAK,))
     return placed.name
 
