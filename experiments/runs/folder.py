@@ -62,7 +62,7 @@ class FolderLock:
 
 
 CONFIG, PROVENANCE, RESULT = "config.json", "provenance.json", "result.json"
-CHECKPOINT, HISTORY, RECORDINGS = "checkpoint.pkl", "history.json", "recordings"
+CHECKPOINT, HISTORY, RECORDINGS = "checkpoint.json", "history.json", "recordings"
 FREE_WHEN_RESUMED = frozenset({"out", "resume", "json", "threads"})
 PACKAGES = (
     "mujoco", "pybullet", "cma", "numpy", "scipy", "rerun-sdk", "pyarrow", "torch",

@@ -6,18 +6,18 @@ the search the means of all generations are therefore rated again, with new rand
 numbers, and the best one is the result.
 """
 
-import pickle
+import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from experiments.runs.progress import progress
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, RunFolderError
-from groundwalk.files import write_bytes
+from groundwalk.files import write_text
 from walk_engine.gait import PARAMETERS, Gait, from_unit, to_unit
 
 SMALLEST_POPULATION = 4
@@ -48,7 +48,11 @@ class _NormalSource:
 class GaitSearch:
     """CMA-ES over gaits: `ask` draws samples, `tell` takes their rewards.
 
-    A search can be saved as bytes, and then goes on with the same bits.
+    All follows from its arguments and the rewards: a search that is told the same goes
+    on with the same bits.
+
+    Attributes:
+      told: rewards of all generations so far.
     """
 
     def __init__(
@@ -74,6 +78,7 @@ class GaitSearch:
             to_unit(start.to_vector()).tolist(), sigma, options
         )
         self._asked: list[FloatArray] = []
+        self.told: list[list[float]] = []
 
     def ask(self) -> FloatArray:
         """Draw the vectors (population, 16) of the gaits to try in this generation."""
@@ -83,6 +88,7 @@ class GaitSearch:
     def tell(self, rewards: FloatArray) -> None:
         """Update the search with the rewards (population,) of the gaits from `ask`."""
         self._strategy.tell(self._asked, (-rewards).tolist())
+        self.told.append(rewards.tolist())
 
     @property
     def mean(self) -> Gait:
@@ -99,19 +105,6 @@ class GaitSearch:
     def sigma(self) -> float:
         """The overall step size of CMA-ES, as a share of the parameters' ranges."""
         return float(self._strategy.sigma)
-
-    def to_bytes(self) -> bytes:
-        """The state of the search between two generations, for `from_bytes`."""
-        self._asked = []
-        return pickle.dumps(self)
-
-    @classmethod
-    def from_bytes(cls, content: bytes) -> Self:
-        """Restore a search from `to_bytes`; unpickles, so only for trusted files."""
-        search = pickle.loads(content)
-        if not isinstance(search, cls):
-            raise BadValueError("these bytes hold no gait search")
-        return search
 
 
 Entry = dict[str, Any]
@@ -161,7 +154,7 @@ def run_search(
 
     Args:
       checkpoint: a file that is written after every generation.
-      begin: makes the search if there is no checkpoint.
+      begin: makes the search, which is told what the checkpoint holds, if there is one.
       generation: function of the generation's number (from 0) and the search, which
         asks the search for gaits, rates them, tells the rewards and returns a record.
       generations: total number of generations.
@@ -172,16 +165,18 @@ def run_search(
       (generations + 1, 16) vectors of the mean gaits, from the first to the last.
 
     Raises:
-      RunFolderError: the checkpoint is damaged, or of an old version of groundwalk.
+      RunFolderError: the checkpoint is damaged, of an old version of groundwalk, or of
+        another search.
     """
-    search, entries = _read(checkpoint) if checkpoint.exists() else (begin(), [])
+    search = begin()
+    entries = _resumed(checkpoint, search)
     with progress("search", generations, done=len(entries)) as bar:
         for number in range(len(entries), generations):
             mean = dict(search.mean)
             entry = generation(number, search)
             entries.append({"generation": number, MEAN: mean, **entry})
-            state = {"search": search.to_bytes(), "history": entries}
-            write_bytes(checkpoint, pickle.dumps(state))
+            state = {"rewards": search.told, "history": entries}
+            write_text(checkpoint, json.dumps(state))
             note(entries)
             bar.advance(f"mean gait {entries[-1]['mean_reward']:.1f} cm/s")
     means = [Gait.from_mapping(entry[MEAN]) for entry in entries]
@@ -223,15 +218,30 @@ def tune(
     return best_mean(means, np.stack(ratings))
 
 
-def _read(checkpoint: Path) -> tuple[GaitSearch, list[Entry]]:
+def _resumed(checkpoint: Path, search: GaitSearch) -> list[Entry]:
+    """The records in a checkpoint; tells the search the rewards that it holds."""
+    if not checkpoint.exists():
+        if checkpoint.with_suffix(".pkl").exists():
+            raise RunFolderError(
+                f"{checkpoint.with_suffix('.pkl')} is of an earlier version, whose "
+                "searches cannot go on; begin again in another folder"
+            )
+        return []
     try:
-        state = pickle.loads(checkpoint.read_bytes())
-    except (pickle.UnpicklingError, EOFError, ValueError) as error:
+        state = json.loads(checkpoint.read_bytes())
+        history, rewards = list(state["history"]), list(state["rewards"])
+        told = [np.array(one, float) for one in rewards]
+        means = [Gait.from_mapping(entry[MEAN]).to_vector() for entry in history]
+        generations = list(zip(means, told, strict=True))
+    except (ValueError, KeyError, TypeError, BadValueError) as error:
         raise RunFolderError(f"{checkpoint} is damaged: {error}") from None
-    search, entries = GaitSearch.from_bytes(state["search"]), state["history"]
-    if not all(MEAN in entry for entry in entries):
-        raise RunFolderError(
-            f"{checkpoint} is of an earlier version, which did not keep the mean "
-            "gaits; begin again in another folder"
-        )
-    return search, entries
+    for mean, one in generations:
+        if not np.allclose(search.mean.to_vector(), mean, rtol=1e-9):
+            raise RunFolderError(
+                f"{checkpoint} is of another search: its mean gaits are not those that "
+                "follow from this run's settings; begin again in another folder"
+            )
+        if len(search.ask()) != len(one):
+            raise RunFolderError(f"{checkpoint} is of another size of population")
+        search.tell(one)
+    return history

@@ -77,7 +77,7 @@ def check_run_folder(folder: Path, result):
         "config.json",
         "provenance.json",
         "history.json",
-        "checkpoint.pkl",
+        "checkpoint.json",
         "result.json",
         "result.md",
         "report.html",
@@ -183,8 +183,8 @@ def test_the_history_says_what_the_search_did(plain):
 
 def test_a_damaged_checkpoint_is_named(tmp_path):
     folder = RunFolder(tmp_path)
-    (tmp_path / "checkpoint.pkl").write_bytes(b"\x80\x04 cut off")
-    with pytest.raises(RunFolderError, match=r"checkpoint\.pkl is damaged"):
+    (tmp_path / "checkpoint.json").write_bytes(b"\x80\x04 cut off")
+    with pytest.raises(RunFolderError, match=r"checkpoint\.json is damaged"):
         search_gait(SearchPlan(population=6, generations=2), folder)
 
 

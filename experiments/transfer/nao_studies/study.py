@@ -227,7 +227,9 @@ class NaoStudy:
     def _find(self, method: str, step: int) -> tuple[Gait, dict[str, Any]]:
         """The gait of a method, and the number of real walks that it took."""
         config = self._config
-        checkpoint = self._folder.path / f"search_{method}_{step}.pkl".replace(" ", "_")
+        checkpoint = self._folder.path / f"search_{method}_{step}.json".replace(
+            " ", "_"
+        )
         if method == START:
             return START_GAIT, {"real_walks": 0}
         if method == ANE:
@@ -281,7 +283,7 @@ class NaoStudy:
         """The gait by action noise envelope: of all noise levels the best on real."""
         found = []
         for level in ENVELOPES_RAD:
-            path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.pkl")
+            path = checkpoint.with_suffix(f".{1000 * level:.0f}mrad.json")
             sim = GroundedSim(action_envelope(level))
             rater = partial(rate_in_sim, sim, self._config.repeats, WALK)
             gait = self._tune(path, START_GAIT, rater)
