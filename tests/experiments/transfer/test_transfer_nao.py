@@ -62,7 +62,7 @@ def test_a_small_study_runs_and_resumes_to_the_same_numbers(tmp_path):
     assert {"result.md", "transfer_nao.png", HISTORY} <= kept
     # as if killed after the first grounding step
     whole.write_json(HISTORY, {"cells": cells[:2]})
-    (whole.path / "search_SGAT_2.pkl").unlink()
+    (whole.path / "search_SGAT_2.json").unlink()
     main(TransferNao(resume=whole.path, json=True))
     assert whole.read_json("result.json")["cells"] == cells
 
