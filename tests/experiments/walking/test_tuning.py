@@ -27,7 +27,7 @@ class Slope:
 @pytest.mark.parametrize("cliff_m_s", [0.30, np.inf])
 def test_a_mean_that_went_over_a_cliff_is_not_what_a_search_finds(tmp_path, cliff_m_s):
     rater, seed = Slope(cliff_m_s), np.random.SeedSequence(2)
-    found = tune(tmp_path / "search.pkl", gaits.get("start"), BUDGET, rater, seed)
+    found = tune(tmp_path / "search.json", gaits.get("start"), BUDGET, rater, seed)
     assert rater.means[-1] > 0.30
     safe = rater.means[rater.means <= cliff_m_s]
     assert found["max_forward"] == pytest.approx(safe.max())
@@ -36,7 +36,7 @@ def test_a_mean_that_went_over_a_cliff_is_not_what_a_search_finds(tmp_path, clif
 def test_a_finished_search_finds_the_same_again(tmp_path):
     def found(rater):
         seed = np.random.SeedSequence(2)
-        return tune(tmp_path / "search.pkl", gaits.get("start"), BUDGET, rater, seed)
+        return tune(tmp_path / "search.json", gaits.get("start"), BUDGET, rater, seed)
 
     assert dict(found(Slope(0.30))) == dict(found(again := Slope(0.30)))
     assert again.rated == RATINGS * (BUDGET.generations + 1)
@@ -44,5 +44,5 @@ def test_a_finished_search_finds_the_same_again(tmp_path):
 
 def test_a_budget_counts_every_walk(tmp_path):
     rater, seed = Slope(np.inf), np.random.SeedSequence(2)
-    tune(tmp_path / "search.pkl", gaits.get("start"), BUDGET, rater, seed)
+    tune(tmp_path / "search.json", gaits.get("start"), BUDGET, rater, seed)
     assert rater.rated == BUDGET.rated
