@@ -1,5 +1,6 @@
 """Fits the effects that a search found again, and tests them on held-out data."""
 
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -94,6 +95,7 @@ def _test_of(
     nominal = data.learned, data.test
     if learned.noise is None and not learned.inexact and may_be_more:
         model, *sims = with_unusual_ones(data, model, least_gain)
+        model, *sims = _settled(sims[0], sims[1], model)
     else:  # the healthy robot has it as well, or no model is exact
         sims = list(data.calibrated(model))
     if learned.inexact:
@@ -120,3 +122,20 @@ def _test_of(
     elif known and not said:
         said = (NOTHING,)
     return Tested(refitted, nominal, pair, fit, said, judged.limits)
+
+
+def _settled(
+    learned: Predictor, test: Predictor, model: Model
+) -> tuple[Model, Predictor, Predictor]:
+    """The likeliest values of a model beside the likeliest small mismatch.
+
+    Also returns predictors of learned and of held-out data that are calibrated there.
+    They are given calibrated at the model.
+    """
+    if not (model and learned.fits_nuisance):
+        return model, learned, test
+    learned, test = copy(learned), copy(test)
+    model = learned.settle(model)
+    test.take_nuisance(learned.nuisance, model)
+    test.correct(model)
+    return model, learned, test

@@ -86,7 +86,10 @@ class Effect(ABC):
 
     stiff: ClassVar[bool] = False
     """Whether the effect is a spring in the drive, whose stiffness is the first value.
-    If so, it is simulated at half the usual time step."""
+    """
+
+    finer: ClassVar[int] = 1
+    """Number of steps, 1, 2 or 4, that simulations with the effect take for one."""
 
     joint_by_joint: ClassVar[bool] = True
     """Whether one simulation may try the effect at all joints together, because at one

@@ -102,6 +102,7 @@ class Backlash(NumberEffect, ServoEffect):
 
     name = "backlash"
     native = False
+    finer = 4  # within a step teeth touch or not, and light joints rattle
     quantity = "gap_rad"
     usual = (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
     words = EffectWords(
@@ -135,6 +136,7 @@ class JointElasticity(JointEffect):
     name = "joint_elasticity"
     native = False
     stiff = True
+    finer = 2  # its motor oscillates too fast for whole steps
     joint_by_joint = False
     on_every_servo = False
     main_parameters = ("stiffness",)

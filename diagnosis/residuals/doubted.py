@@ -66,6 +66,11 @@ class Doubted(ABC):
         """Small mismatch of the nominal model, which is in all simulations, if any."""
         return self._doubts.nuisance
 
+    @property
+    def fits_nuisance(self) -> bool:
+        """Whether small mismatch is fitted, not known from the healthy robot."""
+        return self.nuisance is not None and not self._doubts.is_known
+
     def evenly(self) -> Self:
         """A copy with residuals in one unit at all speeds; nothing is tolerated."""
         start = self._doubts.start
@@ -115,6 +120,26 @@ class Doubted(ABC):
         self.correct(model)
         return model
 
+    def settle(self, model: Model) -> Model:
+        """Calibrate where a model's values and small mismatch are likeliest together.
+
+        Returns the model with these values. `calibrate` keeps given values; fits of
+        values take what small mismatch changes from there, to first order. Friction
+        and play bend both ways, so that these in turn end far from the likeliest.
+        """
+        some = self._with(nuisance=None, tolerance=self._beyond())
+
+        def measured(beside: Model) -> None:
+            some.correct(beside)
+            some._doubt_times(beside)
+
+        fit = NuisanceFit(some.residuals, measured, model)
+        found, model = fit.settled_with_values(self.nuisance or no_nuisance(self))
+        self._doubts = self._doubts.taking(found, self._beyond())
+        self.correct(model)
+        self._doubt_times(model)
+        return model
+
     def doubt(self, model: Model = (), tolerances: bool = True) -> None:
         """Find what wrong start states change, and small mismatch of the nominal model.
 
@@ -158,7 +183,7 @@ class Doubted(ABC):
 
     def moved_to(self, model: Model) -> Self:
         """A copy with the small mismatch that is likeliest beside another model."""
-        if self.nuisance is None or self._doubts.is_known:
+        if self.nuisance is None or not self.fits_nuisance:
             return self
         return self._taking(self.nuisance_fit(model).moved(self.nuisance))
 

@@ -18,18 +18,23 @@ class IntegrationError:
     Attributes:
       whole: for simulations with a step.
       half: for those with half of it.
+      quarter: for those with a quarter of it.
       extrapolated: for the extrapolation from those with half and a quarter of it.
     """
 
     whole: FloatArray
     half: FloatArray
+    quarter: FloatArray
     extrapolated: FloatArray
 
     def part(self, rows: slice) -> "IntegrationError":
         """The integration error in some rows."""
-        return IntegrationError(
-            self.whole[rows], self.half[rows], self.extrapolated[rows]
-        )
+        return IntegrationError(*(one[rows] for one in vars(self).values()))
+
+    @property
+    def of_parts(self) -> dict[int, FloatArray]:
+        """What to add where so many steps are taken for one."""
+        return {1: self.whole, 2: self.half, 4: self.quarter}
 
     @classmethod
     def of(
@@ -46,5 +51,6 @@ class IntegrationError:
         coarse, fine, finer = (found[one] for one in finest)
         right = 2 * finer - fine
         extrapolated = right - (2 * found[own[2]] - found[own[1]])
-        error = cls(right - found[own[0]], right - found[own[1]], extrapolated)
+        whole, half, quarter = (right - found[one] for one in own)
+        error = cls(whole, half, quarter, extrapolated)
         return error, (finer - fine) - (fine - coarse) / 2

@@ -29,6 +29,10 @@ BLOCK_S = 0.5
 """Length [s] of the time blocks of which standard errors take account: errors in
 different blocks count as independent, those in one block may be correlated."""
 
+NEARBY = 0.01
+"""Relative changes of effects around which an integration error is measured: they are
+to and fro, so that only what is random differs."""
+
 WORST = 1e7
 """Residuals are clipped to this size [noise]; a simulation that diverges gets it in all
 rows after that."""
@@ -98,7 +102,7 @@ class Predictor(Doubted):
         )
         self._scored = np.isfinite(self._measured) & ~self._replays.warming()[:, None]
         none = np.zeros((sum(rows), c))
-        self._error = IntegrationError(none, none, none)
+        self._error = IntegrationError(none, none, none, none)
         self._ends = np.cumsum(rows).tolist()
         self._on_replay = on_replay
         self.blocks = blocks_of(self._replays.runs, self._scored.any(axis=1))
@@ -210,9 +214,10 @@ class Predictor(Doubted):
         large if the simulation of `model` diverges. Fast errors that the robot model
         makes for the healthy robot are noise, too.
         """
+        near = self._near(self._doubts.given(model))
 
         def values(step_s: float) -> FloatArray:
-            return np.asarray(self._replayed([model], step_s)[0])
+            return np.asarray(np.mean(self._values(near, step_s), axis=0))
 
         self._error, left = IntegrationError.of(values, self.step_s, self.finest_s)
         known = self._doubts.noise
@@ -261,18 +266,17 @@ class Predictor(Doubted):
 
         Only those in `seen_rows` of the traces.
 
-        A model with a spring between motor and link is simulated with half the time
-        step: its motor oscillates too fast for the full one.
+        Models are simulated with as many steps for one as their effects need.
         """
-        stiff = [any(effect(placed.name).stiff for placed in one) for one in models]
+        finer = [
+            max((effect(placed.name).finer for placed in one), default=1)
+            for one in models
+        ]
         predicted = np.empty((len(models), *self._error.whole.shape))
-        for is_stiff, step_s, correction in (
-            (False, self.step_s, self._error.whole),
-            (True, self.step_s / 2, self._error.half),
-        ):
-            rows = [i for i, one in enumerate(stiff) if one is is_stiff]
+        for part, correction in self._error.of_parts.items():
+            rows = [i for i, one in enumerate(finer) if one == part]
             if rows:
-                some = self._replayed([models[i] for i in rows], step_s)
+                some = self._replayed([models[i] for i in rows], self.step_s / part)
                 predicted[rows] = some + correction
         return predicted
 
@@ -323,10 +327,36 @@ class Predictor(Doubted):
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
         return np.where(self._scored, wrong, 0.0)
 
+    def _near(self, given: Model) -> list[Model]:
+        """A model, or some around it where steps move simulations at random.
+
+        When dry friction lets a joint go, or teeth touch, depends on anything. If the
+        integration error were measured at the model itself, what was random there would
+        be taken out of it and of no other: a fit would not leave it.
+        """
+        is_rough = any(
+            effect(one.name).jumps or effect(one.name).finer > 1 for one in given
+        )
+        if self.plant.base == "floating" or not is_rough:
+            return [given]
+        return [
+            tuple(
+                effect(one.name).stretched(
+                    self.plant, one, 1 + NEARBY * sign * (-1) ** (i // every)
+                )
+                for i, one in enumerate(given)
+            )
+            for every in (1, 2)
+            for sign in (-1, 1)
+        ]
+
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values without corrections."""
-        given = [self._doubts.given(model) for model in models]
+        return self._values([self._doubts.given(model) for model in models], step_s)
+
+    def _values(self, given: Sequence[Model], step_s: float) -> FloatArray:
+        """(n, rows, c) simulated values of models with all that they are given."""
         predicted = self._replays.values(given, step_s)
         if self._on_replay is not None:
-            self._on_replay(len(models) * round(self.step_s / step_s))
+            self._on_replay(len(given) * round(self.step_s / step_s))
         return predicted

@@ -92,6 +92,14 @@ class FitPoint:
         unit[len(changes) :] = scale
         return each * unit * unit[:, None], left * unit
 
+    def errors_of_x(self) -> FloatArray:
+        """(p,) standard errors of the values, the errors being uncertain as well."""
+        known, _ = self.products(1.0)
+        k = len(self.errors.sizes)
+        known[range(k), range(k)] += 1.0
+        spread = np.linalg.pinv(known, hermitian=True)
+        return np.asarray(np.sqrt(np.diag(spread)[k:]))
+
     @property
     def is_near(self) -> bool:
         """Whether changes were simulated near this point."""

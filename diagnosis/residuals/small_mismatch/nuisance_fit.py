@@ -11,7 +11,7 @@ from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.fit_point import FitPoint
 from diagnosis.residuals.small_mismatch.likely_sizes import likeliest
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
 
 NUDGE = 0.5
 """Step of finite differences, in standard deviations."""
@@ -19,6 +19,17 @@ NUDGE = 0.5
 NUDGE_X = 0.02
 """Step of finite differences of a model's values, in scaled coordinates, in which they
 are of order one."""
+
+WIDE = 1.0
+"""Step of differences to both sides, in standard deviations: over a wider one what
+friction and play do at random changes less of a difference."""
+
+AT_ONCE = 8
+"""Errors and values whose changes are simulated at once, for memory."""
+
+STILL, MOST_ROUNDS = 0.5, 8
+"""Share of its standard error by which a value may move in the last round of a fit, and
+most rounds of it; three to six suffice mostly."""
 
 FLAT = 100.0
 """Standard deviation of values of a model before anything is measured, in scaled
@@ -105,6 +116,29 @@ class NuisanceFit:
         begun = self._linear(self._placed(self._begun(start).errors, x))
         now = self._converged(begun, closer=SETTLED)
         return now.corrected, self._coordinates(start).model_at(now.x)
+
+    def settled_with_values(self, start: Nuisance) -> tuple[Nuisance, Model]:
+        """The likeliest errors and values of the model, where neither moves any more.
+
+        In each round what they change is simulated to both sides, and the integration
+        error is measured again: dry friction and play bend the way to the likeliest
+        ones, on which single steps end too early.
+        """
+        x = self._coordinates(start).of(self.model)
+        now = self._placed(self._begun(start).errors, x)
+        self.correct(self._beside(now.errors, now.x))
+        now = best = self._centred(self._at(now))
+        for _ in range(MOST_ROUNDS):
+            before, now = now, self._step(now)
+            self.correct(self._beside(now.errors, now.x))
+            now = self._at(now)
+            is_still = np.abs(now.x - before.x) <= STILL * before.errors_of_x()
+            if np.all(is_still) and now.goal > (1 - ENOUGH) * before.goal:
+                best = min(now, best, key=lambda point: point.goal)
+                break
+            now = self._centred(now)
+            best = min(now, best, key=lambda point: point.goal)
+        return best.errors, self._coordinates(start).model_at(best.x)
 
     def _converged(self, now: FitPoint, closer: float = CLOSER) -> FitPoint:
         """The point after rounds of steps, as long as these approach the noise.
@@ -225,6 +259,40 @@ class NuisanceFit:
             changes -= now.left
             changes /= sizes[:, None]
         return replace(errors, changes=changes, seen_at=(errors.sizes, self._keys))
+
+    def _centred(self, now: FitPoint) -> FitPoint:
+        """The point, with what errors and values change there to both sides."""
+        errors, k, p = now.errors, len(now.errors.units), len(now.x)
+        ends = zip(errors.bounds(), self._coordinates(errors).bounds(), strict=True)
+        low, high = (np.concatenate(both) for both in ends)
+        far = np.append(np.full(k, WIDE), np.full(p, NUDGE_X))
+        at = np.append(errors.sizes, now.x)
+        middle = np.clip(at, low + far, high - far)
+        free = np.append(errors.free_of(self._keys), np.ones(p, bool))
+        found = np.zeros((k + p, len(now.left)))
+        for some in np.split(np.arange(k + p), range(AT_ONCE, k + p, AT_ONCE)):
+            own, tried = some[free[some]], list[Model]()
+            for i in own:
+                for side in (-1, 1):
+                    there = np.where(np.arange(k + p) == i, middle + side * far, at)
+                    tried.append(self._beside(errors.at(there[:k]), there[k:]))
+            if tried:
+                seen = self.ask(tried)
+                found[own] = (seen[1::2] - seen[::2]) / (2 * far[own, None])
+        if not free.all():
+            found[~free] = self._alone(now, ~free[:k]) - now.left
+        seen_at = errors.sizes, self._keys
+        errors = replace(errors, changes=found[:k], seen_at=seen_at)
+        return now.simulated(errors, found[k:], now.x)
+
+    def _alone(self, now: FitPoint, taken: BoolArray) -> FloatArray:
+        """(m, N) residuals with one standard deviation of each error that is `taken`.
+
+        These are at places of the model's effects.
+        """
+        units = [now.errors.units[i] for i in np.flatnonzero(taken)]
+        beside = self._beside(now.errors, now.x)
+        return self.ask([(*beside, unit) for unit in units])
 
     def _beside(self, errors: Nuisance, x: FloatArray) -> Model:
         """The model, with other values if any, and errors where it has none."""

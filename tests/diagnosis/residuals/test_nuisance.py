@@ -1,5 +1,7 @@
 """Small mismatch of the nominal model: likely values, also beside effects."""
 
+import zlib
+
 import numpy as np
 import pytest
 from made_up_traces import arm
@@ -185,6 +187,53 @@ def test_a_factor_of_two_in_a_constant_of_the_fit_does_not_matter(
     world = Linear({GAIN: 1.5}, noise=3.0)
     found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
     assert not found.sizes.any()
+
+
+class Rough(Linear):
+    """Residuals to which each change, however small, adds something else at random."""
+
+    def _left(self, far):
+        random = np.random.default_rng(zlib.crc32(far.tobytes()))
+        return super()._left(far) + 0.8 * random.standard_normal(ROWS)
+
+
+@pytest.fixture(scope="module")
+def rough_worlds():
+    true = {GAIN: 4.0, "servo_gain@shoulder": -2.0, OTHERS[0]: 1.0}
+    return [Rough(true, seed=seed, bend=0.3) for seed in range(6)]
+
+
+def off(worlds, settle):
+    """Rms error, in standard deviations, of errors and values found together."""
+    start, far = (PlacedEffect("servo_gain", "elbow", (1.0,)),), []
+    for world in worlds:
+        fit = NuisanceFit(world.ask, world.correct, start)
+        found, model = settle(fit, world.nuisance)
+        far.append(found.sizes + world.far(model) - world.true)
+    return np.sqrt(np.mean(np.square(far)))
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("name", ["WIDE", "STILL", "MOST_ROUNDS", "NUDGE_X", "FLAT"])
+def test_errors_and_values_settle_where_simulations_are_rough(
+    name, factor, rough_worlds, monkeypatch
+):
+    value = getattr(nuisance_fit, name)
+    monkeypatch.setattr(nuisance_fit, name, type(value)(value * factor))
+    assert off(rough_worlds, NuisanceFit.settled_with_values) < 0.075
+
+
+def test_differences_to_one_side_do_not_lead_there(rough_worlds):
+    assert off(rough_worlds, NuisanceFit.fitted_with_values) > 0.09
+
+
+@pytest.mark.parametrize("room", [1, 100])
+def test_it_does_not_matter_how_many_changes_are_simulated_at_once(
+    room, rough_worlds, monkeypatch
+):
+    usual = off(rough_worlds[:1], NuisanceFit.settled_with_values)
+    monkeypatch.setattr(nuisance_fit, "AT_ONCE", room)
+    assert off(rough_worlds[:1], NuisanceFit.settled_with_values) == usual
 
 
 SHARES = tuple(one for one in nuisance_fit.TRIED if not one[1])

@@ -7,7 +7,7 @@ import pytest
 from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
-from diagnosis.effects.joints import JointElasticity
+from diagnosis.effects.joints import Backlash, JointElasticity
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.predictor import WORST, Channels, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
@@ -108,23 +108,80 @@ def test_calibration_at_one_model_serves_others(pendulum):
     assert np.sqrt(np.mean(difference**2)) > 0
 
 
-def test_a_stiff_spring_takes_shorter_steps(monkeypatch):
-    """What a joint without one needs would be half the noise off."""
-    spring = (PlacedEffect("joint_elasticity", "elbow", (800.0, 0.2)),)
+@pytest.mark.parametrize(
+    ("kind", "values", "usual", "coarse"),
+    [(JointElasticity, (800.0, 0.2), 0.15, 0.4), (Backlash, (0.03,), 5.0, 9.0)],
+)
+def test_springs_and_play_take_shorter_steps(kind, values, usual, coarse, monkeypatch):
+    """What a joint without one needs would be half the noise off, or ten times it."""
+    model = (PlacedEffect(kind.name, "elbow", values),)
     plant = arm()
     trace = recorded(plant, duration_s=2.0)
-    truth = Predictor(plant, [trace], CHANNELS, step_s=5e-4)
-    truth.correct(spring)
+    truth = Predictor(plant, [trace], CHANNELS, step_s=2.5e-4)
+    truth.correct(model)
     predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
     predictor.correct()
 
     def wrong():
-        found = predictor.predict([(), spring])[1] - truth.predict([spring])[0]
+        found = predictor.predict([(), model])[1] - truth.predict([model])[0]
         return float(np.sqrt(np.mean((found[20:] / NOISE_RAD) ** 2)))
 
-    assert wrong() < 0.15
-    monkeypatch.setattr(JointElasticity, "stiff", False)
-    assert wrong() > 0.4
+    assert wrong() < usual
+    monkeypatch.setattr(kind, "finer", 1)
+    assert wrong() > coarse
+
+
+class Rough:
+    """Replays whose values differ by the step, and at random for any change."""
+
+    def __init__(self, rows):
+        self.rows, self.count = rows, 0
+
+    def values(self, models, step_s):
+        self.count += len(models)
+        return np.stack([self.one(model, step_s) for model in models])
+
+    def one(self, model, step_s):
+        seed = [round(1e6 * step_s), *(abs(round(1e6 * m.values[0])) for m in model)]
+        random = np.random.default_rng(seed).standard_normal((self.rows, 2))
+        return step_s + NOISE_RAD * random
+
+
+RUBS = "coulomb_friction", "elbow"
+
+
+def test_the_model_at_which_the_step_was_measured_is_no_better_than_those_near_it():
+    """Its random part was taken out of it; a fit stayed where it began."""
+    plant, trace = arm(), recorded(arm(), duration_s=20.0)
+
+    def left(near):
+        predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
+        predictor._replays = Rough(trace.rows)
+        if not near:
+            predictor._near = lambda given: [given]
+        predictor.correct((PlacedEffect(*RUBS, (0.1,)),))
+        tried = [(PlacedEffect(*RUBS, (0.1 + 1e-5 * k,)),) for k in range(20)]
+        found = predictor.predict(tried)
+        assert np.mean(found) == pytest.approx(0.0, abs=0.1 * NOISE_RAD)
+        at, *others = np.sqrt(np.mean(found**2, axis=(1, 2)))
+        return at / np.mean(others)
+
+    assert left(near=True) == pytest.approx(1.0, abs=0.05)
+    assert left(near=False) < 0.9
+
+
+def test_where_nothing_rubs_the_step_is_measured_once():
+    plant, trace = arm(), recorded(arm(), duration_s=2.0)
+    predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
+    counts = []
+    for model in ((), (PlacedEffect("servo_gain", "elbow", (0.9,)),), ()):
+        predictor._replays = Rough(trace.rows)
+        predictor.correct(model)
+        counts.append(predictor._replays.count)
+    predictor._replays = Rough(trace.rows)
+    predictor.correct((PlacedEffect(*RUBS, (0.1,)),))
+    assert counts == [3, 3, 3]
+    assert predictor._replays.count == 12
 
 
 def test_what_is_missing_or_early_is_not_scored(pendulum):
