@@ -129,7 +129,9 @@ class NuisanceFit:
         self.correct(self._beside(now.errors, now.x))
         now = best = self._centred(self._at(now))
         for _ in range(MOST_ROUNDS):
-            before, now = now, self._step(now)
+            before, now = now, self._descended(now)
+            if now is before:
+                break
             self.correct(self._beside(now.errors, now.x))
             now = self._at(now)
             is_still = np.abs(now.x - before.x) <= STILL * before.errors_of_x()
