@@ -30,8 +30,8 @@ BLOCK_S = 0.5
 different blocks count as independent, those in one block may be correlated."""
 
 NEARBY = 0.01
-"""Relative changes of effects around which an integration error is measured: they are
-to and fro, so that only what is random differs."""
+"""Relative changes of friction and play around which an integration error is measured:
+they are to and fro, so that only what is random differs."""
 
 WORST = 1e7
 """Residuals are clipped to this size [noise]; a simulation that diverges gets it in all
@@ -334,21 +334,22 @@ class Predictor(Doubted):
         integration error were measured at the model itself, what was random there would
         be taken out of it and of no other: a fit would not leave it.
         """
-        is_rough = any(
-            effect(one.name).jumps or effect(one.name).finer > 1 for one in given
-        )
-        if self.plant.base == "floating" or not is_rough:
+        rough = [effect(one.name).jumps or effect(one.name).finer > 1 for one in given]
+        if self.plant.base == "floating":
             return [given]
-        return [
+        near = dict.fromkeys(
             tuple(
                 effect(one.name).stretched(
                     self.plant, one, 1 + NEARBY * sign * (-1) ** (i // every)
                 )
+                if rough[i]
+                else one
                 for i, one in enumerate(given)
             )
             for every in (1, 2)
             for sign in (-1, 1)
-        ]
+        )
+        return list(near)
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values without corrections."""
