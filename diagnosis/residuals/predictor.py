@@ -334,22 +334,19 @@ class Predictor(Doubted):
         integration error were measured at the model itself, what was random there would
         be taken out of it and of no other: a fit would not leave it.
         """
-        rough = [effect(one.name).jumps or effect(one.name).finer > 1 for one in given]
         if self.plant.base == "floating":
             return [given]
-        near = dict.fromkeys(
-            tuple(
-                effect(one.name).stretched(
-                    self.plant, one, 1 + NEARBY * sign * (-1) ** (i // every)
-                )
-                if rough[i]
-                else one
-                for i, one in enumerate(given)
-            )
-            for every in (1, 2)
-            for sign in (-1, 1)
-        )
-        return list(near)
+
+        def changed(far: float, every: int) -> Model:
+            found = list(given)
+            for i, one in enumerate(given):
+                kind, factor = effect(one.name), 1 + far * (-1) ** (i // every)
+                if kind.jumps or kind.finer > 1:
+                    found[i] = kind.stretched(self.plant, one, factor)
+            return tuple(found)
+
+        near = (NEARBY, 1), (-NEARBY, 1), (NEARBY / 2, 2), (-NEARBY / 2, 2)
+        return list(dict.fromkeys(changed(*one) for one in near))
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values without corrections."""
