@@ -10,7 +10,7 @@ from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
 from diagnosis.residuals.small_mismatch.usual_errors import USUAL
 from diagnosis.residuals.ties import groups_of
-from diagnosis.search.fitting import FittedModel
+from diagnosis.search.fitting import STEP, FittedModel
 from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 
@@ -37,8 +37,8 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
     as wide as joints differ. The `fit` to the predictor's data has a Jacobian by finite
     differences.
     """
-    apart = spread_of_joints(predictor, fit)
-    deviation = np.hypot(standard_errors(predictor, fit), apart)
+    apart = spread_of_joints(predictor, fit), spread_of_starts(predictor, fit)
+    deviation = np.hypot(standard_errors(predictor, fit), np.hypot(*apart))
     x = fit.coordinates.of(fit.model)
     ends = np.array(
         [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
@@ -93,6 +93,23 @@ def spread_of_joints(predictor: Predictor, fit: FittedModel) -> FloatArray:
                 shifts.append(column @ fit.residual[own] / known)
             apart[i] = np.sqrt(np.mean(np.square(shifts)))
     return apart
+
+
+def spread_of_starts(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) rms distances, in scaled coordinates, to where fits from other values end.
+
+    Small mismatch is fitted as well. Where replays change at random, as with dry
+    friction and play, fits stop anywhere in a valley. 0 where it is not fitted.
+    """
+    x, (low, high) = fit.coordinates.of(fit.model), fit.coordinates.bounds()
+    nuisance = predictor.nuisance if predictor.fits_nuisance else None
+    if nuisance is None:
+        return np.zeros(len(x))
+    sign = (-1) ** np.arange(len(x)), (-1) ** (np.arange(len(x)) // 2)
+    starts = np.array([x + STEP * way * one for one in sign for way in (-1, 1)])
+    fits = predictor.nuisance_fit(fit.model)
+    ends = fits.ends(nuisance, np.clip(starts, low, high))
+    return np.asarray(np.sqrt(np.mean((ends - x) ** 2, axis=0)))
 
 
 def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:

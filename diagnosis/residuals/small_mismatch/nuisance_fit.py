@@ -129,18 +129,30 @@ class NuisanceFit:
         self.correct(self._beside(now.errors, now.x))
         now = best = self._centred(self._at(now))
         for _ in range(MOST_ROUNDS):
-            before, now = now, self._descended(now)
+            before, now = now, self._descended(now, share=0.0)
             if now is before:
                 break
             self.correct(self._beside(now.errors, now.x))
             now = self._at(now)
             is_still = np.abs(now.x - before.x) <= STILL * before.errors_of_x()
-            if np.all(is_still) and now.goal > (1 - ENOUGH) * before.goal:
+            if np.all(is_still) and now.goal > before.goal - 2 * ENOUGH_NATS:
                 best = min(now, best, key=lambda point: point.goal)
                 break
             now = self._centred(now)
             best = min(now, best, key=lambda point: point.goal)
         return best.errors, self._coordinates(start).model_at(best.x)
+
+    def ends(self, start: Nuisance, starts: FloatArray) -> FloatArray:
+        """(m, p) where fits end that begin at (m, p) other values, in coordinates.
+
+        Errors begin at those of `start`, around which it is known what they change.
+        """
+        x = self._coordinates(start).of(self.model)
+        here, found = self._sloped(self._placed(start, x)), list[FloatArray]()
+        for begun in starts:
+            there = replace(self._placed(start, begun), slopes=here.slopes, seen_x=x)
+            found.append(self._descended(there, share=0.0).x)
+        return np.array(found)
 
     def _converged(self, now: FitPoint, closer: float = CLOSER) -> FitPoint:
         """The point after rounds of steps, as long as these approach the noise.
@@ -191,11 +203,11 @@ class NuisanceFit:
         """The point with the residual there, after another error is taken out."""
         return replace(now, left=self.ask([self._beside(now.errors, now.x)])[0])
 
-    def _descended(self, now: FitPoint) -> FitPoint:
-        """The point after steps as long as these help."""
+    def _descended(self, now: FitPoint, share: float = ENOUGH) -> FitPoint:
+        """The point after steps as long as these help, by a `share` of the energy."""
         for _ in range(MOST_STEPS):
             other = self._step(now)
-            if other.goal > now.goal - max(ENOUGH * now.goal, 2 * ENOUGH_NATS):
+            if other.goal > now.goal - max(share * now.goal, 2 * ENOUGH_NATS):
                 break
             now = now.followed(other)
         return now

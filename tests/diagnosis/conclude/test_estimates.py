@@ -14,7 +14,7 @@ from diagnosis.conclude.estimates import (
     standard_errors,
 )
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.search.fitting import Coordinates, FittedModel
+from diagnosis.search.fitting import STEP, Coordinates, FittedModel
 
 BLOCKS, ROWS, RECORDINGS = 60, 25, 4
 DIAGNOSES = 40
@@ -46,6 +46,7 @@ def toy(seed, common):
         block=np.repeat(np.arange(BLOCKS), ROWS),
         trace=np.repeat(np.arange(RECORDINGS), BLOCKS * ROWS // RECORDINGS),
         plant=PLANT,
+        fits_nuisance=False,
     )
     return predictor, fit, x
 
@@ -94,6 +95,26 @@ def test_recordings_that_disagree_widen_an_interval():
     assert spread == pytest.approx(5.0 / np.sqrt(3), rel=0.3)
     assert standard_errors(predictor, apart)[0] >= spread
     assert spread_of_recordings(predictor, fit)[0] < 0.2 * spread
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+def test_other_starts_that_fits_do_not_come_back_from_widen_an_interval(share):
+    """By what they keep of their distance."""
+    predictor, fit, x = toy(1, 0.0)
+
+    def ends(nuisance, starts):
+        return fit.coordinates.of(fit.model) + share * (starts - x)
+
+    def half(some):
+        own = estimates(some, fit)[0]["offset"]
+        scale = fit.coordinates.values_at(np.array([1.0, 0.0, 0.0]))[0]
+        return (own.high - own.low) / 2 / scale
+
+    alone = half(predictor)
+    predictor.fits_nuisance, predictor.nuisance = True, "small mismatch"
+    predictor.nuisance_fit = lambda model: SimpleNamespace(ends=ends)
+    far = Z_80 * share * STEP
+    assert half(predictor) == pytest.approx(np.hypot(alone, far), rel=1e-6)
 
 
 def test_names_and_order_are_those_of_the_effects():

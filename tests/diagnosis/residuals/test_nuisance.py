@@ -8,6 +8,7 @@ from made_up_traces import arm
 from scipy.optimize import lsq_linear
 
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.small_mismatch import fit_point, nuisance_fit
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
 from diagnosis.residuals.small_mismatch.nuisance_fit import ENOUGH_NATS, NuisanceFit
@@ -225,6 +226,24 @@ def test_errors_and_values_settle_where_simulations_are_rough(
 
 def test_differences_to_one_side_do_not_lead_there(rough_worlds):
     assert off(rough_worlds, NuisanceFit.fitted_with_values) > 0.09
+
+
+def test_fits_from_other_values_end_at_the_same_where_nothing_is_rough():
+    """Elsewhere they end apart, each where another step would not help."""
+    start = (PlacedEffect("servo_gain", "elbow", (1.0,)),)
+
+    def apart(kind):
+        far = []
+        for seed in range(6):
+            world = kind({GAIN: 1.0, "servo_gain@shoulder": -2.0}, seed=seed)
+            fit = NuisanceFit(world.ask, world.correct, start)
+            found, model = fit.settled_with_values(world.nuisance)
+            x = Coordinates(PLANT, model).of(model)
+            fit = NuisanceFit(world.ask, world.correct, model)
+            far.append(fit.ends(found, x + np.array([[-0.02], [0.02]])) - x)
+        return np.sqrt(np.mean(np.square(far)))
+
+    assert apart(Rough) > 5 * apart(Linear)
 
 
 @pytest.mark.parametrize("room", [1, 100])
