@@ -108,7 +108,8 @@ def spread_of_starts(predictor: Predictor, fit: FittedModel) -> FloatArray:
     sign = (-1) ** np.arange(len(x)), (-1) ** (np.arange(len(x)) // 2)
     starts = np.array([x + STEP * way * one for one in sign for way in (-1, 1)])
     fits = predictor.nuisance_fit(fit.model)
-    ends = fits.ends(nuisance, np.clip(starts, low, high))
+    starts = np.unique(np.clip(starts, low, high), axis=0)
+    ends = fits.ends(nuisance, starts)
     return np.asarray(np.sqrt(np.mean((ends - x) ** 2, axis=0)))
 
 

@@ -85,8 +85,7 @@ class Effect(ABC):
     other loads do, such as another mass or friction."""
 
     stiff: ClassVar[bool] = False
-    """Whether the effect is a spring in the drive, whose stiffness is the first value.
-    """
+    """Whether it is a spring in the drive, whose stiffness is the first value."""
 
     finer: ClassVar[int] = 1
     """Number of steps, 1, 2 or 4, that simulations with the effect take for one."""

@@ -14,6 +14,7 @@ from diagnosis.residuals.command_timing import CommandTiming, jumps_of
 from diagnosis.residuals.doubted import Doubted
 from diagnosis.residuals.doubts import Doubts
 from diagnosis.residuals.integration_error import IntegrationError
+from diagnosis.residuals.models_around import models_around
 from diagnosis.residuals.reference_noise import ReferenceNoise, blocks_of
 from diagnosis.residuals.replays import Model as Model
 from diagnosis.residuals.replays import Replays, time_blocks
@@ -28,10 +29,6 @@ STEPS_S = {"fixed": (0.004, 0.002, 0.001), "floating": (0.002,)}
 BLOCK_S = 0.5
 """Length [s] of the time blocks of which standard errors take account: errors in
 different blocks count as independent, those in one block may be correlated."""
-
-NEARBY = 0.01
-"""Relative changes of friction and play around which an integration error is measured:
-they are to and fro, so that only what is random differs."""
 
 WORST = 1e7
 """Residuals are clipped to this size [noise]; a simulation that diverges gets it in all
@@ -214,7 +211,7 @@ class Predictor(Doubted):
         large if the simulation of `model` diverges. Fast errors that the robot model
         makes for the healthy robot are noise, too.
         """
-        near = self._near(self._doubts.given(model))
+        near = models_around(self.plant, self._doubts.given(model))
 
         def values(step_s: float) -> FloatArray:
             return np.asarray(np.mean(self._values(near, step_s), axis=0))
@@ -326,27 +323,6 @@ class Predictor(Doubted):
             wrong = (self._measured - predicted) / self.channels.noise
         wrong = np.where(np.isfinite(wrong), np.clip(wrong, -WORST, WORST), WORST)
         return np.where(self._scored, wrong, 0.0)
-
-    def _near(self, given: Model) -> list[Model]:
-        """A model, or some around it where steps move simulations at random.
-
-        When dry friction lets a joint go, or teeth touch, depends on anything. If the
-        integration error were measured at the model itself, what was random there would
-        be taken out of it and of no other: a fit would not leave it.
-        """
-        if self.plant.base == "floating":
-            return [given]
-
-        def changed(far: float, every: int) -> Model:
-            found = list(given)
-            for i, one in enumerate(given):
-                kind, factor = effect(one.name), 1 + far * (-1) ** (i // every)
-                if kind.jumps or kind.finer > 1:
-                    found[i] = kind.stretched(self.plant, one, factor)
-            return tuple(found)
-
-        near = (NEARBY, 1), (-NEARBY, 1), (NEARBY / 2, 2), (-NEARBY / 2, 2)
-        return list(dict.fromkeys(changed(*one) for one in near))
 
     def _replayed(self, models: Sequence[Model], step_s: float) -> FloatArray:
         """(n, rows, c) simulated values without corrections."""

@@ -9,6 +9,7 @@ from made_up_traces import arm, arm_command, recorded
 
 from diagnosis.effects.joints import Backlash, JointElasticity
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals import models_around
 from diagnosis.residuals import predictor as predictor_module
 from diagnosis.residuals.predictor import WORST, Channels, Predictor
 from diagnosis.residuals.reference_noise import ReferenceNoise
@@ -156,14 +157,16 @@ def test_the_model_at_which_the_step_was_measured_is_no_better_than_those_near_i
     factor, monkeypatch
 ):
     """Its random part was taken out of it; a fit stayed where it began."""
-    monkeypatch.setattr(predictor_module, "NEARBY", factor * predictor_module.NEARBY)
+    monkeypatch.setattr(models_around, "NEARBY", factor * models_around.NEARBY)
     plant, trace = arm(), recorded(arm(), duration_s=20.0)
 
     def left(near):
         predictor = Predictor(plant, [trace], CHANNELS, step_s=0.004)
         predictor._replays = Rough(trace.rows)
         if not near:
-            predictor._near = lambda given: [given]
+            monkeypatch.setattr(
+                predictor_module, "models_around", lambda plant, given: [given]
+            )
         predictor.correct((PlacedEffect(*RUBS, (0.1,)),))
         tried = [(PlacedEffect(*RUBS, (0.1 + 1e-5 * k,)),) for k in range(20)]
         found = predictor.predict(tried)
