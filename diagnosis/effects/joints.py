@@ -1,4 +1,4 @@
-"""Effects of a joint's mechanics: inertia, play, springs, stops and its encoder."""
+"""Effects of a joint's mechanics: inertia, springs, stops and its encoder."""
 
 from collections.abc import Sequence
 
@@ -7,11 +7,9 @@ import numpy as np
 from diagnosis.effects.effect import (
     JointEffect,
     NumberEffect,
-    ServoEffect,
     TorqueEffect,
 )
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
-from diagnosis.effects.places import driven_joints
 from diagnosis.effects.scales import inertia_kg_m2, range_rad, torque_nm
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
@@ -19,10 +17,6 @@ from diagnosis.traces.trace import Trace, asked
 from diagnosis.traces.usage import Usage
 from diagnosis.verdict import PlacedEffect
 from groundwalk.arrays import FloatArray
-
-PLAY_RAD = 0.005
-"""Servo error [rad] at which `Backlash.torque_column` takes a gear's play as 76 %
-crossed. Small, since the sign of the error decides on which side the teeth touch."""
 
 _FAR_RAD = 1e6
 """Bound of the angle of a joint without a range: so large that it acts as no bound."""
@@ -86,106 +80,6 @@ class EncoderOffset(NumberEffect, JointEffect):
     def tolerance(self, plant: Plant, place: str) -> float:
         """1 mrad: how well a joint's zero is usually calibrated."""
         return 1e-3
-
-
-class Backlash(NumberEffect, ServoEffect):
-    """A gap in the gear, within which no torque passes from motor to joint.
-
-    The servo controls the motor's angle; the recorded encoder sits at the joint. Within
-    the gap, whose size is the total play, the motor moves freely, slowed only by its
-    damping; at the gap's edges it pushes the joint. Cheap gears have a gap of some
-    hundredths of a radian.
-
-    Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
-    survey", the dead-zone model.
-    """
-
-    name = "backlash"
-    native = False
-    finer = 4  # within a step teeth touch or not, and light joints rattle
-    quantity = "gap_rad"
-    usual = (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
-    words = EffectWords(
-        "play (backlash)",
-        "{joint} has play of {gap} {lacking}",
-        "Gears with a gap between their teeth: after each reversal the motor turns "
-        "before the joint follows.",
-    )
-
-    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
-        """A small and a large gap [rad]: the effect is not linear in its size."""
-        return [(0.01,), (0.03,)]
-
-    def torque_column(self, motion: JointMotion) -> FloatArray:
-        """(rows,) servo torque lost for a gap of 1 rad: kp / 2 sign(command - q)."""
-        error = motion.command_rad - motion.position_rad
-        return np.asarray(motion.kp_nm_rad * np.tanh(error / PLAY_RAD) / 2)
-
-
-class JointElasticity(JointEffect):
-    """A spring from motor theta to link q: torque k (theta - q) + d (theta' - q').
-
-    The joint's rotor inertia is on the motor's side, and so is the encoder. A joint
-    that nothing drives has no motor.
-
-    Source: Spong 1987, "Modeling and control of elastic joint robots", equations of
-    motion with diagonal rotor inertia; damping beside the spring as in De Luca and
-    Book 2016, "Robots with flexible elements".
-    """
-
-    name = "joint_elasticity"
-    native = False
-    stiff = True
-    finer = 2  # its motor oscillates too fast for whole steps
-    joint_by_joint = False
-    on_every_servo = False
-    main_parameters = ("stiffness",)
-    words = EffectWords(
-        "elastic joint",
-        "{joint} is elastic between motor and link, with a stiffness of {stiffness} "
-        "and a damping of {damping}, {lacking}",
-        "A gear or shaft that winds up like a spring, so that the link lags behind its "
-        "motor and rings.",
-    )
-
-    def places(self, plant: Plant, traces: Sequence[Trace]) -> tuple[str, ...]:
-        """Names of joints that a servo or a torque drives."""
-        return driven_joints(plant, traces)
-
-    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
-        """Stiffness k [N m/rad] and damping d [N m s/rad].
-
-        A typical spring twists by 0.05 rad under a large torque for the joint, and has
-        3 % of critical damping; at the bounds it twists by 1 rad and by 0.5 mrad.
-        """
-        scale = torque_nm(plant, place)
-        typical, high = scale / 0.05, scale / 0.0005
-        critical = 2 * float(np.sqrt(typical * inertia_kg_m2(plant, place)))
-        return (
-            Parameter("stiffness", "N m/rad", scale, high, np.inf, typical, True),
-            Parameter("damping", "N m s/rad", 0.0, critical, 0.0, 0.03 * critical),
-        )
-
-    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Put the spring in series with any other at the joint: compliances add.
-
-        With s the Laplace variable, springs k_i + d_i s in series give
-        1 / sum 1/(k_i + d_i s), to first order in s a damping d = k^2 sum d_i / k_i^2.
-        """
-        stiffness, damping = values
-        if np.isinf(stiffness):
-            return
-        joints, at = copies.joints, (row, copies.column(place))
-        before = joints.spring_nm_rad[at]
-        total = 1 / (1 / before + 1 / stiffness)
-        joints.spring_damping_nm_s_rad[at] *= (total / before) ** 2
-        joints.spring_damping_nm_s_rad[at] += damping * (total / stiffness) ** 2
-        joints.spring_nm_rad[at] = total
-
-    def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
-        """A soft and a stiff spring: the effect is not linear in its size."""
-        stiffness, damping = (one.typical for one in self.parameters(plant, place))
-        return [(stiffness * k, damping * k) for k in (1.0, 5.0)]
 
 
 class JointSpring(JointEffect):

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from types import MappingProxyType
 
-from diagnosis.effects import bodies, friction, ground, joints, sensors, servos
+from diagnosis.effects import bodies, friction, gears, ground, joints, sensors, servos
 from diagnosis.effects.effect import Effect
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.traces.trace import Trace
@@ -19,8 +19,8 @@ BUILT_IN: Mapping[str, Effect] = MappingProxyType(
             friction.CoulombFriction(),
             friction.StribeckFriction(),
             friction.LoadFriction(),
-            joints.Backlash(),
-            joints.JointElasticity(),
+            gears.Backlash(),
+            gears.JointElasticity(),
             servos.CommandLatency(),
             sensors.SensorDelay(),
             joints.EncoderOffset(),

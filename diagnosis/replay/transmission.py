@@ -6,6 +6,13 @@ import numpy as np
 
 from groundwalk.arrays import BoolArray, FloatArray
 
+LEAST_KP = 1e-9
+"""Smallest stiffness [N m/rad] used as a divisor, to avoid division by zero."""
+
+LEAST_DRAG = 1e-9
+"""Smallest damping [N m s/rad] used as a divisor, to avoid division by zero; a motor
+without stiffness and damping then does not move."""
+
 
 class ElasticJoints:
     """Motors that drive their links through springs: arrays (rows, j).
@@ -90,17 +97,13 @@ class ElasticJoints:
         return np.where(self.soft, self._angle, position_rad)
 
 
-LEAST_DRAG = 1e-9
-"""Smallest damping [N m s/rad] used as a divisor, to avoid division by zero; a motor
-without stiffness and damping then does not move."""
-
-
 class BatchGaps:
     """Motors that turn freely within their gaps until they touch the joint.
 
     A motor has no inertia here, since its inertia is part of the joint's. While it is
     free, its servo moves its angle m by m' = kp (command - m) / (kd + back-EMF), and no
-    torque reaches the joint. It touches the joint at half the gap from its position.
+    torque reaches the joint. It touches the joint at half the gap from its position,
+    and goes further by the gear's compliance times the torque that passes.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model, with a motor whose damping outweighs its inertia.
@@ -114,8 +117,10 @@ class BatchGaps:
     ) -> None:
         """Prepare gaps of (rows, j) `joints` with servos of a `law`, which may fade."""
         self._half = joints["gap_rad"] / 2
+        self._yields = np.where(self._half > 0, joints["compliance_rad_nm"], 0.0)
         self._law, self._step_s = law, step_s
         self._motor_rad: FloatArray | None = None
+        self._wound_rad = np.zeros_like(self._half)
 
     def begin(self) -> None:
         """Forget the motors' angles; they start as near their targets as gaps allow."""
@@ -133,10 +138,16 @@ class BatchGaps:
         low, high = position - half, position + half
         if self._motor_rad is None:
             self._motor_rad = np.minimum(np.maximum(asked_rad, low), high)
+            self._wound_rad = np.zeros_like(self._motor_rad)
         free = self._followed(asked_rad, self._motor_rad)
         apart: BoolArray = (free > low) & (free < high)
-        self._motor_rad = np.minimum(np.maximum(free, low), high)
-        arrives = np.where(apart, 0.0, asked_rad - self._motor_rad)
+        edge = np.minimum(np.maximum(free, low), high)
+        turned = edge - self._motor_rad
+        wound = np.where(apart, 0.0, self._wound(asked_rad - edge, turned))
+        winding = self._drag * (wound - self._wound_rad)
+        self._motor_rad, self._wound_rad = edge + wound, wound
+        missed = winding / np.maximum(self._law["kp"], LEAST_KP)
+        arrives = np.where(apart, 0.0, asked_rad - self._motor_rad - missed)
         return position + arrives, apart
 
     def drag_nm(self, velocity: FloatArray) -> FloatArray:
@@ -145,10 +156,27 @@ class BatchGaps:
         servo_nm = np.maximum(law["kd"] * velocity, -law["limit"])
         return np.asarray(np.minimum(servo_nm, law["limit"]) + law["emf"] * velocity)
 
+    @property
+    def _drag(self) -> FloatArray:
+        """(rows, j) torque of the motors' damping for each radian that a step takes."""
+        return np.asarray((self._law["kd"] + self._law["emf"]) / self._step_s)
+
+    def _wound(self, error_rad: FloatArray, turned_rad: FloatArray) -> FloatArray:
+        """(rows, j) angles beyond the gap's edge of motors that push, after a step.
+
+        They are the compliance times the torque, solved for implicitly: at the edge the
+        servo would have the `error_rad`, and the motor would have `turned_rad`.
+        """
+        law, drag = self._law, self._drag
+        driven = law["kp"] * error_rad - drag * turned_rad
+        through = driven / (1 + self._yields * (law["kp"] + drag))
+        held = np.minimum(np.maximum(through, -law["limit"]), law["limit"])
+        return np.asarray(self._yields * held)
+
     def _followed(self, asked_rad: FloatArray, motor_rad: FloatArray) -> FloatArray:
         """(rows, j) angles of free motors after one implicit step, torque limited."""
         law = self._law
-        drag = np.maximum(law["kd"] + law["emf"], LEAST_DRAG) / self._step_s
+        drag = np.maximum(self._drag, LEAST_DRAG / self._step_s)
         moved = law["kp"] * (asked_rad - motor_rad) / (law["kp"] + drag)
         emf = np.maximum(law["emf"], LEAST_DRAG)
         most = self._step_s * law["limit"] / emf

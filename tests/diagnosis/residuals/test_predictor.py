@@ -7,7 +7,7 @@ import pytest
 from joint_rigs import ARM, arm_law, integrated, plant_of, ticks, trace_of
 from made_up_traces import arm, arm_command, recorded
 
-from diagnosis.effects.joints import Backlash, JointElasticity
+from diagnosis.effects.gears import Backlash, JointElasticity
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals import models_around
 from diagnosis.residuals import predictor as predictor_module
@@ -112,7 +112,7 @@ def test_calibration_at_one_model_serves_others(pendulum):
 
 @pytest.mark.parametrize(
     ("kind", "values", "usual", "coarse"),
-    [(JointElasticity, (800.0, 0.2), 0.15, 0.4), (Backlash, (0.03,), 5.0, 9.0)],
+    [(JointElasticity, (800.0, 0.2), 0.15, 0.4), (Backlash, (0.03, 0.0), 5.0, 9.0)],
 )
 def test_springs_and_play_take_shorter_steps(kind, values, usual, coarse, monkeypatch):
     """What a joint without one needs would be half the noise off, or ten times it."""
