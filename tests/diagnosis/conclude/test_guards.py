@@ -60,6 +60,14 @@ def test_the_error_must_fall_to_half():
     assert said(nominal=1.6, corrected=1.2, ceiling=None, **alone) == ""
 
 
+def test_a_regression_that_explains_half_says_what_is_possible():
+    """Of 99 above the noise, 7.0 leaves 48, less than half; 8.2 leaves 66."""
+    alone = {"wrong_place": None, "wrong_effect": None}
+    assert said(corrected=5.2, ceiling=7.0, **alone) == ""
+    assert "something else" in said(corrected=5.2, ceiling=8.2, **alone)
+    assert "something else" in said(corrected=5.2, ceiling=5.1, **alone)
+
+
 def test_where_hardly_more_than_noise_is_left_a_regression_says_what_is_possible():
     """The noise itself is not known to some percent of its square."""
     near = {"nominal": 1.2, "wrong_place": None, "wrong_effect": None}
