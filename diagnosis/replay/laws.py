@@ -120,8 +120,7 @@ class BatchLaws:
         if self._friction.varies:
             self._rub(velocity, 0.0)
         if self._gaps is not None:
-            asked_rad, apart = self._gaps.through(asked_rad, position)
-            free_nm = np.where(apart, self._gaps.drag_nm(velocity), 0.0)
+            asked_rad, free_nm = self._gaps.through(asked_rad, position, velocity)
             self._applied[:, self._dofs] = free_nm
         if self._torques:
             already = 0.0 if self._gaps is None else self._applied[:, self._dofs]

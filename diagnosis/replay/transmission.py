@@ -115,9 +115,13 @@ class BatchGaps:
         law: Mapping[str, FloatArray],
         step_s: float,
     ) -> None:
-        """Prepare gaps of (rows, j) `joints` with servos of a `law`, which may fade."""
-        self._half = joints["gap_rad"] / 2
-        self._yields = np.where(self._half > 0, joints["compliance_rad_nm"], 0.0)
+        """Prepare gaps of (rows, j) `joints` with servos of a `law`, which may fade.
+
+        Only joints with a gap are computed, as (g,) arrays.
+        """
+        self._at = np.nonzero(joints["gap_rad"])
+        self._half = joints["gap_rad"][self._at] / 2
+        self._yields = joints["compliance_rad_nm"][self._at]
         self._law, self._step_s = law, step_s
         self._motor_rad: FloatArray | None = None
         self._wound_rad = np.zeros_like(self._half)
@@ -127,57 +131,58 @@ class BatchGaps:
         self._motor_rad = None
 
     def through(
-        self, asked_rad: FloatArray, position: FloatArray
-    ) -> tuple[FloatArray, BoolArray]:
-        """Step the motors once; targets for rigid servos, and flags of free motors.
+        self, asked_rad: FloatArray, position: FloatArray, velocity: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Step the motors once; targets for rigid servos, and torques beside these.
 
-        With these targets (rows, j) [rad] a servo without gap gives the torque that
-        gets through the gap. Flags (rows, j) are true where no torque does.
+        With the targets (rows, j) [rad] a servo without gap gives the torque that gets
+        through the gap. The torques (rows, j) [N m] take its damping back where none
+        does.
         """
-        half = self._half
-        low, high = position - half, position + half
+        law = {name: values[self._at] for name, values in self._law.items()}
+        asked, joint = asked_rad[self._at], position[self._at]
+        low, high = joint - self._half, joint + self._half
         if self._motor_rad is None:
-            self._motor_rad = np.minimum(np.maximum(asked_rad, low), high)
-            self._wound_rad = np.zeros_like(self._motor_rad)
-        free = self._followed(asked_rad, self._motor_rad)
+            self._motor_rad = np.minimum(np.maximum(asked, low), high)
+            self._wound_rad = np.zeros_like(joint)
+        drag = (law["kd"] + law["emf"]) / self._step_s
+        free = self._motor_rad + self._moved(law, drag, asked - self._motor_rad)
         apart: BoolArray = (free > low) & (free < high)
         edge = np.minimum(np.maximum(free, low), high)
-        turned = edge - self._motor_rad
-        wound = np.where(apart, 0.0, self._wound(asked_rad - edge, turned))
-        winding = self._drag * (wound - self._wound_rad)
+        driven = law["kp"] * (asked - edge) - drag * (edge - self._motor_rad)
+        wound = np.where(apart, 0.0, self._wound(law, drag, driven))
+        winding = drag * (wound - self._wound_rad) / np.maximum(law["kp"], LEAST_KP)
         self._motor_rad, self._wound_rad = edge + wound, wound
-        missed = winding / np.maximum(self._law["kp"], LEAST_KP)
-        arrives = np.where(apart, 0.0, asked_rad - self._motor_rad - missed)
-        return position + arrives, apart
+        targets, free_nm = asked_rad.copy(), np.zeros_like(asked_rad)
+        arrives = np.where(apart, 0.0, asked - self._motor_rad - winding)
+        targets[self._at] = joint + arrives
+        free_nm[self._at] = np.where(apart, _damping_nm(law, velocity[self._at]), 0.0)
+        return targets, free_nm
 
-    def drag_nm(self, velocity: FloatArray) -> FloatArray:
-        """Damping torque [N m] of servos whose motors are free, at (rows, j) speeds."""
-        law = self._law
-        servo_nm = np.maximum(law["kd"] * velocity, -law["limit"])
-        return np.asarray(np.minimum(servo_nm, law["limit"]) + law["emf"] * velocity)
+    def _wound(
+        self, law: Mapping[str, FloatArray], drag: FloatArray, driven: FloatArray
+    ) -> FloatArray:
+        """(g,) angles beyond the gap's edge of motors that push, after a step.
 
-    @property
-    def _drag(self) -> FloatArray:
-        """(rows, j) torque of the motors' damping for each radian that a step takes."""
-        return np.asarray((self._law["kd"] + self._law["emf"]) / self._step_s)
-
-    def _wound(self, error_rad: FloatArray, turned_rad: FloatArray) -> FloatArray:
-        """(rows, j) angles beyond the gap's edge of motors that push, after a step.
-
-        They are the compliance times the torque, solved for implicitly: at the edge the
-        servo would have the `error_rad`, and the motor would have `turned_rad`.
+        They are the compliance times the torque, solved for implicitly; at the edge the
+        torque would be `driven` [N m].
         """
-        law, drag = self._law, self._drag
-        driven = law["kp"] * error_rad - drag * turned_rad
         through = driven / (1 + self._yields * (law["kp"] + drag))
         held = np.minimum(np.maximum(through, -law["limit"]), law["limit"])
         return np.asarray(self._yields * held)
 
-    def _followed(self, asked_rad: FloatArray, motor_rad: FloatArray) -> FloatArray:
-        """(rows, j) angles of free motors after one implicit step, torque limited."""
-        law = self._law
-        drag = np.maximum(self._drag, LEAST_DRAG / self._step_s)
-        moved = law["kp"] * (asked_rad - motor_rad) / (law["kp"] + drag)
+    def _moved(
+        self, law: Mapping[str, FloatArray], drag: FloatArray, error_rad: FloatArray
+    ) -> FloatArray:
+        """(g,) ways of free motors in one implicit step, torque limited."""
+        drag = np.maximum(drag, LEAST_DRAG / self._step_s)
+        moved = law["kp"] * error_rad / (law["kp"] + drag)
         emf = np.maximum(law["emf"], LEAST_DRAG)
         most = self._step_s * law["limit"] / emf
-        return np.asarray(motor_rad + np.minimum(np.maximum(moved, -most), most))
+        return np.asarray(np.minimum(np.maximum(moved, -most), most))
+
+
+def _damping_nm(law: Mapping[str, FloatArray], velocity: FloatArray) -> FloatArray:
+    """Damping torque [N m] of servos whose motors are free, at their joints' speeds."""
+    servo_nm = np.maximum(law["kd"] * velocity, -law["limit"])
+    return np.asarray(np.minimum(servo_nm, law["limit"]) + law["emf"] * velocity)
