@@ -8,10 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.conclude.estimates import block_variance
 from diagnosis.effects.library import effect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
+from diagnosis.search.chance import (
+    in_standard_errors,
+    independent_blocks,
+)
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import gain_of_noise
 
@@ -57,22 +60,21 @@ def simplified(both: Predictor, model: Model) -> Model:
             continue
         whole, part = fit_all(both, [model, (*others, simpler)])
         fewer = len(placed.values) - len(simpler.values)
-        if _nats(both, whole, part) < gain_of_noise(1, fewer):
+        if not _pays(both, whole, part, fewer):
             model = part.model
     return model
 
 
-def _nats(both: Predictor, whole: FittedModel, part: FittedModel) -> float:
-    """Evidence [nats] for a fit against one with fewer values.
+def _pays(both: Predictor, whole: FittedModel, part: FittedModel, more: int) -> bool:
+    """Whether a fit explains more, by its `more` values, than chance.
 
-    If nothing but noise is left, a gain of g nats has the variance 2 g. Where errors
-    last, or simulations change at random as with play, it has more, as the gains in
-    blocks of time show (Vuong 1989): then it tells as much as the gain of noise that
-    is as many of its standard deviations.
+    Beside noise every row is evidence, and a gain of g nats has the variance 2 g. But
+    errors may last, and simulations with play change at random: then some blocks of
+    time gain and others lose. So the gain must be as many standard errors, as blocks
+    show them, as the least gain that is more than chance beside noise.
     """
-    gains = 0.5 * (part.residual**2 - whole.residual**2)
-    gain = part.energy - whole.energy
-    (variance,) = block_variance((gains - gains.mean())[:, None], both.block)
-    if gain <= 0 or variance <= 2 * gain:
-        return gain
-    return float(2 * gain**2 / variance)
+    blocks = independent_blocks(both, whole.residual)
+    gained = 0.5 * (part.residual**2 - whole.residual**2)
+    sure = in_standard_errors(np.bincount(blocks, gained).astype(float))
+    least = gain_of_noise(1, more)
+    return part.energy - whole.energy >= least and sure >= np.sqrt(least / 2)

@@ -13,7 +13,7 @@ from diagnosis.conclude.controls import controls_of
 from diagnosis.conclude.flexible_regression import flexible_regression_errors
 from diagnosis.residuals.channels import MORE_THAN_NOISE, channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.chance import independent_blocks
+from diagnosis.search.chance import in_standard_errors, independent_blocks
 from diagnosis.search.result import MOST_LEFT, SearchResult
 from diagnosis.verdict import ChannelFit, Fit
 from groundwalk.arrays import FloatArray
@@ -143,18 +143,14 @@ def _worse(
 ) -> float:
     """How much more a control leaves than a model, in standard errors.
 
-    Energies of independent blocks of time are compared in pairs, as signed square
-    roots, so that a few moments do not decide.
+    Energies of independent blocks of time are compared in pairs.
     """
     differences = []
     for one, other in zip(own, others, strict=True):
         (left,), (wrong,) = one.residuals([model]), other.residuals([control])
         block = independent_blocks(one, left)
         differences.append(np.bincount(block, wrong**2 - left**2))
-    every = np.concatenate(differences)
-    every = np.sign(every) * np.sqrt(np.abs(every))
-    deviation = float(np.std(every, ddof=1)) if len(every) > 1 else np.inf
-    return float(every.sum() / max(deviation * np.sqrt(len(every)), 1e-12))
+    return in_standard_errors(np.concatenate(differences))
 
 
 def share_that_follows(

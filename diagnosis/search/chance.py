@@ -67,6 +67,17 @@ def independent_samples(predictor: Predictor, residual: FloatArray) -> int:
     return len(np.unique(blocks)) * len(np.unique(channels))
 
 
+def in_standard_errors(more: FloatArray) -> float:
+    """How much more one model leaves than another, in standard errors.
+
+    `more` are (blocks,) differences of energies in independent blocks of time. They
+    count as signed square roots, so that a few moments do not decide.
+    """
+    roots = np.sign(more) * np.sqrt(np.abs(more))
+    deviation = float(np.std(roots, ddof=1)) if len(roots) > 1 else np.inf
+    return float(roots.sum() / max(deviation * np.sqrt(len(roots)), 1e-12))
+
+
 def by_chance(gains: FloatArray) -> float:
     """The gain [nats] that the best candidate exceeds by chance in 1 of 100 cases.
 
