@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, ServoEffect
+from diagnosis.effects.effect import JointEffect, NumberEffect, ServoEffect
 from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
 from diagnosis.effects.places import driven_joints
 from diagnosis.effects.scales import inertia_kg_m2, torque_nm
@@ -18,17 +18,14 @@ PLAY_RAD = 0.005
 """Servo error [rad] at which `Backlash.torque_column` takes a gear's play as 76 %
 crossed. Small, since the sign of the error decides on which side the teeth touch."""
 
-YIELD_RAD, MOST_YIELD_RAD = 0.0005, 0.005
-"""By how much gears with play yield under a large torque: typically, and at most."""
 
-
-class Backlash(ServoEffect):
+class Backlash(NumberEffect, ServoEffect):
     """A gap in the gear, within which no torque passes from motor to joint.
 
     The servo controls the motor's angle; the recorded encoder sits at the joint. Within
     the gap, whose size is the total play, the motor moves freely, slowed only by its
-    damping; at the gap's edges it pushes the joint, through teeth that yield. Cheap
-    gears have a gap of some hundredths of a radian.
+    damping; at the gap's edges it pushes the joint. Cheap gears have a gap of some
+    hundredths of a radian.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model.
@@ -37,7 +34,8 @@ class Backlash(ServoEffect):
     name = "backlash"
     native = False
     finer = 4  # within a step teeth touch or not, and light joints rattle
-    main_parameters = ("gap",)
+    quantity = "gap_rad"
+    usual = (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
     words = EffectWords(
         "play (backlash)",
         "{joint} has play of {gap} {lacking}",
@@ -45,30 +43,9 @@ class Backlash(ServoEffect):
         "before the joint follows.",
     )
 
-    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
-        """Gap [rad], and compliance [rad/(N m)] of the gear beyond it.
-
-        Under a large torque for the joint, teeth and shafts typically yield by 0.5 mrad
-        (1.7 arc minutes, as data sheets of gears say), and by no more than 5 mrad:
-        what yields more is an elastic joint.
-        """
-        scale = torque_nm(plant, place)
-        most, typical = MOST_YIELD_RAD / scale, YIELD_RAD / scale
-        return (
-            Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),
-            Parameter("compliance", "rad/(N m)", 0.0, most, 0.0, typical),
-        )
-
-    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Widen the joint's gap in one variant, and let its gear yield more."""
-        joints, at = copies.joints, (row, copies.column(place))
-        joints.gap_rad[at] += values[0]
-        joints.compliance_rad_nm[at] += values[1]
-
     def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """A small and a large gap [rad]: the effect is not linear in its size."""
-        compliance = self.parameters(plant, place)[1].typical
-        return [(0.01, compliance), (0.03, compliance)]
+        return [(0.01,), (0.03,)]
 
     def torque_column(self, motion: JointMotion) -> FloatArray:
         """(rows,) servo torque lost for a gap of 1 rad: kp / 2 sign(command - q)."""

@@ -183,7 +183,7 @@ def _fit(course: _Course, steps: int, jacobian: FloatArray | None) -> FittedMode
 ON_BOUND = 1e-3
 """Distance from a bound, in scaled coordinates, within which a value is on it."""
 
-SECONDARY = ("start", "duration", "side", "rest", "compliance")
+SECONDARY = ("start", "duration", "side", "rest")
 """Names of parameters that do not say how large an effect is."""
 
 

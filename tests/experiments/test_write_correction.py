@@ -18,7 +18,7 @@ from worlds import WorldOptions
 from worlds.sim.world import SimWorld
 
 WEAK = PlacedEffect("servo_gain", "LKneePitch", (0.5,))
-PLAY = PlacedEffect("backlash", "LKneePitch", (0.03, 0.0))
+PLAY = PlacedEffect("backlash", "LKneePitch", (0.03,))
 
 
 def found(effects):

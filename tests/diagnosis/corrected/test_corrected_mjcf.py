@@ -111,7 +111,7 @@ def test_what_is_nearer_to_no_delay_than_to_a_step_is_none(delay_s):
 
 def test_what_mujoco_lacks_is_left_out():
     plant = load_plant("nao", "fixed")
-    play = PlacedEffect("backlash", "LKneePitch", (0.03, 0.0))
+    play = PlacedEffect("backlash", "LKneePitch", (0.03,))
     text, without = corrected_mjcf(plant, (play,)), corrected_mjcf(plant, ())
     assert "MuJoCo lacks them: backlash@LKneePitch" in text
     assert text.partition("-->")[2] == without.partition("-->")[2]

@@ -63,7 +63,7 @@ def test_an_effect_of_no_size_changes_nothing(lumpy, flat, where):
 IN_THE_AIR = [
     [("servo_gain", "LKneePitch", 0.5), ("servo_damping", "LHipPitch", 0.5)],
     [("torque_limit", "LShoulderPitch", 0.3), ("speed_limit", "RKneePitch", 0.8)],
-    [("backlash", "LKneePitch", 0.05, 1e-3), ("servo_fade", "RShoulderPitch", 0.05)],
+    [("backlash", "LKneePitch", 0.05), ("servo_fade", "RShoulderPitch", 0.05)],
     [("encoder_offset", "LKneePitch", 0.1), ("sensor_delay", "encoders", 0.0133)],
     [("command_latency", "commands", 0.0133)],
     [("stribeck_friction", "LElbowRoll", 0.1, 0.2, 0.1)],
@@ -94,7 +94,7 @@ def test_on_the_ground_it_does_what_a_replay_does(flat):
         ("contact_friction", "feet", 0.3),
         ("payload_mass", "torso", 0.5),
         ("contact_compliance", "feet", 8000.0),
-        ("backlash", "LKneePitch", 0.03, 1e-3),
+        ("backlash", "LKneePitch", 0.03),
     ]
     commands = swing(0.5)
     plant = load_plant("nao", "floating")
@@ -209,7 +209,7 @@ def test_a_second_rollout_is_the_first_again(flat):
         ("servo_fade", "LHipPitch", 0.05),
         ("external_force", "torso", 5.0, 0.0, 0.0, 0.1, 0.3),
         ("drag", "LForeArm", 3.0),
-        ("backlash", "LAnkleRoll", 0.05, 1e-3),
+        ("backlash", "LAnkleRoll", 0.05),
         ("sensor_delay", "encoders", 0.0133),
     )
     first, second = roll(world, swing(0.3)), roll(world, swing(0.3))
@@ -218,7 +218,7 @@ def test_a_second_rollout_is_the_first_again(flat):
 
 
 def test_what_blows_up_ends_and_the_others_go_on(flat):
-    world = sim([flat] * 2, ("backlash", "LKneePitch", 0.05, 0.0))
+    world = sim([flat] * 2, ("backlash", "LKneePitch", 0.05))
     commands = np.tile(CROUCH, (2, 1))
     world.reset(commands)
     commands[0, 3] = np.nan

@@ -20,7 +20,7 @@ PARAMETERS = {
     "coulomb_friction": "torque",
     "stribeck_friction": "coulomb_torque extra_torque speed",
     "load_friction": "share",
-    "backlash": "gap compliance",
+    "backlash": "gap",
     "joint_elasticity": "stiffness damping",
     "command_latency": "delay",
     "sensor_delay": "delay",

@@ -57,6 +57,7 @@ def passive_torque(variants, row, angle_rad, speed_rad_s):
     [
         ("coulomb_friction", 0.1, 0.2, "coulomb_nm", 0.3),
         ("load_friction", 0.1, 0.2, "load_share", 0.3),
+        ("backlash", 0.01, 0.03, "gap_rad", 0.04),
         ("encoder_offset", 0.1, -0.15, "offset_rad", -0.05),
         ("servo_gain", 0.8, 0.5, "kp_factor", 0.4),
         ("servo_damping", 2.0, 3.0, "damping_factor", 6.0),

@@ -147,7 +147,7 @@ def test_a_torque_of_ones_own_acts_where_it_was_put_and_nowhere_else():
     """With a gap beside it, and in a motor that no servo drives, it is the same one."""
     with also_known(*OWN):
         brake = ("speed_brake", "elbow", 0.3)
-        gap = ("backlash", "shoulder", 0.02, 0.0)
+        gap = ("backlash", "shoulder", 0.02)
         kwargs = {"duration_s": 1.0, "noise_rad": 0.0}
         free, braked, both, loose = (
             recorded(PLANT, *some, **kwargs).position_rad

@@ -161,7 +161,7 @@ def test_variants_and_runs_do_not_touch_each_other():
     command = np.stack([COMMAND, -COMMAND], axis=1)
     models = [
         (),
-        (PlacedEffect("backlash", "elbow", (0.05, 0.0)),),
+        (PlacedEffect("backlash", "elbow", (0.05,)),),
         (PlacedEffect("coulomb_friction", "shoulder", (0.3,)),),
         (PlacedEffect("command_latency", "commands", (0.0071,)),),
         (PlacedEffect("joint_elasticity", "elbow", (30.0, 0.05)),),

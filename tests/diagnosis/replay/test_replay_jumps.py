@@ -66,7 +66,7 @@ def test_a_joint_apart_from_its_motor_coasts(limit_nm):
     plant = plant_of(WHEEL, kp=KP, kd=1.0, limit=limit_nm, emf=0.1)
     trace = trace_of(plant, TIME_S, command_rad=np.zeros(len(TIME_S)))
     run = run_from(trace, velocity_rad_s=2.0)
-    wide = ("backlash", "hinge", 1.0, 0.0)
+    wide = ("backlash", "hinge", 1.0)
     found = exact(plant, run, wide, step_s=STEP_S)[:, 0]
     np.testing.assert_allclose(found, 2.0 * TIME_S, atol=2e-3)
     braked = exact(plant, run, step_s=STEP_S)[:, 0]

@@ -80,7 +80,7 @@ def test_what_feels_each_other_is_one_part(arms, joined):
         (
             PlacedEffect("command_latency", "commands", (0.013,)),
             PlacedEffect("coulomb_friction", "shoulder", (0.1,)),
-            PlacedEffect("backlash", "elbow2", (0.05, 0.0)),
+            PlacedEffect("backlash", "elbow2", (0.05,)),
         ),
     ],
 )

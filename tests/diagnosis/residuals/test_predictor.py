@@ -112,7 +112,7 @@ def test_calibration_at_one_model_serves_others(pendulum):
 
 @pytest.mark.parametrize(
     ("kind", "values", "usual", "coarse"),
-    [(JointElasticity, (800.0, 0.2), 0.15, 0.4), (Backlash, (0.03, 0.0), 5.0, 9.0)],
+    [(JointElasticity, (800.0, 0.2), 0.15, 0.4), (Backlash, (0.03,), 5.0, 9.0)],
 )
 def test_springs_and_play_take_shorter_steps(kind, values, usual, coarse, monkeypatch):
     """What a joint without one needs would be half the noise off, or ten times it."""

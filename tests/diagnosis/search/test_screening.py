@@ -66,7 +66,7 @@ def test_the_right_effect_comes_first(truth, least_share):
 
 
 def test_what_is_far_from_linear_is_among_the_first():
-    screen, residual = screened(("backlash", "elbow", 0.02, 0.0))
+    screen, residual = screened(("backlash", "elbow", 0.02))
     first = [guess.model[0].key for guess in screen.singles(residual)[:3]]
     assert "backlash@elbow" in first
 
@@ -213,20 +213,20 @@ def test_a_push_keeps_its_time(predictor):
 
 def test_the_best_of_several_sizes_counts(predictor):
     sizes = [
-        made_up("backlash", "elbow", (0.01, 0.0), [1, 1]),
-        made_up("backlash", "elbow", (0.03, 0.0), [0, 4]),
+        made_up("backlash", "elbow", (0.01,), [1, 1]),
+        made_up("backlash", "elbow", (0.03,), [0, 4]),
     ]
     found = singles(predictor, [0.0, -4.0], *sizes)
     assert len(found) == 1
-    assert found[0].model[0].values == pytest.approx((0.03, 0.0))
+    assert found[0].model[0].values == pytest.approx((0.03,))
 
 
 def test_a_pair_is_solved_together(predictor):
     """Of c = (1, 0), d = (1, 1) and r = -(3, 1): 2 c + d, which explains all."""
     found = [
         made_up("viscous_friction", "elbow", (0.01,), [1, 0]),
-        made_up("backlash", "elbow", (0.01, 0.0), [1, 1]),
-        made_up("backlash", "elbow", (0.03, 0.0), [1, 1.1]),
+        made_up("backlash", "elbow", (0.01,), [1, 1]),
+        made_up("backlash", "elbow", (0.03,), [1, 1.1]),
     ]
     residual = np.zeros(len(predictor.scored))
     residual[:2] = -3.0, -1.0
