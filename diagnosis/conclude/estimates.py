@@ -37,8 +37,8 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
     as wide as joints differ. The `fit` to the predictor's data has a Jacobian by finite
     differences.
     """
-    apart = spread_of_joints(predictor, fit), spread_of_starts(predictor, fit)
-    deviation = np.hypot(standard_errors(predictor, fit), np.hypot(*apart))
+    spreads = standard_errors, spread_of_joints, spread_of_starts, spread_of_softness
+    deviation = np.linalg.norm([one(predictor, fit) for one in spreads], axis=0)
     x = fit.coordinates.of(fit.model)
     ends = np.array(
         [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
@@ -65,8 +65,7 @@ def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
     finite differences.
     """
     jacobian, residual = fit.jacobian, fit.residual
-    known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
-    bread = np.linalg.inv(known)
+    bread = np.linalg.inv(_information(jacobian))
     influence = (jacobian * residual[:, None]) @ bread
     variance = block_variance(influence, predictor.block)
     white = np.diag(bread)
@@ -113,6 +112,28 @@ def spread_of_starts(predictor: Predictor, fit: FittedModel) -> FloatArray:
     return np.asarray(np.sqrt(np.mean((ends - x) ** 2, axis=0)))
 
 
+def spread_of_softness(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) changes, in scaled coordinates, if parts that are taken as rigid yield.
+
+    How stiff a gear's teeth are, or a stop, recordings hardly tell: values absorb it.
+    They follow to first order from the Jacobian, for each effect that may yield.
+    """
+    plant, model = predictor.plant, fit.model
+    softer = [
+        (*model[:i], soft, *model[i + 1 :])
+        for i, one in enumerate(model)
+        if (soft := effect(one.name).softer(plant, one)) != one
+    ]
+    if not softer:
+        return np.zeros(fit.jacobian.shape[1])
+    rigid, *left = predictor.residuals([model, *softer])
+    known = (
+        fit.jacobian.T @ fit.jacobian + np.eye(fit.jacobian.shape[1]) / PRIOR_SPREAD**2
+    )
+    shifts = np.linalg.solve(known, fit.jacobian.T @ (np.array(left) - rigid).T)
+    return np.asarray(np.linalg.norm(shifts, axis=1))
+
+
 def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
     """(p,) standard errors, in scaled coordinates, from leaving out each recording.
 
@@ -128,8 +149,14 @@ def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
 def _without(fit: FittedModel, kept: BoolArray) -> FloatArray:
     """(p,) change of the fitted values, in scaled coordinates, by some of the data."""
     jacobian, residual = fit.jacobian[kept], fit.residual[kept]
-    known = jacobian.T @ jacobian + np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
-    return np.asarray(-np.linalg.solve(known, jacobian.T @ residual))
+    information = _information(jacobian)
+    return np.asarray(-np.linalg.solve(information, jacobian.T @ residual))
+
+
+def _information(jacobian: FloatArray) -> FloatArray:
+    """(p, p) information on the values in a fit with this (N, p) Jacobian."""
+    prior = np.eye(jacobian.shape[1]) / PRIOR_SPREAD**2
+    return np.asarray(jacobian.T @ jacobian + prior)
 
 
 def block_variance(influence: FloatArray, block: IntArray) -> FloatArray:

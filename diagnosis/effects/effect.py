@@ -230,6 +230,14 @@ class Effect(ABC):
         """The simpler effect that `placed` contains, or else `placed` itself."""
         return placed
 
+    def softer(self, plant: Plant, placed: PlacedEffect) -> PlacedEffect:
+        """The effect where parts that it takes as rigid yield, as far as they may.
+
+        It has further values than `parameters` says, which only `apply` knows: by how
+        much the others depend on that rigidity is part of their uncertainty.
+        """
+        return placed
+
     def twins(self, plant: Plant, place: str) -> tuple[PlacedEffect, ...]:
         """Effects that recordings of this robot cannot distinguish from this one."""
         return ()

@@ -1,11 +1,18 @@
 """Effects of gears: play, and shafts that wind up."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.effects.effect import JointEffect, NumberEffect, ServoEffect
-from diagnosis.effects.parts import EffectWords, JointMotion, Parameter, Values
+from diagnosis.effects.effect import JointEffect, ServoEffect
+from diagnosis.effects.parts import (
+    EffectWords,
+    JointMotion,
+    Parameter,
+    PlacedEffect,
+    Values,
+)
 from diagnosis.effects.places import driven_joints
 from diagnosis.effects.scales import inertia_kg_m2, torque_nm
 from diagnosis.effects.variants import Variants
@@ -19,7 +26,12 @@ PLAY_RAD = 0.005
 crossed. Small, since the sign of the error decides on which side the teeth touch."""
 
 
-class Backlash(NumberEffect, ServoEffect):
+YIELD_RAD = 0.0005
+"""By how much the teeth and shafts of a gear yield under a large torque for its joint:
+1.7 arc minutes, as data sheets of gears say."""
+
+
+class Backlash(ServoEffect):
     """A gap in the gear, within which no torque passes from motor to joint.
 
     The servo controls the motor's angle; the recorded encoder sits at the joint. Within
@@ -34,14 +46,27 @@ class Backlash(NumberEffect, ServoEffect):
     name = "backlash"
     native = False
     finer = 4  # within a step teeth touch or not, and light joints rattle
-    quantity = "gap_rad"
-    usual = (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
     words = EffectWords(
         "play (backlash)",
         "{joint} has play of {gap} {lacking}",
         "Gears with a gap between their teeth: after each reversal the motor turns "
         "before the joint follows.",
     )
+
+    def parameters(self, plant: Plant, place: str) -> tuple[Parameter, ...]:
+        """The gap [rad], the same for all robots and places."""
+        return (Parameter("gap", "rad", 0.0, 0.15, 0.0, 0.02),)
+
+    def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
+        """Widen the joint's gap in one variant; a second value is a compliance."""
+        joints, at = copies.joints, (row, copies.column(place))
+        joints.gap_rad[at] += values[0]
+        joints.compliance_rad_nm[at] += values[1:].sum()
+
+    def softer(self, plant: Plant, placed: PlacedEffect) -> PlacedEffect:
+        """With a gear that yields beyond its gap; the compliance is in rad/(N m)."""
+        compliance = YIELD_RAD / torque_nm(plant, placed.place)
+        return replace(placed, values=(*placed.values, compliance))
 
     def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """A small and a large gap [rad]: the effect is not linear in its size."""

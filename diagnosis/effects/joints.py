@@ -1,6 +1,7 @@
 """Effects of a joint's mechanics: inertia, springs, stops and its encoder."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,9 +22,8 @@ from groundwalk.arrays import FloatArray
 _FAR_RAD = 1e6
 """Bound of the angle of a joint without a range: so large that it acts as no bound."""
 
-_STIFF = (0.005, 1.0)
-"""MuJoCo's `solref` of an end stop, time constant [s] and damping ratio: hard, without
-bouncing."""
+_STIFF_S, _SOFT_S = 0.005, 0.02
+"""Time constants of a hard end stop, and of one that yields as MuJoCo's usual ones."""
 
 
 class Armature(NumberEffect, JointEffect):
@@ -209,8 +209,11 @@ class EndStop(JointEffect):
         )
 
     def apply(self, copies: Variants, row: int, place: str, values: FloatArray) -> None:
-        """Narrow a joint's range in one variant; stops outside it change nothing."""
-        angle, side = (float(value) for value in values)
+        """Narrow a joint's range in one variant; stops outside it change nothing.
+
+        A third value is the time constant [s] with which it pushes back.
+        """
+        angle, side, *soft_s = (float(value) for value in values)
         joint = copies.plant.model.joint(place).id
         limited, ranges = copies.field("jnt_limited"), copies.field("jnt_range")
         low, high = ranges[row, joint] if limited[row, joint] else (-_FAR_RAD, _FAR_RAD)
@@ -218,7 +221,7 @@ class EndStop(JointEffect):
             return
         ranges[row, joint] = (low, angle) if side > 0 else (angle, high)
         limited[row, joint] = 1
-        copies.field("jnt_solref")[row, joint] = _STIFF
+        copies.field("jnt_solref")[row, joint] = *(soft_s or [_STIFF_S]), 1.0
 
     def first_tries(self, plant: Plant, place: str, usage: Usage) -> list[Values]:
         """Stops at either end of the joint's recorded range, and 5 and 20 % inside."""
@@ -236,6 +239,10 @@ class EndStop(JointEffect):
     ) -> list[PlacedEffect]:
         """Only the guess `placed`: a scaled angle would not scale the effect."""
         return [placed]
+
+    def softer(self, plant: Plant, placed: PlacedEffect) -> PlacedEffect:
+        """With a stop that yields, with a time constant of 20 ms."""
+        return replace(placed, values=(*placed.values, _SOFT_S))
 
     def neutral_values(self, plant: Plant, placed: PlacedEffect) -> Values:
         """Values without effect: the range's end on the stop's side, and side +1."""

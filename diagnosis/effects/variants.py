@@ -39,6 +39,7 @@ class Joints:
       max_torque_nm: torque limit, where below the nominal servo's.
       setpoint_speed_rad_s: highest speed of the servo's set-point.
       gap_rad: total play between servo and joint; no torque passes within it.
+      compliance_rad_nm: by how much gears with play yield per torque that passes.
       offset_rad: measured minus true position; the servo acts on the measured one.
       stribeck_nm: extra dry friction at standstill.
       stribeck_speed_rad_s: speed at which the extra friction has dropped to 37 %.
@@ -56,6 +57,7 @@ class Joints:
     max_torque_nm: FloatArray
     setpoint_speed_rad_s: FloatArray
     gap_rad: FloatArray
+    compliance_rad_nm: FloatArray
     offset_rad: FloatArray
     coulomb_nm: FloatArray
     stribeck_nm: FloatArray

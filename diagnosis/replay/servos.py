@@ -7,14 +7,11 @@ import numpy as np
 
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
-from diagnosis.replay.transmission import ElasticJoints
+from diagnosis.replay.transmission import LEAST_KP, ElasticJoints
 from groundwalk.arrays import FloatArray
 
 UNLIMITED_NM = 1e9
 """Torque limit [N m] that stands for no limit, since MuJoCo needs a finite number."""
-
-LEAST_KP = 1e-9
-"""Smallest stiffness [N m/rad] used as a divisor, to avoid division by zero."""
 
 JUMP = 0.3
 """A target that changes in one physics step by more than this share of the position

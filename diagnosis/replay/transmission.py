@@ -6,6 +6,9 @@ import numpy as np
 
 from groundwalk.arrays import BoolArray, FloatArray
 
+LEAST_KP = 1e-9
+"""Smallest stiffness [N m/rad] used as a divisor, to avoid division by zero."""
+
 LEAST_DRAG = 1e-9
 """Smallest damping [N m s/rad] used as a divisor, to avoid division by zero; a motor
 without stiffness and damping then does not move."""
@@ -99,7 +102,8 @@ class BatchGaps:
 
     A motor has no inertia here, since its inertia is part of the joint's. While it is
     free, its servo moves its angle m by m' = kp (command - m) / (kd + back-EMF), and no
-    torque reaches the joint. It touches the joint at half the gap from its position.
+    torque reaches the joint. It touches the joint at half the gap from its position,
+    and goes further by the gear's compliance times the torque that passes.
 
     Source: Nordin and Gutman 2002, "Controlling mechanical systems with backlash: a
     survey", the dead-zone model, with a motor whose damping outweighs its inertia.
@@ -117,8 +121,10 @@ class BatchGaps:
         """
         self._at = np.nonzero(joints["gap_rad"])
         self._half = joints["gap_rad"][self._at] / 2
+        self._yields = joints["compliance_rad_nm"][self._at]
         self._law, self._step_s = law, step_s
         self._motor_rad: FloatArray | None = None
+        self._wound_rad = np.zeros_like(self._half)
 
     def begin(self) -> None:
         """Forget the motors' angles; they start as near their targets as gaps allow."""
@@ -138,19 +144,38 @@ class BatchGaps:
         low, high = joint - self._half, joint + self._half
         if self._motor_rad is None:
             self._motor_rad = np.minimum(np.maximum(asked, low), high)
-        free = self._motor_rad + self._moved(law, asked - self._motor_rad)
+            self._wound_rad = np.zeros_like(joint)
+        drag = (law["kd"] + law["emf"]) / self._step_s
+        free = self._motor_rad + self._moved(law, drag, asked - self._motor_rad)
         apart: BoolArray = (free > low) & (free < high)
-        self._motor_rad = np.minimum(np.maximum(free, low), high)
+        edge = np.minimum(np.maximum(free, low), high)
+        driven = law["kp"] * (asked - edge) - drag * (edge - self._motor_rad)
+        wound = np.where(apart, 0.0, self._wound(law, drag, driven))
+        winding = drag * (wound - self._wound_rad) / np.maximum(law["kp"], LEAST_KP)
+        self._motor_rad, self._wound_rad = edge + wound, wound
         targets, free_nm = asked_rad.copy(), np.zeros_like(asked_rad)
-        targets[self._at] = joint + np.where(apart, 0.0, asked - self._motor_rad)
+        arrives = np.where(apart, 0.0, asked - self._motor_rad - winding)
+        targets[self._at] = joint + arrives
         free_nm[self._at] = np.where(apart, _damping_nm(law, velocity[self._at]), 0.0)
         return targets, free_nm
 
+    def _wound(
+        self, law: Mapping[str, FloatArray], drag: FloatArray, driven: FloatArray
+    ) -> FloatArray:
+        """(g,) angles beyond the gap's edge of motors that push, after a step.
+
+        They are the compliance times the torque, solved for implicitly; at the edge the
+        torque would be `driven` [N m].
+        """
+        through = driven / (1 + self._yields * (law["kp"] + drag))
+        held = np.minimum(np.maximum(through, -law["limit"]), law["limit"])
+        return np.asarray(self._yields * held)
+
     def _moved(
-        self, law: Mapping[str, FloatArray], error_rad: FloatArray
+        self, law: Mapping[str, FloatArray], drag: FloatArray, error_rad: FloatArray
     ) -> FloatArray:
         """(g,) ways of free motors in one implicit step, torque limited."""
-        drag = np.maximum(law["kd"] + law["emf"], LEAST_DRAG) / self._step_s
+        drag = np.maximum(drag, LEAST_DRAG / self._step_s)
         moved = law["kp"] * error_rad / (law["kp"] + drag)
         emf = np.maximum(law["emf"], LEAST_DRAG)
         most = self._step_s * law["limit"] / emf

@@ -117,6 +117,28 @@ def test_other_starts_that_fits_do_not_come_back_from_widen_an_interval(share):
     assert half(predictor) == pytest.approx(np.hypot(alone, far), rel=1e-6)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.7, -0.7])
+def test_what_values_absorb_if_a_gear_yields_widens_an_interval(share):
+    """Teeth that yield leave more by this share of what a larger gap changes."""
+    predictor, fit, _ = toy(1, 0.0)
+    play, spring = PlacedEffect("backlash", "elbow", (0.01,)), fit.model[1]
+    model = play, spring
+    fit = FittedModel(model, fit.residual, fit.jacobian, Coordinates(PLANT, model))
+
+    def residuals(models):
+        yields = [len(one[0].values) > len(play.values) for one in models]
+        return fit.residual + share * np.outer(yields, fit.jacobian[:, 0])
+
+    predictor.residuals = lambda models: np.tile(fit.residual, (len(models), 1))
+    before = estimates(predictor, fit)[0]["gap"]
+    predictor.residuals = residuals
+    after = estimates(predictor, fit)[0]["gap"]
+    scale = fit.coordinates.values_at(np.array([1.0, 0.0, 0.0]))[0]
+    far = Z_80 * abs(share) * scale
+    known = np.hypot(before.high - before.value, far)
+    assert after.high - after.value == pytest.approx(known, rel=5e-3)
+
+
 def test_names_and_order_are_those_of_the_effects():
     predictor, fit, _ = toy(1, 0.0)
     first, second = estimates(predictor, fit)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from diagnosis.effects.library import all_effects, effect
+from diagnosis.effects.parts import PlacedEffect
 from diagnosis.effects.variants import Variants
 from diagnosis.plant.plant import Plant
 from diagnosis.plant.servo import Servo
@@ -128,6 +129,27 @@ def test_the_library_is_as_specified():
     }
     assert names == PARAMETERS
     assert list(names) == list(PARAMETERS)
+
+
+def test_gears_and_stops_may_yield():
+    """Each gives way further than the rigid one, where it says so; others are alike."""
+    plant = walker()
+    for name, one in all_effects().items():
+        place = one.places(plant, EVERYTHING)[0]
+        typical = tuple(p.typical for p in one.parameters(plant, place))
+        placed = PlacedEffect(name, place, typical)
+        softer = one.softer(plant, placed)
+        assert softer.values[: len(typical)] == typical
+        assert (softer != placed) == (name in {"backlash", "end_stop"})
+    variants = Variants(plant, 2)
+    for row, values in enumerate([(0.02,), (0.02, 1e-3)]):
+        effect("backlash").apply(variants, row, "hip", np.array(values))
+    for row, values in enumerate([(0.01, 1.0), (0.01, 1.0, 0.03)]):
+        effect("end_stop").apply(variants, row, "hip", np.array(values))
+    joint = plant.model.joint("hip").id
+    at = variants.column("hip")
+    assert variants.joints.compliance_rad_nm[:, at].tolist() == [0.0, 1e-3]
+    assert variants.field("jnt_solref")[:, joint, 0].tolist() == [0.005, 0.03]
 
 
 def test_a_wrong_name_is_told_the_nearest():

@@ -78,9 +78,10 @@ def test_beyond_the_gap_the_servo_feels_the_rest():
     assert np.abs(exact(plant, commanded(plant))[:, 0] - truth).max() > 0.01
 
 
-def test_a_motor_takes_its_time_through_the_gap():
-    """It is braked there; the gap's edges are hard, here very stiff springs."""
-    plant, edge = plant_of(PENDULUM, kp=KP, kd=KD, emf=EMF), 3e3
+@pytest.mark.parametrize(("edge", "compliance"), [(3e3, 0.0), (100.0, 0.01)])
+def test_a_motor_takes_its_time_through_the_gap(edge, compliance):
+    """It is braked there; the gap's edges are very stiff springs, or soft ones."""
+    plant = plant_of(PENDULUM, kp=KP, kd=KD, emf=EMF)
 
     def law(t, y, k):
         angle, speed, motor = y
@@ -91,9 +92,11 @@ def test_a_motor_takes_its_time_through_the_gap():
         return [speed, (pushed - weight) / INERTIA, turning]
 
     truth = stiffly_integrated(law, TIME_S, [0, 0, 0])[:, 0]
-    run, effect = commanded(plant), ("backlash", HINGE, GAP)
+    run, effect = commanded(plant), ("backlash", HINGE, GAP, compliance)
     found = replayed(plant, run, effect, step_s=2e-4)[0][:, 0]
     assert np.abs(found - truth).max() < 1e-3
+    rigid = replayed(plant, run, ("backlash", HINGE, GAP), step_s=2e-4)[0][:, 0]
+    assert (np.abs(rigid - truth).max() > 3e-3) == (compliance > 0)
     without = plant_of(PENDULUM, kp=KP)
     at_once = replayed(without, commanded(without), effect, step_s=2e-4)[0][:, 0]
     assert np.abs(at_once - truth).max() > 0.01
