@@ -127,10 +127,8 @@ def spread_of_softness(predictor: Predictor, fit: FittedModel) -> FloatArray:
     if not softer:
         return np.zeros(fit.jacobian.shape[1])
     rigid, *left = predictor.residuals([model, *softer])
-    known = (
-        fit.jacobian.T @ fit.jacobian + np.eye(fit.jacobian.shape[1]) / PRIOR_SPREAD**2
-    )
-    shifts = np.linalg.solve(known, fit.jacobian.T @ (np.array(left) - rigid).T)
+    absorbed = fit.jacobian.T @ (np.array(left) - rigid).T
+    shifts = np.linalg.solve(_information(fit.jacobian), absorbed)
     return np.asarray(np.linalg.norm(shifts, axis=1))
 
 

@@ -11,10 +11,7 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.residuals.bursts import BIN_S, push_intervals
 from diagnosis.residuals.predictor import Model, Predictor
-from diagnosis.search.chance import (
-    in_standard_errors,
-    independent_blocks,
-)
+from diagnosis.search.chance import in_standard_errors, independent_blocks
 from diagnosis.search.fitting import FittedModel, fit_all
 from diagnosis.search.judging import gain_of_noise
 

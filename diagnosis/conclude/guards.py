@@ -148,7 +148,7 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
     said = []
     possible = _possible(fit, hardly_more)
     share = gained / (fit.nominal**2 - fit.floor**2)
-    beaten = fit.corrected <= _tells(fit)
+    beaten = fit.corrected <= _left_by_regression(fit)
     much_left = fit.corrected**2 > (1 + hardly_more) * fit.floor**2
     if share < MOST_OF_IT and much_left and not beaten:
         said.append(
@@ -199,7 +199,7 @@ def _possible(fit: Errors, hardly_more: float) -> float:
     return min(options, default=0.0)
 
 
-def _tells(fit: Errors) -> float:
+def _left_by_regression(fit: Errors) -> float:
     """What a regression without physics leaves if it explains half; otherwise 0.
 
     What explains little says little on how much could be explained.

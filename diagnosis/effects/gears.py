@@ -25,10 +25,9 @@ PLAY_RAD = 0.005
 """Servo error [rad] at which `Backlash.torque_column` takes a gear's play as 76 %
 crossed. Small, since the sign of the error decides on which side the teeth touch."""
 
-
 YIELD_RAD = 0.0005
-"""By how much the teeth and shafts of a gear yield under a large torque for its joint:
-1.7 arc minutes, as data sheets of gears say."""
+"""By how much the teeth and shafts of a gear may yield under a large torque for its
+joint: 1.7 arc minutes. An assumption; gears of arms wind up by about as much."""
 
 
 class Backlash(ServoEffect):

@@ -99,7 +99,7 @@ def test_recordings_that_disagree_widen_an_interval():
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_other_starts_that_fits_do_not_come_back_from_widen_an_interval(share):
-    """By what they keep of their distance."""
+    """An interval grows by what the ends keep of their starts' distance."""
     predictor, fit, x = toy(1, 0.0)
 
     def ends(nuisance, starts):

@@ -58,7 +58,7 @@ def test_gains_that_change_at_random_are_less(monkeypatch, gain, name):
 
 
 def test_it_may_show_in_a_few_moments_if_it_loses_in_none(monkeypatch):
-    """As friction does that has a peak at standstill."""
+    """Friction with a peak at standstill shows when a joint starts to move."""
     nats = np.where(np.arange(BLOCKS) % 16 == 0, 10.0, 0.3)
     assert form(monkeypatch, *gaining(nats)) == PEAK.name
     nats = np.where(np.arange(BLOCKS) % 16 == 0, 10.0, -0.3)
