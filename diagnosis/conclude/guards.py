@@ -160,6 +160,8 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
             f"The effects found explain {gained / possible:.0%} of what could be "
             "explained of the error in held-out motions, less than half."
         )
+    else:
+        said += _unexplained_at_own_joints(judged)
     controls = {
         "wrong_place": "the same effect at another place",
         "wrong_effect": "another effect at the same place",
@@ -173,6 +175,29 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
         and _does_as_well(fit, getattr(fit, key), hardly_more)
     ]
     return tuple(said)
+
+
+def _unexplained_at_own_joints(judged: Judgement) -> tuple[str, ...]:
+    """A sentence if at a joint effects are named that hardly explain its errors.
+
+    Of all joints together they may explain most, and yet stand in for something else
+    that shows at this joint.
+    """
+    least, where = HALF, ""
+    for name in judged.own:
+        one = judged.fit.channels[name]
+        above = one.nominal**2 - one.floor**2
+        gained = one.nominal**2 - one.corrected**2
+        much_left = one.corrected**2 > (1 + judged.hardly_more) * one.floor**2
+        share = gained / above if min(gained, above) > 0 else 0.0
+        if much_left and share < least:
+            least, where = share, name.partition(".")[2]
+    if not where:
+        return ()
+    return (
+        f"The effects found take away {least:.0%} of the squared error above the noise "
+        f"at {where}, where some of them act: something else is missing, too.",
+    )
 
 
 def is_worse(measured: Fit, hardly_more: float) -> bool:

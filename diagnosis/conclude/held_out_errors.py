@@ -11,6 +11,7 @@ import numpy as np
 from diagnosis.conclude.answer import alike
 from diagnosis.conclude.controls import controls_of
 from diagnosis.conclude.flexible_regression import flexible_regression_errors
+from diagnosis.effects.library import effect
 from diagnosis.residuals.channels import MORE_THAN_NOISE, channel_unit
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.chance import in_standard_errors, independent_blocks
@@ -86,7 +87,13 @@ def held_out_errors(
     rms = _changed(own, model)
     changed = dict(zip(channels.names, rms.tolist(), strict=True))
     judgement = Judgement(
-        fit, worse, said, hardly_more_than_noise(test), changed, follows
+        fit,
+        worse,
+        said,
+        hardly_more_than_noise(test),
+        changed,
+        follows,
+        _own_channels(channels.names, model),
     )
     return _fit(test, measured, wider[0]), judgement
 
@@ -116,6 +123,7 @@ class Judgement:
       changed: for each channel, rms of what the model changes [noise].
       follows: for each control, the share of what the main effect explains that the
         control explains as well if the main effect is real.
+      own: names of the channels of joints at which the model has effects.
     """
 
     fit: Fit
@@ -124,6 +132,16 @@ class Judgement:
     hardly_more: float = MOST_LEFT
     changed: Mapping[str, float] = field(default_factory=dict)
     follows: Mapping[str, float] = field(default_factory=dict)
+    own: tuple[str, ...] = ()
+
+
+def _own_channels(names: Sequence[str], model: Model) -> tuple[str, ...]:
+    """The channels, of those with these names, of joints at which a model has effects.
+
+    Bodies may have the names of joints, but not their effects.
+    """
+    joints = {one.place for one in model if effect(one.name).place_kind == "joint"}
+    return tuple(name for name in names if name.partition(".")[2] in joints)
 
 
 def hardly_more_than_noise(test: Predictor) -> float:

@@ -24,10 +24,10 @@ GOOD = Fit(
 )
 
 
-def said(timed=False, worse=None, changed=None, follows=None, **changes):
+def said(timed=False, worse=None, changed=None, follows=None, own=(), **changes):
     errors = replace(GOOD, **changes)
     judged = Judgement(
-        errors, worse or {}, changed=changed or {}, follows=follows or {}
+        errors, worse or {}, changed=changed or {}, follows=follows or {}, own=own
     )
     return " ".join(objections(judged, timed))
 
@@ -116,6 +116,28 @@ def test_an_effect_at_one_of_many_joints_is_judged_by_its_own():
     assert said(wrong_place=None, ceiling=None, channels=channels, **diluted) == ""
     as_good = channels | {"position.own": replace(loud, wrong_effect=2.3)}
     assert "another effect" in said(wrong_place=None, channels=as_good, **diluted)
+
+
+def test_effects_must_explain_half_at_each_joint_where_they_are():
+    """At the elbow 9 of 99 go, or 51; of all joints' squares most go in any case."""
+    alone = {"wrong_place": None, "wrong_effect": None, "ceiling": None}
+    shoulder = ChannelFit(nominal=30.0, corrected=1.0, floor=1.0, unit="rad")
+    elbow = ChannelFit(nominal=10.0, corrected=9.5, floor=1.0, unit="rad")
+    own = "position.shoulder", "position.elbow"
+
+    def told(own, **changes):
+        channels = {
+            "position.shoulder": shoulder,
+            "position.elbow": replace(elbow, **changes),
+        }
+        return said(channels=channels, own=own, **alone)
+
+    assert "take away 10% of the squared error above the noise at elbow" in told(own)
+    assert told(own[:1]) == ""  # nothing is named at the elbow
+    assert told(own, corrected=7.0) == ""
+    assert "0%" in told(own, nominal=9.0)  # it got worse
+    assert "0%" in told(own, nominal=0.9, corrected=1.5)
+    assert told(own, nominal=1.2, corrected=1.2) == ""  # hardly more than noise
 
 
 @pytest.mark.parametrize("factor", [0.5, 1.0, 2.0])
