@@ -32,9 +32,9 @@ HALF = 0.5
 """Share of what could be explained that an answer must explain, and of what it explains
 that a wrong answer must not reach: more than a coincidence, less than all."""
 
-MOST_OF_IT = 0.75
+MOST_OF_IT = 8 / 9
 """Share of the squared error above the noise that an answer must take away: the error
-falls to half. What is left is otherwise as large as what was found. That of a
+falls to a third, so that what is left is half as large as what was found. That of a
 regression without physics counts as noise where it explains half of the error, but no
 more than the effects do."""
 
