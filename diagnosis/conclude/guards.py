@@ -34,9 +34,7 @@ that a wrong answer must not reach: more than a coincidence, less than all."""
 
 MOST_OF_IT = 8 / 9
 """Share of the squared error above the noise that an answer must take away: the error
-falls to a third, so that what is left is half as large as what was found. That of a
-regression without physics counts as noise where it explains half of the error, but no
-more than the effects do."""
+falls to a third, so that what is left is half as large as what was found."""
 
 SURELY = 2.33
 """Standard errors by which a control that explains much must still leave more than the
@@ -148,9 +146,8 @@ def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:
     said = []
     possible = _possible(fit, hardly_more)
     share = gained / (fit.nominal**2 - fit.floor**2)
-    beaten = fit.corrected <= _left_by_regression(fit)
     much_left = fit.corrected**2 > (1 + hardly_more) * fit.floor**2
-    if share < MOST_OF_IT and much_left and not beaten:
+    if share < MOST_OF_IT and much_left:
         said.append(
             f"The effects found take away {share:.0%} of the squared error above the "
             "noise in held-out motions: something else is missing, too."
@@ -222,17 +219,6 @@ def _possible(fit: Errors, hardly_more: float) -> float:
     if fit.ceiling is not None and fit.ceiling < fit.nominal:
         options.append(fit.nominal**2 - fit.ceiling**2)
     return min(options, default=0.0)
-
-
-def _left_by_regression(fit: Errors) -> float:
-    """What a regression without physics leaves if it explains half; otherwise 0.
-
-    What explains little says little on how much could be explained.
-    """
-    if fit.ceiling is None:
-        return 0.0
-    explained = fit.nominal**2 - fit.ceiling**2
-    return fit.ceiling if explained >= HALF * (fit.nominal**2 - fit.floor**2) else 0.0
 
 
 def _telling(judged: Judgement) -> Errors:

@@ -60,12 +60,11 @@ def test_the_error_must_fall_to_a_third():
     assert said(nominal=1.6, corrected=1.2, ceiling=None, **alone) == ""
 
 
-def test_a_regression_that_explains_half_says_what_is_possible():
-    """Of 99 above the noise, 7.0 leaves 48, less than half; 8.2 leaves 66."""
+@pytest.mark.parametrize("ceiling", [None, 3.4, 7.0])
+def test_a_regression_that_explains_less_is_no_excuse(ceiling):
+    """Whoever finds little more than a curve fit does may have found no physics."""
     alone = {"wrong_place": None, "wrong_effect": None}
-    assert said(corrected=5.2, ceiling=7.0, **alone) == ""
-    assert "something else" in said(corrected=5.2, ceiling=8.2, **alone)
-    assert "something else" in said(corrected=5.2, ceiling=5.1, **alone)
+    assert "something else" in said(corrected=3.5, ceiling=ceiling, **alone)
 
 
 def test_where_hardly_more_than_noise_is_left_a_regression_says_what_is_possible():
