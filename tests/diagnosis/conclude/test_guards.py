@@ -118,7 +118,7 @@ def test_an_effect_at_one_of_many_joints_is_judged_by_its_own():
 
 
 def test_effects_must_explain_half_at_each_joint_where_they_are():
-    """At the elbow 9 of 99 go, or 51; of all joints' squares most go in any case."""
+    """At the elbow 9.75 of 99 go, or 51; of all joints' squares most go in any case."""
     alone = {"wrong_place": None, "wrong_effect": None, "ceiling": None}
     shoulder = ChannelFit(nominal=30.0, corrected=1.0, floor=1.0, unit="rad")
     elbow = ChannelFit(nominal=10.0, corrected=9.5, floor=1.0, unit="rad")
@@ -134,8 +134,8 @@ def test_effects_must_explain_half_at_each_joint_where_they_are():
     assert "take away 10% of the squared error above the noise at elbow" in told(own)
     assert told(own[:1]) == ""  # nothing is named at the elbow
     assert told(own, corrected=7.0) == ""
-    assert "0%" in told(own, nominal=9.0)  # it got worse
-    assert "0%" in told(own, nominal=0.9, corrected=1.5)
+    assert "away 0%" in told(own, nominal=9.0)  # it got worse
+    assert "away 0%" in told(own, nominal=0.9, corrected=1.5)
     assert told(own, nominal=1.2, corrected=1.2) == ""  # hardly more than noise
 
 
