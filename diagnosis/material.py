@@ -71,7 +71,7 @@ class Material:
         """
         traces, said = _without_outliers(traces)
         healthy, _ = _without_outliers(reference.traces if reference else ())
-        audited = audit(traces, plant)
+        audited = audit(traces, plant, healthy)
         if audited.refused:
             raise BadRecordingError(audited.refused[0])
         before = reference.plant if reference else plant

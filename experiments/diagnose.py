@@ -149,7 +149,7 @@ def print_audit(config: Diagnose) -> None:
     """Print the check of the recordings with which a diagnosis begins."""
     plant, traces, reference = _read(config)
     healthy = reference.traces if reference else ()
-    found = audit([*traces, *healthy], plant)
+    found = audit([*traces, *healthy], plant, healthy)
     if config.json:
         print(found.to_json())
         return

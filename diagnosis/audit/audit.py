@@ -6,17 +6,20 @@ from dataclasses import replace
 import numpy as np
 
 from diagnosis.audit import measures, suspicions
+from diagnosis.audit.clocks import clock_findings
 from diagnosis.audit.result import Audit, Finding, TraceAudit
 from diagnosis.plant.plant import Plant
 from diagnosis.traces.smoothing import smooth
 from diagnosis.traces.trace import Trace
 
 
-def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
+def audit(
+    traces: Sequence[Trace], plant: Plant, healthy: Sequence[Trace] = ()
+) -> Audit:
     """Measure all traces, and find what makes them unusable or limits conclusions.
 
     A delay between commands and positions is no finding: it is physics that a diagnosis
-    looks for.
+    looks for. Clocks are compared with those of recordings of the `healthy` robot.
 
     Example:
       >>> audit(traces, plant).limits
@@ -26,6 +29,7 @@ def audit(traces: Sequence[Trace], plant: Plant) -> Audit:
         one, found = _audit_trace(trace, plant)
         audits.append(one)
         findings += found
+    findings += clock_findings([one for one in traces if one.ticks > 1], healthy)
     findings += measures.excitation_findings([one for one in audits if one.joints])
     return Audit(tuple(audits), tuple(findings))
 

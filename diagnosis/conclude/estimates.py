@@ -25,6 +25,9 @@ FEWEST = 8
 """Fewest time blocks from which a correlation of the errors in neighbouring ones is
 estimated."""
 
+LEAST_SHARE = 1e-3
+"""Share of what all recordings tell of a value from which on one tells something."""
+
 SIGNIFICANT = 2.0
 """A correlation of the errors in neighbouring time blocks counts as real from this
 multiple of the standard deviation that chance gives it."""
@@ -37,8 +40,10 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
     as wide as joints differ. The `fit` to the predictor's data has a Jacobian by finite
     differences.
     """
-    spreads = standard_errors, spread_of_joints, spread_of_starts, spread_of_softness
-    deviation = np.linalg.norm([one(predictor, fit) for one in spreads], axis=0)
+    errors = standard_errors(predictor, fit), errors_between_recordings(predictor, fit)
+    spreads = spread_of_joints, spread_of_starts, spread_of_softness
+    apart = [one(predictor, fit) for one in spreads]
+    deviation = np.linalg.norm([np.maximum(*errors), *apart], axis=0)
     x = fit.coordinates.of(fit.model)
     ends = np.array(
         [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
@@ -130,6 +135,41 @@ def spread_of_softness(predictor: Predictor, fit: FittedModel) -> FloatArray:
     absorbed = fit.jacobian.T @ (np.array(left) - rigid).T
     shifts = np.linalg.solve(_information(fit.jacobian), absorbed)
     return np.asarray(np.linalg.norm(shifts, axis=1))
+
+
+def errors_between_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) standard errors, in scaled coordinates, if recordings truly differ.
+
+    A value may be another one in each recording, as a delay is that a bus and a motor
+    make together; parts of one recording then agree. How much recordings differ beyond
+    their errors follows from the values that each of them tells (DerSimonian and Laird
+    1986, "Meta-analysis in clinical trials"), to first order from the Jacobian.
+    """
+    bread = np.linalg.inv(_information(fit.jacobian))
+    names = [trace.recording for trace in predictor.traces]
+    own = np.unique(names, return_inverse=True)[1][predictor.trace]
+    every = [fit.jacobian * (own == k)[:, None] for k in np.unique(own)]
+    shares = np.array([np.diag(bread @ one.T @ one) for one in every])
+    shifts = np.array([-bread @ one.T @ fit.residual for one in every])
+    influence = (fit.jacobian * fit.residual[:, None]) @ bread
+    white = np.diag(bread)
+    error = np.maximum(block_variance(influence, predictor.block), white)
+    found = error.copy()
+    for i, squared in enumerate(error):
+        tells = shares[:, i] > LEAST_SHARE
+        weight = shares[tells, i]
+        value = shifts[tells, i] / weight
+        if tells.sum() > 1:
+            found[i] += _between(value, weight / squared) * np.sum(weight**2)
+    return np.asarray(np.sqrt(found))
+
+
+def _between(values: FloatArray, weights: FloatArray) -> float:
+    """Variance of k values beyond that of their errors, 1 / weights; 0 if not more."""
+    total = float(weights.sum())
+    scatter = float(weights @ (values - weights @ values / total) ** 2)
+    beyond = scatter - (len(values) - 1)
+    return max(beyond / (total - float(weights @ weights) / total), 0.0)
 
 
 def spread_of_recordings(predictor: Predictor, fit: FittedModel) -> FloatArray:

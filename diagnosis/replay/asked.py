@@ -13,7 +13,11 @@ import numpy as np
 
 from diagnosis.effects.variants import Variants
 from diagnosis.traces.trace import Trace
-from groundwalk.arrays import FloatArray
+from groundwalk.arrays import BoolArray, FloatArray
+
+LATE_S = 0.1
+"""Delay of commands [s] whose effect is known in all rows that count: commands from
+before a recording's first row are not known."""
 
 LEAST = 0.02
 """Smallest share of a servo's stiffness: a motor that is off asks for any torque."""
@@ -63,15 +67,30 @@ def centred(trace: Trace, delay_s: float = 0.0) -> FloatArray:
     """(T, j) commands that hold at each row's time, if they are late by `delay_s`.
 
     A command holds from its row to the next one, so that on average it is that of the
-    middle between them.
+    middle between them. Of a part of a recording the commands before it count as well,
+    of a whole one that of its first row.
     """
     assert trace.command_rad is not None
-    middles = trace.time_s + np.diff(trace.time_s, append=np.nan) / 2
-    middles[-1] = trace.time_s[-1] + trace.tick_s / 2
+    time_s, command_rad = _led(trace)
+    middles = time_s + np.diff(time_s, append=np.nan) / 2
+    middles[-1] = time_s[-1] + trace.tick_s / 2
     early = trace.time_s - delay_s
-    return np.stack(
-        [np.interp(early, middles, one) for one in trace.command_rad.T], axis=1
-    )
+    return np.stack([np.interp(early, middles, one) for one in command_rad.T], axis=1)
+
+
+def late_commands_known(trace: Trace) -> BoolArray:
+    """(T,) whether the commands from `LATE_S` before each row on are known."""
+    return np.asarray(trace.time_s - LATE_S >= _led(trace)[0][0])
+
+
+def _led(trace: Trace) -> tuple[FloatArray, FloatArray]:
+    """Times (R,) and commands (R, j) of the rows before a part, and of its own."""
+    before = trace.before
+    assert trace.command_rad is not None
+    if before is None or before.command_rad is None:
+        return trace.time_s, trace.command_rad
+    time_s = np.concatenate([before.time_s, trace.time_s])
+    return time_s, np.concatenate([before.command_rad, trace.command_rad])
 
 
 def by_servos(trace: Trace) -> FloatArray:

@@ -42,6 +42,10 @@ ALIKE_COUNT = 5.0
 """Number of means that what is usual for the other joints is worth, for the variance
 that regression leaves of a joint."""
 
+FAR = 1e4
+"""Standard deviations of the noise by which an unknown coefficient changes torques at
+most: whatever goes with it is no evidence by then, and more is lost to rounding."""
+
 LEAST = 0.01
 """Smallest rms that it leaves, as a share of the joint's torque."""
 
@@ -131,13 +135,20 @@ class HealthyTorques:
     def _whitening(self, means: Means, joint: int) -> FloatArray:
         there = np.isfinite(means.missing[:, joint])
         x, own = means.columns[there, joint], means.recording[there]
-        covariance = x @ self.unknown[joint] @ x.T
-        apart = np.abs(means.block[there][:, None] - means.block[there])
-        together = own[:, None] == own
-        within = (x * self.between[joint]) @ x.T
         rms = np.sqrt(
             [self.left_in.get(means.names[i], self.left)[joint] for i in own.tolist()]
         )
+        # of what never moved in the healthy robot's recordings nothing is known
+        size = np.sqrt(np.sum(x**2, axis=0) / max(len(x), 1))
+        known = size / (FAR * rms.min(initial=np.inf))
+        most = 1 / np.maximum(known, TINY)
+        reach = np.sqrt(np.diag(self.unknown[joint]))
+        less = np.minimum(1.0, most / np.maximum(reach, TINY))
+        between = np.minimum(self.between[joint], most**2)
+        covariance = x @ (self.unknown[joint] * less[:, None] * less) @ x.T
+        apart = np.abs(means.block[there][:, None] - means.block[there])
+        together = own[:, None] == own
+        within = (x * between) @ x.T
         within += rms[:, None] * rms * self.alike**apart
         covariance += np.where(together, within, 0.0)
         lower = np.linalg.cholesky(covariance)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from diagnosis.plant.plant import Plant
-from diagnosis.replay.asked import AskedTorques, centred
+from diagnosis.replay.asked import AskedTorques, centred, late_commands_known
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.channels import LEAST_TORQUE, Channels, measured_of
 from diagnosis.residuals.predictor import WORST, Model, Predictor
@@ -51,6 +51,9 @@ class TorquePredictor(Predictor):
         self._measured = np.concatenate(measured)
         known = np.isfinite(self._measured)
         self._counts = np.concatenate([one.counts for one in motions]) & known
+        if self._asked is not None:
+            late = np.concatenate([late_commands_known(one) for one in traces])
+            self._counts &= late[:, None]
         starts, first, sizes = list[int](), 0, list[int]()
         for trace, motion in zip(traces, motions, strict=True):
             own = range(first, first + trace.ticks)[trace.compared]
@@ -140,13 +143,13 @@ class TorquePredictor(Predictor):
         """Mean torques [N m] that a model lacks, and what they may go with."""
         bare = self._with(noise=None)
         needed = bare.predict([model])[0]
-        scored, starts = self._scored, self._starts
+        scored = self._scored
         missing = self._averages(self._measured - needed)
         columns = self._columns()
         k = columns.shape[2]
         averages = [self._averages(columns[:, :, i]) for i in range(k)]
         first = np.concatenate([[0], np.cumsum([t.ticks for t in self.traces])])
-        recording = np.searchsorted(first, starts, side="right") - 1
+        recording = np.searchsorted(first, self._starts, side="right") - 1
         block = np.concatenate(
             [np.arange(int((recording == i).sum())) for i in range(len(self.traces))]
         )

@@ -27,6 +27,24 @@ def test_times_in_milliseconds_are_refused(trace, plant):
     assert texts([geared], plant, "refuse") == []
 
 
+def test_a_clock_that_runs_otherwise_than_the_healthy_robots_is_refused(trace, plant):
+    slow = replace(trace, name="slow", time_s=1.02 * trace.time_s)
+    found = audit([trace, slow], plant, [trace, trace]).refused
+    one(found, "slow", "10.2 ms", "every 10 ms", "time wrong by a factor of 1.020")
+    # a crystal, and another rate that was chosen
+    for factor in (1.0005, 2.0):
+        other = replace(trace, time_s=factor * trace.time_s)
+        assert audit([other], plant, [trace]).refused == ()
+
+
+def test_rates_that_a_busy_computer_happens_to_reach_are_no_clocks(trace, plant):
+    random = np.random.default_rng(0)
+    uneven = 0.01 * random.uniform(0.8, 1.2, (2, trace.ticks))
+    busy, busier = (replace(trace, time_s=np.cumsum(one)) for one in uneven)
+    slower = replace(busier, time_s=1.02 * busier.time_s)
+    assert audit([slower], plant, [busy]).refused == ()
+
+
 def test_swapped_joints(trace, plant):
     swapped = replace(
         trace, position_rad=trace.position_rad[:, [1, 0, 2]], velocity_rad_s=None

@@ -9,6 +9,7 @@ from scipy.stats import binom
 
 from diagnosis.conclude.estimates import (
     Z_80,
+    errors_between_recordings,
     estimates,
     spread_of_recordings,
     standard_errors,
@@ -45,6 +46,7 @@ def toy(seed, common):
     predictor = SimpleNamespace(
         block=np.repeat(np.arange(BLOCKS), ROWS),
         trace=np.repeat(np.arange(RECORDINGS), BLOCKS * ROWS // RECORDINGS),
+        traces=[SimpleNamespace(recording=str(k)) for k in range(RECORDINGS)],
         plant=PLANT,
         fits_nuisance=False,
     )
@@ -95,6 +97,21 @@ def test_recordings_that_disagree_widen_an_interval():
     assert spread == pytest.approx(5.0 / np.sqrt(3), rel=0.3)
     assert standard_errors(predictor, apart)[0] >= spread
     assert spread_of_recordings(predictor, fit)[0] < 0.2 * spread
+
+
+def test_recordings_that_disagree_widen_an_interval_though_their_parts_agree():
+    """Two recordings of two parts each: leaving out one part tells too little."""
+    predictor, fit, _ = toy(0, 0.0)
+    predictor.traces = [SimpleNamespace(recording=str(k // 2)) for k in range(4)]
+    signs = np.array([1.0, 1.0, -1.0, -1.0])[predictor.trace]
+    shifted = fit.residual + 5.0 * signs * fit.jacobian[:, 0]
+    apart = FittedModel(fit.model, shifted, fit.jacobian, fit.coordinates)
+    # two values that are 5 off either way: 5 sqrt(2) apart, their mean 5
+    error = errors_between_recordings(predictor, apart)[0]
+    assert error == pytest.approx(5.0, rel=0.2)
+    assert error > 1.4 * standard_errors(predictor, apart)[0]
+    alike = errors_between_recordings(predictor, fit)[0]
+    assert alike == pytest.approx(standard_errors(predictor, fit)[0], rel=0.5)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])

@@ -7,7 +7,13 @@ import pytest
 from rough_arm import KD, KP, declaring, followed, hurried, stiff_arm
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.replay.asked import AskedTorques, by_servos, centred
+from diagnosis.replay.asked import (
+    LATE_S,
+    AskedTorques,
+    by_servos,
+    centred,
+    late_commands_known,
+)
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.replays import variants_of
 from diagnosis.residuals.torques.torque_evidence import with_motions
@@ -71,3 +77,18 @@ def test_commands_hold_until_the_next_row():
     ramp = replace(trace, command_rad=np.tile(time_s[:, None], (1, 3)))
     np.testing.assert_allclose(centred(ramp)[1:, 0], time_s[1:] - 0.05)
     np.testing.assert_allclose(centred(ramp, 0.1)[2:, 0], time_s[2:] - 0.15)
+
+
+def test_a_part_knows_the_commands_before_it(trace):
+    part = trace.part(200, 400)
+    for delay_s in (0.0, 0.07):
+        whole = centred(trace, delay_s)[200:400]
+        np.testing.assert_allclose(centred(part, delay_s)[:-1], whole[:-1])
+    assert late_commands_known(part).all()
+    # of a whole recording nothing before the first row is known
+    early = trace.time_s < trace.time_s[0] + LATE_S - 1e-9
+    assert early.any()
+    np.testing.assert_array_equal(late_commands_known(trace), ~early)
+    alone = replace(part, before=None)
+    assert not late_commands_known(alone)[0]
+    assert np.ptp(centred(alone, 0.07)[:5], axis=0).max() == 0

@@ -70,6 +70,18 @@ def test_new_recordings_of_the_robot_are_white(robot):
     assert np.mean(other**2) > 2
 
 
+def test_what_never_moved_before_is_no_evidence(robot):
+    """As the command of a joint that stood still in the healthy recordings."""
+    healthy, other = means(0, 8, robot), means(1, 3, robot)
+    healthy.columns[:, 2, -1] = 0
+    other.columns[:, 2, -1] *= 1e3
+    other.missing[:, 2] += 5.0 * other.columns[:, 2, -1]
+    white = whitened(HealthyTorques.of(healthy), other)
+    assert np.mean(white[2] ** 2) < 1.3
+    white = whitened(HealthyTorques.of(means(0, 8, robot)), other)
+    assert np.mean(white[2] ** 2) > 100
+
+
 def test_evidence_is_the_density_of_the_whole_covariance(robot):
     one = means(0, 2, robot)
     for j in range(JOINTS):
