@@ -40,10 +40,8 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
     as wide as joints differ. The `fit` to the predictor's data has a Jacobian by finite
     differences.
     """
-    errors = standard_errors(predictor, fit), errors_between_recordings(predictor, fit)
-    spreads = spread_of_joints, spread_of_starts, spread_of_softness
-    apart = [one(predictor, fit) for one in spreads]
-    deviation = np.linalg.norm([np.maximum(*errors), *apart], axis=0)
+    spreads = largest_errors, spread_of_joints, spread_of_starts, spread_of_softness
+    deviation = np.linalg.norm([one(predictor, fit) for one in spreads], axis=0)
     x = fit.coordinates.of(fit.model)
     ends = np.array(
         [fit.coordinates.values_at(x + side * Z_80 * deviation) for side in (-1, 1)]
@@ -58,6 +56,12 @@ def estimates(predictor: Predictor, fit: FittedModel) -> list[Mapping[str, Estim
             own[parameter.name] = Estimate(value, low, high, unit)
         every.append(own)
     return every
+
+
+def largest_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:
+    """(p,) standard errors, in scaled coordinates, whether recordings differ or not."""
+    parts = standard_errors(predictor, fit)
+    return np.maximum(parts, errors_between_recordings(predictor, fit))
 
 
 def standard_errors(predictor: Predictor, fit: FittedModel) -> FloatArray:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnosis.conclude.between_recordings import scattered
-from diagnosis.conclude.estimates import Z_80, standard_errors
+from diagnosis.conclude.estimates import Z_80, largest_errors
 from diagnosis.conclude.final_form import retimed, simplified
 from diagnosis.conclude.held_out_errors import Judgement
 from diagnosis.conclude.usual_bursts import usual_event
@@ -87,7 +87,7 @@ def _may_be_nothing(both: Predictor, fitted: FittedModel) -> PlacedEffect | None
     the end of the possible values on that side. A motor that was off for a while may be
     nothing, too, if that may have been no time: it cannot have been more than off.
     """
-    errors = standard_errors(both, fitted)
+    errors = largest_errors(both, fitted)
     x = fitted.coordinates.of(fitted.model)
     last_s = max(float(trace.time_s[-1]) for trace in both.traces)
     worst, least = None, 1.0
