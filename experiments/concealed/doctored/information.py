@@ -65,16 +65,20 @@ class _Torques:
         usual = np.sqrt(np.mean(self.speed**2, axis=0))
         return np.asarray(np.abs(self.speed) > _RESTS * usual, float)
 
-    def columns(self, joint: int) -> FloatArray:
+    def is_driven(self, joint: int) -> bool:
+        """Whether anything drives a joint: a servo asks for nothing where it rests."""
+        return bool(self.drive_nm[:, joint].any())
+
+    def columns(self, joint: int, is_driven: bool) -> FloatArray:
         """(T, k) what a joint's unexplained torque may be in proportion to.
 
-        Its speed, with sign, and, of joints that are driven, angle, acceleration and
-        torque: friction, a wrong gain, zero, weight, rotor.
+        Its speed, with sign, and, of joints that are driven in some recording, angle,
+        acceleration and torque: friction, a wrong gain, zero, weight, rotor.
         """
         q, v = self.position_rad[:, joint], self.speed[:, joint]
         creeping = _CREEPING * max(float(np.sqrt(np.mean(v**2))), _TINY)
         every = [np.ones_like(q), v, np.tanh(v / creeping)]
-        if self.drive_nm[:, joint].any():
+        if is_driven:
             a, needed = self.acceleration[:, joint], self.needed_nm[:, joint]
             every += [q, np.sin(q), np.cos(q), a, needed]
         return np.stack(every, axis=1) * self.moves[:, [joint]]
@@ -156,9 +160,10 @@ def _unexplained(
 
     It is ridge regression: motions that the others do not have are not guessed at.
     """
+    is_driven = any(some.is_driven(joint) for some in (one, *learned))
 
     def means(some: _Torques) -> tuple[FloatArray, FloatArray]:
-        columns = _means(some.columns(joint), seconds)
+        columns = _means(some.columns(joint, is_driven), seconds)
         return columns, _means(some.missing_nm[:, joint : joint + 1], seconds)[:, 0]
 
     parts = [means(each) for each in learned]

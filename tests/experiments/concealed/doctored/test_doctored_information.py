@@ -92,3 +92,13 @@ def test_what_differs_between_healthy_recordings_hides_it():
     assert both(1.1, restless) < 0.5 * 0.5**2 * 1.2
     assert both(1.1, steady) > 20 * both(1.1, restless)
     assert both(2.0, restless) < 0.5 * 5.0**2 * 1.2
+
+
+def test_a_joint_that_asked_for_nothing_in_one_recording_is_driven_all_the_same():
+    one, other, rests = (arm_recording(4.0, start) for start in (0.0, 4.0, 8.0))
+    still = np.zeros(rests.ticks)
+    columns = {"position.joint2": still, "command.joint2": still}
+    rests = replace(rests, columns={**rests.columns, **columns})
+    parts = Parts({"a": one}, {"b": other, "c": rests})
+    own = replace(parts, recordings={"a": declare_gain(one, "joint2", 1.5)})
+    assert nats_of((ARM, parts), (ARM, own), driven_by_torque=False) > 0
