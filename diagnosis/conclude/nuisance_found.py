@@ -124,13 +124,14 @@ def _is_unusual(both: Predictor, fitted: FittedModel, key: str) -> bool:
 
 def _spread(both: Predictor, nuisance: Nuisance, model: Model) -> FloatArray:
     """(k, k) covariance of the errors' sizes, the model's values being uncertain."""
-    columns = nuisance.changes
-    count = len(columns)
+    changes = nuisance.changes
+    count, products = len(changes), changes.products()
     if model:
-        fit = fit_all(both.without_tolerances(), [model], 1)[0]
-        columns = np.vstack([columns, fit.jacobian.T])
-    known = np.diag((np.arange(len(columns)) < count).astype(float))
-    spread = np.linalg.pinv(columns @ columns.T + known, hermitian=True)
+        slopes = fit_all(both.without_tolerances(), [model], 1)[0].jacobian.T
+        across = changes.on(slopes)
+        products = np.block([[products, across.T], [across, slopes @ slopes.T]])
+    known = np.diag((np.arange(len(products)) < count).astype(float))
+    spread = np.linalg.pinv(products + known, hermitian=True)
     return np.asarray(spread[:count, :count])
 
 

@@ -12,6 +12,7 @@ from copy import copy
 
 import numpy as np
 
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.clock import ClockNoise
 from diagnosis.residuals.tolerance import Tolerance, without_each
@@ -107,4 +108,4 @@ def _tolerance(
     each = np.where(follows == numbers[:, None, None], own, 0.0)
     if clock is not None and len(numbers):
         each = clock.part(rows).without(each)
-    return Tolerance(each.reshape(len(numbers), own.size))
+    return Tolerance(Changes.of(each.reshape(len(numbers), own.size)))

@@ -9,6 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from diagnosis.plant.plant import Plant
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.doubts import Doubts
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
@@ -205,7 +206,7 @@ class Doubted(ABC):
 
     def _beyond(self) -> Tolerance:
         """What is tolerated beside small mismatch of the nominal model: nothing."""
-        return Tolerance(np.zeros((0, len(self.scored))))
+        return Tolerance(Changes.of(np.zeros((0, len(self.scored)))))
 
 
 def no_nuisance(some: Doubted) -> Nuisance:

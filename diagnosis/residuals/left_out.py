@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.tolerance import Tolerance
 from groundwalk.arrays import FloatArray, IntArray
 
@@ -33,6 +34,6 @@ def left_out(residual: FloatArray, changes: FloatArray, part: IntArray) -> Float
         some = changes[:, own]
         spread = np.linalg.inv(powers - some @ some.T)
         found[own] += spread @ (some @ residual[own]) @ some
-        unknown = Tolerance(some, spread=(spread + spread.T) / 2)
+        unknown = Tolerance(Changes.of(some), spread=(spread + spread.T) / 2)
         found[own] = unknown.without(found[own][None])[0]
     return found

@@ -311,10 +311,11 @@ class Predictor(Doubted):
         `predict`.
         """
         some = max(1, MOST_ENTRIES // self._measured.size)
-        parts = [models[i : i + some] for i in range(0, len(models), some)]
-        return np.concatenate(
-            [self._doubts.without(self._errors(one, exactly), one) for one in parts]
-        )
+        found = np.empty((len(models), len(self.scored)))
+        for i in range(0, len(models), some):  # in place, for memory
+            own = models[i : i + some]
+            found[i : i + some] = self._doubts.without(self._errors(own, exactly), own)
+        return found
 
     def _errors(self, models: Sequence[Model], exactly: bool) -> FloatArray:
         """(n, rows, c) measured less predicted values of n models [noise]."""

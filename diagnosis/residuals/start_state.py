@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.tolerance import Tolerance, without_each
 from diagnosis.traces.windows import Run
 from groundwalk.arrays import FloatArray
@@ -62,7 +63,10 @@ class StartUncertainty:
         self._changes, self._ends = changes, list(ends)
         timed = changes if whiten is None else whiten(changes)
         self._windows = [
-            (last - first, Tolerance(timed[:, first:last].reshape(len(timed), -1)))
+            (
+                last - first,
+                Tolerance(Changes.of(timed[:, first:last].reshape(len(timed), -1))),
+            )
             for first, last in itertools.pairwise([0, *ends])
         ]
 

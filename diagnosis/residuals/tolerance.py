@@ -13,19 +13,19 @@ from copy import copy
 import numpy as np
 from scipy.linalg import block_diag
 
+from diagnosis.residuals.changes import Changes
 from groundwalk.arrays import FloatArray
 
 
 class Tolerance:
     """The space of changes of a residual that tolerances allow.
 
-    Residuals may be those of a model with likely errors already in it. The changes are
-    kept as they are given, not copied: they take most of a diagnosis' memory.
+    Residuals may be those of a model with likely errors already in it.
     """
 
     def __init__(
         self,
-        signatures: FloatArray,
+        signatures: Changes,
         names: Sequence[str] = (),
         sizes: FloatArray | None = None,
         spread: FloatArray | None = None,
@@ -39,7 +39,7 @@ class Tolerance:
         self._changes, self._names = signatures, tuple(names)
         self._sizes = np.zeros(len(signatures)) if sizes is None else sizes
         self._spread = np.eye(len(signatures)) if spread is None else spread
-        self._products = signatures @ signatures.T
+        self._products = signatures.products()
         self._prepare()
 
     def _prepare(self) -> None:
@@ -53,7 +53,7 @@ class Tolerance:
 
     def part(self, entries: slice) -> "Tolerance":
         """Tolerances for some of a residual's entries."""
-        some = self._changes[:, entries]
+        some = self._changes.part(entries)
         return Tolerance(some, self._names, self._sizes, self._spread)
 
     def beside(self, known: Collection[str]) -> "Tolerance":
@@ -76,9 +76,10 @@ class Tolerance:
         """These tolerances and others of the same residual."""
         if not len(other._changes):
             return self
-        every = np.vstack([self._changes, other._changes])
+        both = self._changes.whole(), other._changes.whole()
         sizes = np.concatenate([self._sizes, other._sizes])
         spread = block_diag(self._spread, other._spread)
+        every = Changes.of(np.vstack(both))
         return Tolerance(every, (*self._names, *other._names), sizes, spread)
 
     def taken_back(self, known: Collection[str]) -> FloatArray:
@@ -89,12 +90,12 @@ class Tolerance:
         """
         own = np.array([name not in known for name in self._names], bool)
         sizes = self._sizes if not self._names else self._sizes * own
-        return np.asarray(sizes @ self._changes)
+        return self._changes.by(sizes)
 
     def without(self, residuals: FloatArray) -> FloatArray:
         """(n, N) residuals, whitened."""
-        known = (residuals @ self._changes.T) @ self._mix
-        return np.asarray(residuals - (known @ self._mix.T) @ self._changes)
+        known = self._changes.on(residuals) @ self._mix
+        return np.asarray(residuals - self._changes.by(known @ self._mix.T))
 
 
 def _root(spread: FloatArray) -> FloatArray:

@@ -171,7 +171,7 @@ def _learned(
         noise = ReferenceNoise.of(model, residual, scored, predictor.blocks)
         if predictor.nuisance is None:
             return noise
-        changes = predictor.nuisance.changes
+        changes = predictor.nuisance.changes.whole()
         return noise.knowing(changes.reshape(len(changes), -1, count), predictor.blocks)
 
     return sims.hooks.saved(work, pack_noise, unpack_noise)
@@ -184,7 +184,7 @@ def _left_out(sims: _Simulations, predictor: Predictor, model: Model) -> FloatAr
     """
     (left,) = predictor.without_tolerances().residuals([()])
     nuisance = predictor.nuisance
-    changes = np.zeros((0, len(left))) if nuisance is None else nuisance.changes
+    changes = np.zeros((0, len(left))) if nuisance is None else nuisance.changes.whole()
     found = tuple(one for one in model if not is_usual(sims.plant, one))
     if found:
         rest = tuple(one for one in model if one not in found)

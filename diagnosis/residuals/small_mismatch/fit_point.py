@@ -72,8 +72,8 @@ class FitPoint:
         """The errors, with what they change corrected by what was missed."""
         if not len(self.steps):
             return self.errors
-        changes = self.steps[:, : len(self.errors.units)].T @ self.missed
-        changes += self.errors.changes
+        steps = self.steps[:, : len(self.errors.units)]
+        changes = self.errors.changes.corrected(steps, self.missed)
         return replace(self.errors, changes=changes)
 
     def products(self, scale: float) -> tuple[FloatArray, FloatArray]:
@@ -82,11 +82,11 @@ class FitPoint:
         (k + p, k + p) and (k + p,), of errors first; of values that change by `scale`.
         """
         changes, slopes, missed = self.errors.changes, self.slopes, self.missed
-        both = changes @ slopes.T
-        each = np.block([[changes @ changes.T, both], [both.T, slopes @ slopes.T]])
-        more = np.vstack([changes @ missed.T, slopes @ missed.T]) @ self.steps
+        both = changes.on(slopes).T
+        each = np.block([[changes.products(), both], [both.T, slopes @ slopes.T]])
+        more = np.vstack([changes.on(missed).T, slopes @ missed.T]) @ self.steps
         each += more + more.T + self.steps.T @ (missed @ missed.T) @ self.steps
-        left = np.concatenate([changes @ self.left, slopes @ self.left])
+        left = np.concatenate([changes.on(self.left), slopes @ self.left])
         left += (missed @ self.left) @ self.steps
         unit = np.ones(len(left))
         unit[len(changes) :] = scale
@@ -118,7 +118,7 @@ class FitPoint:
         k = len(self.errors.units)
         moved = other.errors.sizes - self.errors.sizes
         step = np.concatenate([moved, other.x - self.x])
-        expected = step[:k] @ self.errors.changes + step[k:] @ self.slopes
+        expected = self.errors.changes.by(step[:k]) + step[k:] @ self.slopes
         expected += (self.steps @ step) @ self.missed
         missed = (other.left - self.left - expected) / (step @ step)
         return replace(

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import lsq_linear
 
+from diagnosis.residuals.changes import Changes
 from groundwalk.arrays import BoolArray, FloatArray
 
 
@@ -44,7 +45,7 @@ def likeliest(
 
 
 def gain_of(
-    changes: FloatArray,
+    changes: Changes,
     left: FloatArray,
     sizes: FloatArray,
     own: Sequence[int],
@@ -53,7 +54,7 @@ def gain_of(
     """What is gained [nats] by other values of some errors, to first order.
 
     Args:
-      changes: (k, N) changes of a residual [noise] by one standard deviation of each.
+      changes: those of a residual [noise] by one standard deviation of each.
       left: (N,) residual [noise] beside the errors.
       sizes: (k,) present ones, in standard deviations.
       own: indices of those that may have any size.
@@ -61,7 +62,7 @@ def gain_of(
     """
     free = np.union1d(np.flatnonzero(~fixed), own)
     prior = np.where(np.isin(free, own), 0.0, 1.0)
-    slope = (changes @ left)[free] + prior * sizes[free]
-    products = (changes @ changes.T)[np.ix_(free, free)]
+    slope = changes.on(left)[free] + prior * sizes[free]
+    products = changes.products()[np.ix_(free, free)]
     power = np.linalg.pinv(products + np.diag(prior), hermitian=True)
     return 0.5 * float(slope @ power @ slope)

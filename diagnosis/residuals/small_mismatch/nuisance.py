@@ -16,6 +16,7 @@ import numpy as np
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import Parameter, PlacedEffect
 from diagnosis.plant.plant import Plant
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.likely_sizes import gain_of
 from diagnosis.residuals.small_mismatch.usual_errors import (
@@ -42,7 +43,7 @@ class Nuisance:
       units: each error by one standard deviation.
       parameters: those of the effect of each unit.
       sizes: (k,) likely values, in standard deviations.
-      changes: (k, N) changes of a residual by one standard deviation of each.
+      changes: those of a residual by one standard deviation of each.
       seen_at: (k,) errors, in standard deviations, and effects of the model at which
         these changes were simulated; None if they were not.
     """
@@ -51,7 +52,7 @@ class Nuisance:
     units: tuple[PlacedEffect, ...]
     parameters: tuple[tuple[Parameter, ...], ...]
     sizes: FloatArray
-    changes: FloatArray
+    changes: Changes
     seen_at: tuple[FloatArray, frozenset[str]] | None = None
 
     @classmethod
@@ -62,12 +63,12 @@ class Nuisance:
         """
         units = tuple(usual_errors(plant, traces))
         own = tuple(effect(one.name).parameters(plant, one.place) for one in units)
-        none = np.zeros(len(units)), np.zeros((len(units), entries))
+        none = np.zeros(len(units)), Changes.of(np.zeros((len(units), entries)))
         return cls(plant, units, own, *none)
 
     def part(self, entries: slice) -> "Nuisance":
         """These errors, with what they change in some entries of a residual."""
-        return replace(self, changes=self.changes[:, entries])
+        return replace(self, changes=self.changes.part(entries))
 
     def key(self, index: int) -> str:
         """The "effect@place" of an error."""

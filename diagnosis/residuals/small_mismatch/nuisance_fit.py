@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.channels import MORE_THAN_NOISE
 from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.replays import Model
@@ -269,9 +270,10 @@ class NuisanceFit:
             tried.append((*self._beside(own, now.x), *([unit] if taken else ())))
         changes = errors.changes
         if tried:
-            changes = self.ask(tried)  # in place, for memory
-            changes -= now.left
-            changes /= sizes[:, None]
+            seen = self.ask(tried)  # in place, for memory
+            seen -= now.left
+            seen /= sizes[:, None]
+            changes = Changes.of(seen)
         return replace(errors, changes=changes, seen_at=(errors.sizes, self._keys))
 
     def _centred(self, now: FitPoint) -> FitPoint:
@@ -296,7 +298,7 @@ class NuisanceFit:
         if not free.all():
             found[~free] = self._alone(now, ~free[:k]) - now.left
         seen_at = errors.sizes, self._keys
-        errors = replace(errors, changes=found[:k], seen_at=seen_at)
+        errors = replace(errors, changes=Changes.of(found[:k]), seen_at=seen_at)
         return now.simulated(errors, found[k:], now.x)
 
     def _alone(self, now: FitPoint, taken: BoolArray) -> FloatArray:

@@ -93,9 +93,10 @@ def times_noise(plant: Plant, healthy: Sequence[Trace]) -> float:
     predictor.correct()
     errors = predictor.nuisance_fit(()).seen(no_nuisance(predictor))
     (left,) = predictor.residuals([()])
-    changes = errors.changes.reshape(len(errors.changes), -1)
-    known = np.linalg.solve(np.eye(len(changes)) + changes @ changes.T, changes @ left)
-    rest = (left - known @ changes)[predictor.scored]
+    changes = errors.changes
+    products = np.eye(len(changes)) + changes.products()
+    known = np.asarray(np.linalg.solve(products, changes.on(left)))
+    rest = (left - changes.by(known))[predictor.scored]
     return float(np.sqrt(np.mean(rest**2)))
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from diagnosis.plant.plant import Plant
 from diagnosis.replay.asked import AskedTorques, centred, late_commands_known
 from diagnosis.replay.inverse import NeededTorques
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.channels import LEAST_TORQUE, Channels, measured_of
 from diagnosis.residuals.predictor import WORST, Model, Predictor
 from diagnosis.residuals.reference_noise import Block, ReferenceNoise, waves
@@ -231,7 +232,7 @@ class TorquePredictor(Predictor):
         wrong = np.eye(joints)[:, None] * zero_nm * np.ones_like(self._measured)
         zeros = self._doubts.before_tolerance(self._means(wrong))
         names = [f"torque_offset@{name.split('.')[1]}" for name in self.channels.names]
-        return Tolerance(zeros, names)
+        return Tolerance(Changes.of(zeros), names)
 
 
 def predictor_of(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.small_mismatch.likely_sizes import gain_of, likeliest
 
 ALL = np.ones(2, bool)
@@ -65,5 +66,5 @@ def test_a_gain_is_the_energy_that_falls():
         return 0.5 * (rest @ rest + other[1] ** 2)
 
     least = minimize(energy, [3.0, 0.5], method="BFGS").fun
-    gain = gain_of(changes, left, sizes, [0], fixed)
+    gain = gain_of(Changes.of(changes), left, sizes, [0], fixed)
     assert gain == pytest.approx(energy([3.0, 0.5]) - least, rel=1e-4)

@@ -101,7 +101,7 @@ def test_they_are_what_is_likeliest():
     """As ridge regression within bounds, in which each is worth its own square."""
     world = Linear({GAIN: 1.5}, reach=1.0)
     found = NuisanceFit(world.ask, world.correct, ()).fitted(world.nuisance)
-    changes = -found.changes
+    changes = -found.changes.whole()
     left = world.ask([()])[0]
     rows = np.vstack([changes.T, np.eye(len(changes))])
     low, high = found.bounds()
@@ -109,7 +109,7 @@ def test_they_are_what_is_likeliest():
         rows, np.append(left, np.zeros(len(changes))), (low - 1e-9, high)
     )
     energies = [
-        np.sum((left + (sizes - found.sizes) @ found.changes) ** 2) + np.sum(sizes**2)
+        np.sum((left + found.changes.by(sizes - found.sizes)) ** 2) + np.sum(sizes**2)
         for left in world.ask([found.beside(())])
         for sizes in (found.sizes, wanted.x)
     ]
@@ -309,7 +309,7 @@ def test_what_a_model_has_is_no_small_error_too():
     (left,) = world.ask([(*found.beside({GAIN}), *true)])
     assert not found.unusual(left)
     # what a value of its own would change is known all the same
-    assert np.abs(found.changes[world.index[GAIN]]).max() > 0
+    assert np.abs(found.changes.whole()[world.index[GAIN]]).max() > 0
 
 
 def test_a_slightly_wrong_value_of_a_model_hides_no_small_errors():

@@ -7,6 +7,7 @@ from made_up_traces import arm, recorded
 from scipy.stats import multivariate_normal
 
 from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.changes import Changes
 from diagnosis.residuals.predictor import Channels, Predictor
 from diagnosis.residuals.small_mismatch.usual_errors import usual_errors
 from diagnosis.residuals.tolerance import Tolerance
@@ -16,10 +17,10 @@ def test_the_energy_is_the_likelihood_of_noise_and_tolerances_together():
     random = np.random.default_rng(0)
     signatures, residual = random.standard_normal((3, 20)), random.standard_normal(20)
     covariance = np.eye(20) + signatures.T @ signatures
-    (white,) = Tolerance(signatures).without(residual[None])
+    (white,) = Tolerance(Changes.of(signatures)).without(residual[None])
     exact = multivariate_normal(np.zeros(20), covariance)
     other = 2.5 * residual
-    (whiter,) = Tolerance(signatures).without(other[None])
+    (whiter,) = Tolerance(Changes.of(signatures)).without(other[None])
     wanted = exact.logpdf(residual) - exact.logpdf(other)
     assert 0.5 * (whiter @ whiter - white @ white) == pytest.approx(wanted)
 
@@ -28,24 +29,26 @@ def test_a_part_knows_its_own_share():
     random = np.random.default_rng(1)
     signatures, residual = random.standard_normal((2, 30)), random.standard_normal(30)
     own = slice(12)
-    part = Tolerance(signatures).part(own).without(residual[None, own])
-    wanted = Tolerance(signatures[:, own]).without(residual[None, own])
+    part = Tolerance(Changes.of(signatures)).part(own).without(residual[None, own])
+    wanted = Tolerance(Changes.of(signatures[:, own])).without(residual[None, own])
     np.testing.assert_allclose(part, wanted)
 
 
 def test_without_tolerances_all_stays():
     residual = np.ones((1, 5))
     np.testing.assert_array_equal(
-        Tolerance(np.zeros((0, 5))).without(residual), residual
+        Tolerance(Changes.of(np.zeros((0, 5)))).without(residual), residual
     )
 
 
 def test_what_is_fitted_is_not_uncertain_as_well():
     random = np.random.default_rng(2)
     signatures, residual = random.standard_normal((3, 20)), random.standard_normal(20)
-    every = Tolerance(signatures[:2], "ab").and_of(Tolerance(signatures[2:], "c"))
+    every = Tolerance(Changes.of(signatures[:2]), "ab").and_of(
+        Tolerance(Changes.of(signatures[2:]), "c")
+    )
     some = every.part(slice(20)).beside({"b", "d"})
-    wanted = Tolerance(signatures[[0, 2]]).without(residual[None])
+    wanted = Tolerance(Changes.of(signatures[[0, 2]])).without(residual[None])
     np.testing.assert_allclose(some.without(residual[None]), wanted)
 
 
@@ -55,8 +58,8 @@ def test_what_is_known_together_is_whitened_together():
     signatures, residual = random.standard_normal((4, 20)), random.standard_normal(20)
     root = random.standard_normal((3, 3))
     spread = root @ root.T
-    known = Tolerance(signatures[:3], "abc", spread=spread)
-    every = known.and_of(Tolerance(signatures[3:], "d")).beside({"b"})
+    known = Tolerance(Changes.of(signatures[:3]), "abc", spread=spread)
+    every = known.and_of(Tolerance(Changes.of(signatures[3:]), "d")).beside({"b"})
     whole = np.zeros((3, 3))
     whole[:2, :2], whole[2, 2] = spread[np.ix_([0, 2], [0, 2])], 1.0
     some = signatures[[0, 2, 3]]
@@ -113,5 +116,7 @@ def test_a_spread_that_is_singular_to_rounding_is_no_error():
     random = np.random.default_rng(4)
     changes, seen = random.standard_normal((3, 20)), np.array([[1.0, 1.0, 0.0]])
     spread = np.eye(3) - (1 + 1e-15) * seen.T @ seen / 2
-    found = Tolerance(changes, spread=spread).without(random.standard_normal((2, 20)))
+    found = Tolerance(Changes.of(changes), spread=spread).without(
+        random.standard_normal((2, 20))
+    )
     assert np.isfinite(found).all()
