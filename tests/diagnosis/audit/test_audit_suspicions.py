@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from audited_arm import QUANTUM, changed, motions, one, texts
 
+from diagnosis.audit import clocks
 from diagnosis.audit.audit import audit
 from diagnosis.plant.servo import Servo
 
@@ -35,6 +36,15 @@ def test_a_clock_that_runs_otherwise_than_the_healthy_robots_is_refused(trace, p
     for factor in (1.0005, 2.0):
         other = replace(trace, time_s=factor * trace.time_s)
         assert audit([other], plant, [trace]).refused == ()
+
+
+@pytest.mark.parametrize("constant", ["_LEAST", "_MOST"])
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_for_clocks_a_factor_of_two_does_not_matter(
+    monkeypatch, constant, factor, trace, plant
+):
+    monkeypatch.setattr(clocks, constant, factor * getattr(clocks, constant))
+    test_a_clock_that_runs_otherwise_than_the_healthy_robots_is_refused(trace, plant)
 
 
 def test_rates_that_a_busy_computer_happens_to_reach_are_no_clocks(trace, plant):

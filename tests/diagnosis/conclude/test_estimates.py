@@ -7,6 +7,7 @@ import pytest
 from made_up_traces import arm
 from scipy.stats import binom
 
+from diagnosis.conclude import estimates as module
 from diagnosis.conclude.estimates import (
     Z_80,
     errors_between_recordings,
@@ -112,6 +113,12 @@ def test_recordings_that_disagree_widen_an_interval_though_their_parts_agree():
     assert error > 1.4 * standard_errors(predictor, apart)[0]
     alike = errors_between_recordings(predictor, fit)[0]
     assert alike == pytest.approx(standard_errors(predictor, fit)[0], rel=0.5)
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_the_least_share_of_a_recording_does_not_matter(monkeypatch, factor):
+    monkeypatch.setattr(module, "LEAST_SHARE", factor * module.LEAST_SHARE)
+    test_recordings_that_disagree_widen_an_interval_though_their_parts_agree()
 
 
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])

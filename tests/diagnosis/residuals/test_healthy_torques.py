@@ -75,11 +75,17 @@ def test_what_never_moved_before_is_no_evidence(robot):
     healthy, other = means(0, 8, robot), means(1, 3, robot)
     healthy.columns[:, 2, -1] = 0
     other.columns[:, 2, -1] *= 1e3
-    other.missing[:, 2] += 5.0 * other.columns[:, 2, -1]
+    other.missing[:, 2] += 0.1 * other.columns[:, 2, -1]  # 2000 times the noise
     white = whitened(HealthyTorques.of(healthy), other)
     assert np.mean(white[2] ** 2) < 1.3
     white = whitened(HealthyTorques.of(means(0, 8, robot)), other)
     assert np.mean(white[2] ** 2) > 100
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_how_far_what_is_unknown_reaches_does_not_matter(monkeypatch, factor, robot):
+    monkeypatch.setattr(healthy_torques, "FAR", factor * healthy_torques.FAR)
+    test_what_never_moved_before_is_no_evidence(robot)
 
 
 def test_evidence_is_the_density_of_the_whole_covariance(robot):
