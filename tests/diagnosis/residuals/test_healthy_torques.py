@@ -75,7 +75,7 @@ def test_what_never_moved_before_is_no_evidence(robot):
     healthy, other = means(0, 8, robot), means(1, 3, robot)
     healthy.columns[:, 2, -1] = 0
     other.columns[:, 2, -1] *= 1e3
-    other.missing[:, 2] += 0.1 * other.columns[:, 2, -1]  # 2000 times the noise
+    other.missing[:, 2] += 0.5 * other.columns[:, 2, -1]  # 10,000 noises
     white = whitened(HealthyTorques.of(healthy), other)
     assert np.mean(white[2] ** 2) < 1.3
     white = whitened(HealthyTorques.of(means(0, 8, robot)), other)
