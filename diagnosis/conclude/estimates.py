@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnosis.effects.library import effect
-from diagnosis.residuals.coordinates import Coordinates
+from diagnosis.residuals.coordinates import STEP, Coordinates
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.residuals.signatures import Signature
 from diagnosis.residuals.small_mismatch.usual_errors import USUAL
 from diagnosis.residuals.ties import groups_of
-from diagnosis.search.fitting import STEP, FittedModel
+from diagnosis.search.fitting import FittedModel
 from diagnosis.verdict import Amount, Estimate
 from groundwalk.arrays import BoolArray, FloatArray, IntArray
 

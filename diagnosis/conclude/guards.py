@@ -15,6 +15,7 @@ from diagnosis.conclude.between_recordings import scattered
 from diagnosis.conclude.estimates import Z_80, largest_errors
 from diagnosis.conclude.final_form import retimed, simplified
 from diagnosis.conclude.held_out_errors import Judgement
+from diagnosis.conclude.no_change import no_change
 from diagnosis.conclude.usual_bursts import usual_event
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import PlacedEffect
@@ -63,6 +64,7 @@ def established(
             _may_be_nothing(both, fitted)
             or _scattered(both, healthy, fitted)
             or usual_event(both, healthy, fitted)
+            or _unchanged(both, healthy, fitted)
         )
         bound = [one for one in model if ran_into_bound(fitted, one)]
         if doubtful is None and not bound:
@@ -125,6 +127,16 @@ def _scattered(
         return None
     found = scattered(both, healthy, fitted)
     return found[0][0] if found else None
+
+
+def _unchanged(
+    both: Predictor, healthy: Sequence[Predictor], fitted: FittedModel
+) -> PlacedEffect | None:
+    """An effect by which recordings of the healthy robot differ as much, if any."""
+    if both.plant.base == "floating":
+        return None
+    found = no_change(both, healthy, fitted)
+    return found[0] if found else None
 
 
 def objections(judged: Judgement, timed: bool) -> tuple[str, ...]:

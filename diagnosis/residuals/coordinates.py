@@ -12,6 +12,9 @@ from diagnosis.residuals.replays import Model
 from diagnosis.residuals.ties import group_of
 from groundwalk.arrays import FloatArray
 
+STEP = 0.02
+"""Step of finite differences, in coordinates that are scaled to be of order one."""
+
 
 class Coordinates:
     """Converts a model's values to scaled coordinates of order one, and back.
@@ -47,6 +50,14 @@ class Coordinates:
                 one = self.parameters[i]
                 x[i] = self.scaled(i, min(max(value, one.low), one.high))
         return x
+
+    def differences(self, x: FloatArray) -> tuple[FloatArray, list[Model]]:
+        """(p,) steps of finite differences from a point (p,), and models so far off.
+
+        One for each coordinate; steps go down where one up would leave the bounds.
+        """
+        far = np.where(x + STEP <= self.bounds()[1], STEP, -STEP)
+        return far, [self.model_at(x + step) for step in np.diag(far)]
 
     def model_at(self, x: FloatArray) -> Model:
         """The model whose values have the (p,) scaled coordinates `x`."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnosis.plant.plant import Plant
 from diagnosis.residuals.changes import Changes
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.doubts import Doubts
 from diagnosis.residuals.replays import Model
 from diagnosis.residuals.small_mismatch.nuisance import Nuisance
@@ -174,9 +175,27 @@ class Doubted(ABC):
         So it is not fitted to traces that are held out.
         """
         if errors is not None:
+            self._doubts = replace(self._doubts, found=self._of_found(model))
             own = self.nuisance or no_nuisance(self)
             found = self.nuisance_fit(model).seen(own.at(errors.sizes))
             self._doubts = self._doubts.taking(found, self._beyond())
+
+    def _of_found(self, model: Model) -> FloatArray | None:
+        """(p, N) changes of residuals by values of effects of the healthy robot.
+
+        In scaled coordinates, of those whose values were free; None without such.
+        """
+        noise = self._doubts.noise
+        if noise is None or not noise.found:
+            return None
+        rest = tuple(one for one in noise.model if one not in noise.found)
+        bare = {"noise": replace(noise, model=rest), "nuisance": None}
+        some = self._with(**bare, tolerance=self._beyond())
+        coordinates = Coordinates(self.plant, noise.found)
+        far, others = coordinates.differences(coordinates.of(noise.found))
+        given = [(*one, *model) for one in (noise.found, *others)]
+        seen = some.residuals(given)
+        return np.asarray((seen[1:] - seen[0]) / far[:, None])
 
     def doubt_as(self, other: "Doubted") -> None:
         """Take small mismatch, and what wrong starts change, from a predictor."""

@@ -13,11 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from diagnosis.effects.parts import PlacedEffect
 from diagnosis.residuals.torques.healthy_torques import HealthyTorques
 from diagnosis.traces.windows import FLOATING_WINDOW_S, Run
-from groundwalk.arrays import BoolArray, FloatArray
+from groundwalk.arrays import BoolArray, FloatArray, IntArray
 from groundwalk.errors import BadRecordingError
 
 WAVES = 4
@@ -26,6 +27,9 @@ error in a block of 0.3 s; faster parts count as white noise."""
 
 FEWEST_ROWS = 2 * WAVES
 """Fewest rows of a 0.3 s block in which the smooth part of an error is described."""
+
+LEVEL = 0.05
+"""Probability at which noise alone would make recordings differ as much."""
 
 TOO_SHORT = "the reference recordings are too short to learn the model error from"
 
@@ -92,7 +96,9 @@ class ReferenceNoise:
       axes: (waves c, k) orthonormal directions, in coefficients of waves and channels.
       rows: median number of rows of the blocks from which these were learned.
       spread: (k, k) covariance, in usual standard deviations, of what is left unknown
-        of small mismatch of the robot model; None if nothing was learned of it.
+        of small mismatch of the robot model, and after it, in scaled coordinates, of
+        the values of `found`; None if nothing was learned of it.
+      found: those effects of `model` whose values were free.
       healthy: errors in torque, if torques are compared and the robot's model is far
         from it; then all others are none.
     """
@@ -104,6 +110,7 @@ class ReferenceNoise:
     rows: float
     spread: FloatArray | None = None
     healthy: HealthyTorques | None = None
+    found: tuple[PlacedEffect, ...] = ()
 
     @classmethod
     def known(cls, model: tuple[PlacedEffect, ...], channels: int) -> "ReferenceNoise":
@@ -143,16 +150,36 @@ class ReferenceNoise:
         rows = float(np.median([len(block.waves) for block in long]))
         return cls(model, scale, *_covariance(smooth), rows)
 
-    def knowing(self, changes: FloatArray, blocks: Sequence[Block]) -> "ReferenceNoise":
-        """With what the recordings leave unknown of small mismatch of the model.
+    def knowing(
+        self,
+        changes: FloatArray,
+        residual: FloatArray,
+        blocks: Sequence[Block],
+        recording: IntArray,
+        found: tuple[PlacedEffect, ...] = (),
+    ) -> "ReferenceNoise":
+        """With what the recordings leave unknown of the model.
 
-        `changes` (k, rows, c) are those of the residual, in units of noise, by one
-        usual standard deviation of each error, beside the errors that are likely. The
-        robot has the same errors in other recordings.
+        The robot has the same errors in other recordings, but for what recordings
+        differ by. That makes what they tell together less sure, and others, taken to be
+        as many, differ from it as much again.
+
+        Args:
+          changes: (k, rows, c) those of the residual, in units of noise, by one usual
+            standard deviation of each error of the model, beside the likely errors;
+            then those by the values of the effects `found`.
+          residual: (rows, c) what the model leaves, in units of noise.
+          blocks: windows of the recordings, as for `of`.
+          recording: (rows,) number of the recording of each row.
+          found: the effects of the model whose values are free.
         """
-        seen = self.without(changes, blocks).reshape(len(changes), -1)
-        spread = np.linalg.inv(np.eye(len(seen)) + seen @ seen.T)
-        return replace(self, spread=np.asarray(spread, float))
+        seen = self.without(changes, blocks)
+        (left,) = self.without(residual[None], blocks)
+        flat = seen.reshape(len(seen), -1)
+        spread = np.asarray(np.linalg.inv(np.eye(len(seen)) + flat @ flat.T), float)
+        apart = _apart(spread, seen, left, recording)
+        spread = spread + 2 * apart.T @ apart
+        return replace(self, spread=spread, found=found)
 
     def without(self, residual: FloatArray, blocks: Sequence[Block]) -> FloatArray:
         """(n, rows, c) residuals in units of noise, whitened by the covariance."""
@@ -177,6 +204,27 @@ class ReferenceNoise:
         """
         power = 1 + (self.power - 1) * rows / self.rows
         return np.asarray((self.axes * (1 - 1 / np.sqrt(power))) @ self.axes.T)
+
+
+def _apart(
+    spread: FloatArray, seen: FloatArray, left: FloatArray, recording: IntArray
+) -> FloatArray:
+    """(r, k) shares of r recordings in how far k values may be off; 0 by noise alone.
+
+    Their products' sum is the covariance of the values if recordings differ (Liang and
+    Zeger 1986, "Longitudinal data analysis using generalized linear models"). Arguments
+    are whitened ones of `ReferenceNoise.knowing`.
+    """
+    numbers = np.unique(recording)
+    parts, count = [recording == number for number in numbers], len(numbers)
+    pulls = np.array([np.einsum("krc,rc->k", seen[:, p], left[p]) for p in parts])
+    apart = pulls - pulls.mean(axis=0)
+    each = [seen[:, p].reshape(len(seen), -1) for p in parts]
+    told = sum(float(np.sum((spread @ one) * one)) for one in each)
+    scatter = count * float(np.sum((apart @ spread) * apart))
+    if chi2.sf(scatter, max(told * (count - 1), 1e-12)) > LEVEL:
+        return np.zeros_like(apart)
+    return np.asarray(apart @ spread / np.sqrt(1 - 1 / count))
 
 
 def _covariance(smooth: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -7,14 +7,11 @@ from functools import partial
 import numpy as np
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.coordinates import Coordinates
+from diagnosis.residuals.coordinates import STEP, Coordinates
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep
 from diagnosis.search.nudges import Nudges, nudges_of
 from groundwalk.arrays import FloatArray
-
-STEP = 0.02
-"""Step of finite differences, in coordinates that are scaled to be of order one."""
 
 HOLD = 1e-3
 """Weight of a penalty on the distance from the start values, so that values that the

@@ -162,29 +162,37 @@ def _learned(
         floats = sims.plant.base == "floating"
         every = [late for one in traces for late in _shifted(one)] if floats else traces
         predictor = sims.predictor(every, known)
+        scored = predictor.scored.reshape(-1, count)
         if floats:
             (residual,) = predictor.residuals([()])
-        else:
-            residual = _left_out(sims, predictor, model)
-        residual = residual.reshape(-1, count)
-        scored = predictor.scored.reshape(-1, count)
+            shaped = residual.reshape(-1, count)
+            return ReferenceNoise.of(model, shaped, scored, predictor.blocks)
+        (left,) = predictor.without_tolerances().residuals([()])
+        found, changes = _unknown(sims, predictor, model)
+        parts = _parts(predictor)
+        residual = left_out(left, changes, parts).reshape(-1, count)
         noise = ReferenceNoise.of(model, residual, scored, predictor.blocks)
         if predictor.nuisance is None:
             return noise
-        changes = predictor.nuisance.changes.whole()
-        return noise.knowing(changes.reshape(len(changes), -1, count), predictor.blocks)
+        shaped, own = left.reshape(-1, count), parts.reshape(-1, count)[:, 0]
+        unknown = changes.reshape(len(changes), -1, count)
+        return noise.knowing(unknown, shaped, predictor.blocks, own, found)
 
     return sims.hooks.saved(work, pack_noise, unpack_noise)
 
 
-def _left_out(sims: _Simulations, predictor: Predictor, model: Model) -> FloatArray:
-    """(N,) what a model leaves in each recording if it is learned from the others.
+def _unknown(
+    sims: _Simulations, predictor: Predictor, model: Model
+) -> tuple[Model, FloatArray]:
+    """What recordings of the healthy robot leave unknown of a model.
 
-    Else what fits these recordings alone would pass for what the robot always has.
+    Returns the effects whose values are free, and (k, N) changes of the residual by
+    small mismatch, then by these values. What fits these recordings alone would else
+    pass for what the robot always has.
     """
-    (left,) = predictor.without_tolerances().residuals([()])
     nuisance = predictor.nuisance
-    changes = np.zeros((0, len(left))) if nuisance is None else nuisance.changes.whole()
+    entries = len(predictor.scored)
+    changes = np.zeros((0, entries)) if nuisance is None else nuisance.changes.whole()
     found = tuple(one for one in model if not is_usual(sims.plant, one))
     if found:
         rest = tuple(one for one in model if one not in found)
@@ -193,7 +201,7 @@ def _left_out(sims: _Simulations, predictor: Predictor, model: Model) -> FloatAr
         others.calibrate(found, tolerances=False)
         (fitted,) = fit_all(others, [found], 1)
         changes = np.vstack([changes, fitted.jacobian.T])
-    return left_out(left, changes, _parts(predictor))
+    return found, changes
 
 
 def _parts(predictor: Predictor) -> IntArray:

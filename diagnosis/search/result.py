@@ -180,7 +180,8 @@ def pack_noise(noise: ReferenceNoise) -> Saved:
     arrays = {name: getattr(noise, name) for name in names}
     if noise.spread is not None:
         arrays["spread"] = noise.spread
-    return Saved({"model": _plain(noise.model), "rows": noise.rows}, arrays)
+    plain = {"model": _plain(noise.model), "found": _plain(noise.found)}
+    return Saved({**plain, "rows": noise.rows}, arrays)
 
 
 def unpack_noise(saved: Saved) -> ReferenceNoise:
@@ -193,6 +194,7 @@ def unpack_noise(saved: Saved) -> ReferenceNoise:
         arrays["axes"],
         saved.plain["rows"],
         arrays.get("spread"),
+        found=_model(saved.plain["found"]),
     )
 
 

@@ -12,6 +12,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from diagnosis.effects.library import effect
 from diagnosis.effects.parts import Parameter, PlacedEffect
@@ -137,12 +138,22 @@ class Nuisance:
         low, high = np.array(ends).reshape(-1, 2).T
         return low, high
 
-    def tolerance(self, spread: FloatArray | None = None) -> Tolerance:
+    def tolerance(
+        self, spread: FloatArray | None = None, further: FloatArray | None = None
+    ) -> Tolerance:
         """The space of what other errors than these would change.
 
-        `spread` (k, k) is their covariance in standard deviations; independent if None.
+        `spread` (k + m, k + m) is their covariance in standard deviations, and that of
+        what changes residuals by `further` (m, N); independent if None.
         """
         keys = [one.key for one in self.units]
-        if spread is not None and len(spread) != len(keys):
-            spread = None  # what is uncertain differs, as other joints have servos
-        return Tolerance(self.changes, keys, self.sizes, spread)
+        more = 0 if further is None else len(further)
+        if spread is not None and len(spread) != len(keys) + more:
+            # what is uncertain differs, as other joints have servos
+            last = spread[len(spread) - more :, len(spread) - more :]
+            spread = block_diag(np.eye(len(keys)), last)
+        if further is None or not more:
+            return Tolerance(self.changes, keys, self.sizes, spread)
+        every = Changes.of(np.vstack([self.changes.whole(), further]))
+        sizes = np.append(self.sizes, np.zeros(more))
+        return Tolerance(every, [*keys, *more * [""]], sizes, spread)

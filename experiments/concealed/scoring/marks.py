@@ -35,7 +35,8 @@ class Mark:
         if nothing is hidden, or set 1 hides what the diagnosis does not know.
       kind: kind of the answer, or "missing".
       names_something: whether any effect is named.
-      top1: whether the first named effect has a true name.
+      top1: whether the first named effect has a true name; `there` whether it has a
+        true place with it.
       in_set: whether a true name is among the `set_size` names that are considered.
       places: for each named effect with a true name, whether its place is true.
       hits: number of named effects that are true in name and place; `extra` are not.
@@ -55,6 +56,7 @@ class Mark:
     kind: str
     names_something: bool
     top1: bool
+    there: bool
     in_set: bool
     set_size: int
     places: tuple[bool, ...]
@@ -117,6 +119,7 @@ def mark(
         kind=answer.kind if answer else "missing",
         names_something=bool(found),
         top1=bool(found) and found[0].name in names,
+        there=bool(found) and _at(found[0]) in true,
         in_set=bool(considered & names),
         set_size=len(considered),
         places=tuple(_at(each) in true for each in found if each.name in names),

@@ -43,6 +43,7 @@ def measures(marks: Sequence[Mark], seed: int) -> dict[str, Any]:
             for kind in dict.fromkeys(each.case.kind for each in marks)
         },
         "top1": _by_level(single, lambda each: each.top1),
+        "there": share(each.there for each in single),
         "in_set": _by_level(single, lambda each: each.in_set),
         "set_size": _mean([each for each in single if each.set_size], "set_size", rng),
         "place": share(right for each in hidden for right in each.places),

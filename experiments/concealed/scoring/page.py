@@ -158,6 +158,7 @@ GOALS = (
     Goal("right effect first, L3", ("top1", "L3")),
     Goal("right effect first, L4", ("top1", "L4")),
     Goal("right effect first, all singles", ("top1", "all")),
+    Goal("right effect first and at its place, all singles", ("there",)),
     Goal("right effect considered, L1", ("in_set", "L1"), low=0.90),
     Goal("right effect considered, L2", ("in_set", "L2"), low=0.90),
     Goal("right effect considered, all singles", ("in_set", "all")),

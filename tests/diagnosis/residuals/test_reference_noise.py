@@ -2,9 +2,16 @@
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 from swinger_rig import moved, swinger
 
-from diagnosis.residuals.reference_noise import WAVES, Block, ReferenceNoise, blocks_of
+from diagnosis.residuals import reference_noise
+from diagnosis.residuals.reference_noise import (
+    WAVES,
+    Block,
+    ReferenceNoise,
+    blocks_of,
+)
 from diagnosis.traces.windows import FLOATING_WINDOW_S, runs_of
 from groundwalk.errors import BadRecordingError
 
@@ -113,3 +120,54 @@ def test_nothing_can_be_learned_from_a_moment():
     scrap = [Block(slice(0, 5), np.zeros((5, 0)))]
     with pytest.raises(BadRecordingError, match="too short"):
         ReferenceNoise.of((), np.zeros((5, CHANNELS)), scored, scrap)
+
+
+def knowing(pulls, change=20.0, rows=ROWS):
+    """What one recording for each of `pulls` leaves unknown of one value.
+
+    The value changes each entry's row by a unit of noise; what is left is as much as
+    the pull, in other rows than those that count, of the change.
+    """
+    count = len(pulls)
+    one = np.zeros((count * rows, CHANNELS))
+    one[:, 2] = change / np.sqrt(rows * count)
+    left = np.zeros_like(one)
+    for k, pull in enumerate(pulls):
+        left[k * rows : (k + 1) * rows, 2] = pull * one[k * rows : (k + 1) * rows, 2]
+    known = ReferenceNoise.known((), CHANNELS)
+    number = np.repeat(np.arange(count), rows)
+    return known.knowing(one[None], left, blocks(count), number).spread[0, 0]
+
+
+def test_what_recordings_that_agree_leave_unknown():
+    """One standard deviation changes the residual by 20 of its noise."""
+    assert knowing([0.0, 0.0, 0.0]) == pytest.approx(1 / (1 + 20**2))
+
+
+def test_what_recordings_differ_by_is_unknown_as_well():
+    """Each recording of n tells the value to 1 / n of the information."""
+    pulls = np.array([3.0, -1.0, -2.0])
+    agreed, differs = 1 / (1 + 20**2), np.var(pulls, ddof=1)
+    assert knowing(pulls) == pytest.approx(agreed + 2 * differs / 3, rel=0.01)
+
+
+@pytest.mark.parametrize(("times", "differs"), [(0.98, False), (1.02, True)])
+def test_what_noise_alone_makes_them_differ_by_is_no_difference(times, differs):
+    """Two degrees of freedom, since what they have in common is fitted."""
+    pulls = np.array([3.0, -1.0, -2.0])
+    told = 20**2 / (1 + 20**2)
+    square = chi2.isf(reference_noise.LEVEL, 2 * told) / 3 * (1 + 20**2)
+    by_one = 20**2 / 3  # products of a recording's changes
+    pulls *= times * np.sqrt(square / (by_one**2 * np.sum(pulls**2)))
+    assert (knowing(pulls) > 1.1 / (1 + 20**2)) == differs
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_half_or_twice_the_level_tells_the_same(monkeypatch, factor):
+    monkeypatch.setattr(reference_noise, "LEVEL", factor * reference_noise.LEVEL)
+    assert knowing([0.02, 0.0, -0.02]) == pytest.approx(1 / (1 + 20**2))
+    assert knowing([3.0, -1.0, -2.0]) > 1
+
+
+def test_of_one_recording_it_is_not_known_what_others_differ_by():
+    assert knowing([4.0]) == pytest.approx(1 / (1 + 20**2))

@@ -161,6 +161,27 @@ def test_with_a_fixed_base_what_was_learned_leaves_little():
     assert power[-1] <= 1 + 1e-9
 
 
+def test_what_recordings_leave_unknown_of_old_effects_is_no_change():
+    """The elbow rubs a quarter more; known well that is a change, else it is not."""
+    plant, traces = arm(), of_arm(0)[:2]
+    channels = shared_channels(plant, traces)
+    friction = (PlacedEffect("viscous_friction", "elbow", (0.6,)),)
+    noise = learn_reference(plant, traces, channels, known=friction)
+    assert [one.key for one in noise.found] == ["viscous_friction@elbow"]
+    after = [measured(7, lambda t, q, v: np.array([0.0, -0.75]) * v, duration_s=2.0)]
+    left = {}
+    for unknown in (0.0, 1.0):
+        spread = np.diag([*(len(noise.spread) - 1) * [0.0], unknown])
+        some = Predictor(plant, after, channels, noise=replace(noise, spread=spread))
+        some.calibrate()
+        (residual,) = some.residuals([()])
+        left[unknown] = np.mean(residual[some.scored] ** 2)
+        (part,) = some.part(0, 1).residuals([()])
+        np.testing.assert_allclose(part, residual)
+    assert left[0.0] > 20
+    assert left[1.0] < 1.5
+
+
 def test_a_fault_as_small_as_usual_errors_is_seen_beside_a_reference():
     """A servo that lost 6 % of its stiffness: a model may be as wrong, a robot not."""
     before, after = of_arm(0), of_arm(10, gain=(0.94, 1.0))

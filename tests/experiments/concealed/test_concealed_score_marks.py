@@ -1,5 +1,7 @@
 """Tests the scores of made-up sets, whose figures can be computed by hand."""
 
+from dataclasses import replace
+
 import pytest
 from made_up_scores import (
     DRY,
@@ -49,6 +51,14 @@ def test_right_first_names_are_counted_by_level():
     low, high = wilson(1, 2)
     assert (score["top1"]["L1"]["low"], score["top1"]["L1"]["high"]) == (low, high)
     assert set(score["levels"].values()) == {"L1", "L2", "L3", "L4"}
+
+
+def test_a_right_name_at_another_place_is_not_there():
+    elsewhere = names(replace(RIGHT, place="LAnklePitch"))
+    score = scored(single(names(RIGHT)), single(elsewhere), single(NOTHING))
+    assert (score["top1"]["all"]["value"], score["there"]["value"]) == (2 / 3, 1 / 3)
+    second = names(found("backlash", KNEE), RIGHT)
+    assert scored(single(second))["there"]["value"] == 0
 
 
 def test_a_right_effect_that_is_not_the_first_is_in_the_set_but_not_top():

@@ -1,0 +1,151 @@
+"""What single recordings of a healthy robot differ by as well is no change of it."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from made_up_traces import NOISE_RAD, arm, recorded
+from scipy.stats import chi2, f
+
+from diagnosis.conclude import no_change as module
+from diagnosis.conclude.guards import established
+from diagnosis.conclude.no_change import Gains, may_be_no_change, no_change
+from diagnosis.effects.parts import PlacedEffect
+from diagnosis.residuals.channels import Channels
+from diagnosis.residuals.predictor import Predictor
+from diagnosis.search.fitting import fit_all
+from diagnosis.search.judging import places_of_effects
+
+CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
+GAIN = (PlacedEffect("servo_gain", "elbow", (1.03,)),)
+FRICTION = (PlacedEffect("viscous_friction", "shoulder", (0.05,)),)
+
+
+@cache
+def predictor_of(gains, first=0, model=GAIN):
+    """A predictor of one recording for each gain of the elbow's servo."""
+    traces = [
+        replace(
+            recorded(arm(), ("servo_gain", "elbow", gain), seed=first + k),
+            name=f"recording {first + k}",
+        )
+        for k, gain in enumerate(gains)
+    ]
+    found = Predictor(arm(), traces, CHANNELS)
+    found.calibrate(model, tolerances=False)
+    return found
+
+
+def doubted(gains, before, model=GAIN):
+    both, healthy = predictor_of(gains), predictor_of(before, first=10, model=())
+    (fitted,) = fit_all(both, [model])
+    return no_change(both, [healthy], fitted)
+
+
+@pytest.mark.parametrize(
+    ("gains", "before", "expected"),
+    [
+        ((1.03,) * 3, (1.0,) * 3, False),
+        ((1.03, 1.06, 1.0), (1.05, 0.95, 1.0), True),
+        ((1.5, 1.51, 1.49), (1.01, 0.99, 1.0), False),
+    ],
+)
+def test_a_change_is_more_than_recordings_differ(gains, before, expected):
+    assert (doubted(gains, before) is not None) == expected
+
+
+def test_without_a_healthy_robot_nothing_is_compared():
+    both = predictor_of((1.07, 0.99, 1.01))
+    assert no_change(both, [], fit_all(both, [GAIN])[0]) is None
+
+
+def test_the_guard_keeps_what_has_changed():
+    gains, before = (1.5, 1.51, 1.49), (1.0, 0.99, 1.01)
+    both, healthy = predictor_of(gains), predictor_of(before, first=10, model=())
+    kept, _ = established(both, GAIN + FRICTION, [healthy])
+    assert kept is not None
+    assert [one.name for one in kept.model] == ["servo_gain"]
+
+
+def test_of_two_that_only_together_are_no_change_one_is_doubted(monkeypatch):
+    """Each alone gains enough beside the other, both together do not."""
+    both, healthy = predictor_of((1.03,) * 3), predictor_of((1.0,) * 3, 10, ())
+    (fitted,) = fit_all(both, [GAIN + FRICTION])
+    asked = []
+
+    def of(both, healthy, fitted, group):
+        asked.append(len(group))
+        if len(group) == 2:
+            return Gains(2, 1000.0, 500.0, 3, 3)
+        return Gains(1, 900.0 if group[0].name == GAIN[0].name else 800.0, 5.0, 3, 3)
+
+    monkeypatch.setattr(module, "_gains", of)
+    found = no_change(both, [healthy], fitted)
+    assert asked == [1, 1, 2]
+    assert found is not None
+    assert found[0].name == "viscous_friction"
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_where_it_is_noise_how_joints_differ_effects_count_singly(monkeypatch, known):
+    both, healthy = predictor_of((1.03,) * 3), predictor_of((1.0,) * 3, 10, ())
+    (fitted,) = fit_all(both, [GAIN])
+    counts = []
+    monkeypatch.setattr(Predictor, "knows_healthy_torques", known)
+    monkeypatch.setattr(
+        module, "may_be_no_change", lambda gains, count: bool(counts.append(count))
+    )
+    no_change(both, [healthy], fitted)
+    assert counts == [1 if known else places_of_effects(both)]
+
+
+def gains(shared, single, values=1, diagnosed=3, healthy=3):
+    return Gains(values, shared, single, diagnosed, healthy)
+
+
+def test_the_ratio_is_that_of_an_analysis_of_variance():
+    """Four degrees of freedom; of three recordings each half of the gain counts."""
+    single = 100.0
+    least = f.isf(0.05, 1, 4) * single / 4 * 2
+    assert may_be_no_change(gains(0.99 * least, single), 1)
+    assert not may_be_no_change(gains(1.01 * least, single), 1)
+
+
+def test_the_best_of_many_must_gain_more():
+    single = 100.0
+    least = f.isf(0.05 / 20, 1, 4) * single / 4 * 2
+    assert may_be_no_change(gains(0.99 * least, single), 20)
+    assert not may_be_no_change(gains(1.01 * least, single), 20)
+
+
+def test_recordings_that_differ_by_noise_doubt_nothing():
+    """Twice the gain has the distribution of the squares that are fitted."""
+    most = chi2.isf(0.05, 4) / 2
+    assert not may_be_no_change(gains(0.01, 0.99 * most), 1)
+    assert may_be_no_change(gains(0.01, 1.01 * most), 1)
+
+
+def test_two_recordings_tell_nothing_of_differences():
+    assert not may_be_no_change(gains(0.01, 1e6, diagnosed=1, healthy=1), 1)
+
+
+def test_three_of_each_find_no_change_as_rarely_as_the_level_says():
+    """One value that each recording has of its own; one candidate."""
+    random, wrong, count = np.random.default_rng(5), 0, 4000
+    for _ in range(count):
+        own, before = random.normal(0, 30.0, (2, 3)) + random.normal(0, 1, (2, 3))
+        own = own - before.mean()  # what they have in common is the model
+        before = before - before.mean()
+        shared = 3 * own.mean() ** 2 / 2
+        single = (np.sum((own - own.mean()) ** 2) + np.sum(before**2)) / 2
+        wrong += not may_be_no_change(gains(shared, single), 1)
+    assert wrong / count == pytest.approx(0.05, abs=0.01)
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_half_or_twice_the_level_decides_the_same(monkeypatch, factor):
+    monkeypatch.setattr(module, "LEVEL", factor * module.LEVEL)
+    assert doubted((1.03,) * 3, (1.0,) * 3) is None
+    assert doubted((1.03, 1.06, 1.0), (1.05, 0.95, 1.0)) is not None
+    assert doubted((1.5, 1.51, 1.49), (1.01, 0.99, 1.0)) is None
