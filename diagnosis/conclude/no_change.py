@@ -96,10 +96,11 @@ def _same_size(
 
 
 def _gains_no_more(told: Told, level: float) -> bool:
-    """The same for several values, whose gains are compared.
+    """Whether single recordings gain more than by noise, and all no more than these.
 
-    By an analysis of variance (Fisher 1925, "Statistical methods for research
-    workers"); the values of one recording do not count as independent.
+    Gains by effects with several values are compared by an analysis of variance (Fisher
+    1925, "Statistical methods for research workers"); the values of one recording do
+    not count as independent.
     """
     count, before = len(told.is_healthy), float(told.is_healthy.sum())
     free, single = count - 2, float(told.single.sum())

@@ -51,13 +51,12 @@ class Coordinates:
                 x[i] = self.scaled(i, min(max(value, one.low), one.high))
         return x
 
-    def differences(self, x: FloatArray) -> tuple[FloatArray, list[Model]]:
-        """(p,) steps of finite differences from a point (p,), and models so far off.
+    def steps_from(self, x: FloatArray) -> FloatArray:
+        """(p,) steps of finite differences from a point (p,).
 
-        One for each coordinate; steps go down where one up would leave the bounds.
+        They go down where one up would leave the bounds.
         """
-        far = np.where(x + STEP <= self.bounds()[1], STEP, -STEP)
-        return far, [self.model_at(x + step) for step in np.diag(far)]
+        return np.where(x + STEP <= self.bounds()[1], STEP, -STEP)
 
     def model_at(self, x: FloatArray) -> Model:
         """The model whose values have the (p,) scaled coordinates `x`."""

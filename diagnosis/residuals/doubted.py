@@ -175,7 +175,7 @@ class Doubted(ABC):
         So it is not fitted to traces that are held out.
         """
         if errors is not None:
-            self._doubts = replace(self._doubts, found=self._of_found(model))
+            self._doubts = replace(self._doubts, old=self._of_found(model))
             own = self.nuisance or no_nuisance(self)
             found = self.nuisance_fit(model).seen(own.at(errors.sizes))
             self._doubts = self._doubts.taking(found, self._beyond())
@@ -192,9 +192,10 @@ class Doubted(ABC):
         bare = {"noise": replace(noise, model=rest), "nuisance": None}
         some = self._with(**bare, tolerance=self._beyond())
         coordinates = Coordinates(self.plant, noise.found)
-        far, others = coordinates.differences(coordinates.of(noise.found))
-        given = [(*one, *model) for one in (noise.found, *others)]
-        seen = some.residuals(given)
+        x = coordinates.of(noise.found)
+        far = coordinates.steps_from(x)
+        points = [x, *(x + np.diag(far))]
+        seen = some.residuals([(*coordinates.model_at(at), *model) for at in points])
         return np.asarray((seen[1:] - seen[0]) / far[:, None])
 
     def doubt_as(self, other: "Doubted") -> None:

@@ -33,7 +33,7 @@ class Doubts:
       nuisance: likely small mismatch of the nominal model, which is in simulations.
       tolerance: other small mismatch, which is possible around it, and other values of
         the effects that the healthy robot has.
-      found: (p, N) what each of these values changes in residuals, in scaled
+      old: (p, N) what each of these values changes in residuals, in scaled
         coordinates.
     """
 
@@ -45,7 +45,7 @@ class Doubts:
     blocks: Sequence[Block] = ()
     nuisance: Nuisance | None = None
     tolerance: Tolerance | None = None
-    found: FloatArray | None = None
+    old: FloatArray | None = None
 
     def given(self, model: Model) -> Model:
         """The model, what recordings of the healthy robot show, and small mismatch."""
@@ -100,14 +100,14 @@ class Doubts:
         start = whole.start and whole.start.part(runs.start, runs.stop)
         nuisance = whole.nuisance and whole.nuisance.part(entries)
         tolerance = whole.tolerance and whole.tolerance.part(entries)
-        found = None if whole.found is None else whole.found[:, entries]
-        some = replace(self, commands=commands, start=start, found=found)
+        old = None if whole.old is None else whole.old[:, entries]
+        some = replace(self, commands=commands, start=start, old=old)
         return replace(some, nuisance=nuisance, tolerance=tolerance)
 
     def taking(self, nuisance: Nuisance, beyond: Tolerance) -> "Doubts":
         """With likely small mismatch, and what is possible around it or `beyond`."""
         spread = self.noise.spread if self.noise else None
-        tolerance = nuisance.tolerance(spread, self.found).and_of(beyond)
+        tolerance = nuisance.tolerance(spread, self.old).and_of(beyond)
         return replace(self, nuisance=nuisance, tolerance=tolerance)
 
 

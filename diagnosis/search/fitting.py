@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.coordinates import STEP, Coordinates
+from diagnosis.residuals.coordinates import Coordinates
 from diagnosis.residuals.predictor import Model, Predictor
 from diagnosis.search.batched_tasks import lockstep
 from diagnosis.search.nudges import Nudges, nudges_of
@@ -95,7 +95,6 @@ class _Course:
     ) -> None:
         self.coordinates, self._ask, self._followed = coordinates, ask, followed
         self._nudges = nudges
-        self._high = coordinates.bounds()[1]
         self._residuals: dict[bytes, FloatArray] = {}
         self._jacobians: dict[bytes, FloatArray] = {}
         self._last: FloatArray | None = None
@@ -129,7 +128,7 @@ class _Course:
     def _differences(self, x: FloatArray) -> None:
         """Compute residual and Jacobian at a point (p,) by finite differences."""
         groups, rows = self._nudges.groups, self._nudges.rows
-        far = np.where(x + STEP <= self._high, STEP, -STEP)
+        far = self.coordinates.steps_from(x)
         points = [x, *(x + far * np.isin(np.arange(len(x)), own) for own in groups)]
         seen = self._ask([self.coordinates.model_at(point) for point in points])
         found = np.zeros((seen.shape[1], len(x)))

@@ -1,38 +1,19 @@
 """What differs from recording to recording is no evidence of something missing."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from made_up_traces import NOISE_RAD, arm, recorded
+from differing_gains import CHANNELS, GAIN, predictor_of
+from made_up_traces import arm, recorded
 from scipy.stats import norm, t
 
 from diagnosis.conclude import between_recordings
 from diagnosis.conclude.between_recordings import Sizes, may_be_scatter, scattered
 from diagnosis.conclude.guards import established
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
-
-CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
-GAIN = (PlacedEffect("servo_gain", "elbow", (1.03,)),)
-
-
-@cache
-def predictor_of(gains, first=0):
-    """A predictor of one recording for each gain of the elbow's servo."""
-    traces = [
-        replace(
-            recorded(arm(), ("servo_gain", "elbow", gain), seed=first + k),
-            name=f"recording {first + k}",
-        )
-        for k, gain in enumerate(gains)
-    ]
-    found = Predictor(arm(), traces, CHANNELS)
-    found.calibrate(GAIN, tolerances=False)
-    return found
 
 
 @pytest.mark.parametrize(

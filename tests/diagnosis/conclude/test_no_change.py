@@ -1,40 +1,20 @@
 """What single recordings of a healthy robot differ by as well is no change of it."""
 
-from dataclasses import replace
-from functools import cache
-
 import numpy as np
 import pytest
-from made_up_traces import NOISE_RAD, arm, recorded
+from differing_gains import GAIN, predictor_of
 from scipy.stats import chi2, f, t
 
+from diagnosis.conclude import guards
 from diagnosis.conclude import no_change as module
 from diagnosis.conclude.guards import established
 from diagnosis.conclude.no_change import Told, may_be_no_change, no_change
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.residuals.channels import Channels
 from diagnosis.residuals.predictor import Predictor
 from diagnosis.search.fitting import fit_all
 from diagnosis.search.judging import places_of_effects
 
-CHANNELS = Channels(("position.shoulder", "position.elbow"), np.full(2, NOISE_RAD))
-GAIN = (PlacedEffect("servo_gain", "elbow", (1.03,)),)
 FRICTION = (PlacedEffect("viscous_friction", "shoulder", (0.05,)),)
-
-
-@cache
-def predictor_of(gains, first=0, model=GAIN):
-    """A predictor of one recording for each gain of the elbow's servo."""
-    traces = [
-        replace(
-            recorded(arm(), ("servo_gain", "elbow", gain), seed=first + k),
-            name=f"recording {first + k}",
-        )
-        for k, gain in enumerate(gains)
-    ]
-    found = Predictor(arm(), traces, CHANNELS)
-    found.calibrate(model, tolerances=False)
-    return found
 
 
 def doubted(gains, before, model=GAIN):
@@ -66,6 +46,16 @@ def test_the_guard_keeps_what_has_changed():
     kept, _ = established(both, GAIN + FRICTION, [healthy])
     assert kept is not None
     assert [one.name for one in kept.model] == ["servo_gain"]
+
+
+def test_the_guard_takes_out_what_recordings_differ_by(monkeypatch):
+    """The other guard that compares recordings does not look."""
+    monkeypatch.setattr(guards, "scattered", lambda both, healthy, fitted: [])
+    both = predictor_of((1.03,) * 3)
+    for before, stays in (((1.0,) * 3, True), ((1.05, 0.95, 1.0), False)):
+        healthy = predictor_of(before, first=10, model=())
+        kept, _ = established(both, GAIN, [healthy])
+        assert (kept is not None) == stays
 
 
 def test_of_two_that_only_together_are_no_change_one_is_doubted(monkeypatch):

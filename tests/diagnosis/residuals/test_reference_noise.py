@@ -125,8 +125,8 @@ def test_nothing_can_be_learned_from_a_moment():
 def knowing(pulls, change=20.0, rows=ROWS):
     """What one recording for each of `pulls` leaves unknown of one value.
 
-    The value changes each entry's row by a unit of noise; what is left is as much as
-    the pull, in other rows than those that count, of the change.
+    The value changes all rows of one channel, `change` in all [noise]; in each
+    recording the pull is the share of that which is left.
     """
     count = len(pulls)
     one = np.zeros((count * rows, CHANNELS))
