@@ -194,7 +194,7 @@ def unpack_noise(saved: Saved) -> ReferenceNoise:
         arrays["axes"],
         saved.plain["rows"],
         arrays.get("spread"),
-        found=_model(saved.plain["found"]),
+        found=_model(saved.plain.get("found", [])),  # none in older checkpoints
     )
 
 
