@@ -16,7 +16,8 @@ from diagnosis.conclude.estimates import (
     standard_errors,
 )
 from diagnosis.effects.parts import PlacedEffect
-from diagnosis.search.fitting import STEP, Coordinates, FittedModel
+from diagnosis.residuals.coordinates import STEP, Coordinates
+from diagnosis.search.fitting import FittedModel
 
 BLOCKS, ROWS, RECORDINGS = 60, 25, 4
 DIAGNOSES = 40
