@@ -4,7 +4,6 @@ import os
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Self
 
 from experiments.runs.folder import CONFIG, PROVENANCE, RunFolder
@@ -78,8 +77,11 @@ def command_of(provenance: Mapping[str, Any]) -> str:
 
 
 def shown(text: str) -> str:
-    """Make a text a relative path, if it is a path in the current folder."""
-    return text.removeprefix(f"{Path.cwd()}{os.sep}")
+    """Make a text a path from the current folder on, if it is an absolute path.
+
+    A page is read on other machines, where folders above this one have other names.
+    """
+    return os.path.relpath(text) if os.path.isabs(text) else text
 
 
 def _text(value: Any) -> str:

@@ -1,6 +1,7 @@
 """Pages of all verbs: one content, two forms, and nothing from outside."""
 
 import base64
+import os
 import re
 import sys
 from pathlib import Path
@@ -245,6 +246,20 @@ def test_a_process_of_our_own_says_how_it_was_started(monkeypatch, started, prog
     monkeypatch.setattr(sys, "argv", [str(root / started), "start", "--json"])
     told = repeat_command("evaluate", Evaluate(("start",)))
     assert told == f"{program} start --json"
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [("in/a.csv", "in/a.csv"), ("../data/a.csv", "../data/a.csv"), ("nao", "nao")],
+)
+def test_a_page_names_no_folder_of_the_machine(tmp_path, monkeypatch, given, told):
+    """Paths are told from the current folder on, also those of files beside it."""
+    monkeypatch.chdir(tmp_path)
+    value = os.path.abspath(given) if os.sep in given else given
+    settings = {"one": value, "several": [value, value]}
+    code = dict.fromkeys(("python", "command", "commit", "changed"), "known")
+    page = Origin.of({**code, "packages": {}}, settings).settings
+    assert page == {"one": told, "several": f"{told}, {told}"}
 
 
 def test_older_runs_told_their_arguments_alone(tmp_path):
