@@ -57,7 +57,7 @@ class RealRobot:
       pulses: number of force pulses that the experimenters added at the actuator's
         input.
       twice: whether the page claims that with the effects found the held-out motions
-        are predicted with at most half the error.
+        of every joint are predicted with at most half the error.
 
     Example:
       >>> RealRobot("My arm", "arm", "arm.urdf", "recorded by us", "A paragraph.")

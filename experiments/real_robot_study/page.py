@@ -21,8 +21,10 @@ Intervals hold 80 %. Errors are rms errors of the sim on recordings, or parts of
 that neither the fit nor the choice of effects has seen; "regression" is the error that
 a flexible regression without physics reaches there. "Same effect, other place" and
 "other effect, same place" are controls that replace the main effect only. How often the
-stated probabilities are right was measured on [concealed cases](concealed.md), on no
-real robot.
+stated probabilities are right was measured on [concealed cases](concealed.md) and on
+[doctored recordings of real robots](concealed_real.md). This is one run and one way to
+divide the recordings, and rules for robots far from their models were made with these
+robots in sight: another robot's figures are likely to be worse.
 """
 
 
@@ -51,7 +53,17 @@ def _effects(robot: RealRobot, effects: Sequence[Found]) -> list[str]:
     if not rows:
         return ["Nothing was named."]
     columns = ["place", "effect", "parameter", "value", "sure", "possible"]
-    return markdown_table(columns, rows)
+    count = f"Different values that were fitted: {number_of_values(effects)}."
+    return [*markdown_table(columns, rows), "", count]
+
+
+def number_of_values(effects: Sequence[Found]) -> int:
+    """Number of values that were fitted; those that places share count once."""
+    groups = {
+        (one.name, frozenset([one.place, *one.shared_with])): len(one.parameters)
+        for one in effects
+    }
+    return sum(groups.values())
 
 
 def _doubts(verdict: Verdict) -> list[str]:
@@ -198,8 +210,8 @@ def _pulses_claim(count: int, pulses: tuple[Pulse, ...]) -> Claim:
 
 
 def _twice(verdict: Verdict) -> Claim:
-    """The claim that the effects found at least halve the error of held-out motions."""
-    text = "held-out motions are predicted at least twice as well"
+    """The claim that the effects found at least halve the error at every joint."""
+    text = "held-out motions of every joint are predicted at least twice as well"
     if verdict.fit is None:
         return Claim(text, False, "nothing was held out")
     fit = verdict.fit
@@ -208,8 +220,8 @@ def _twice(verdict: Verdict) -> Claim:
         for name, one in fit.channels.items()
     }
     joints = ", ".join(f"{name} {ratio:.1f}" for name, ratio in ratios.items())
-    ratio = fit.nominal / fit.corrected
-    return Claim(text, ratio >= TWICE, f"{ratio:.1f} times in all; {joints}")
+    ratio, holds = fit.nominal / fit.corrected, min(ratios.values()) >= TWICE
+    return Claim(text, holds, f"{ratio:.1f} times in all; {joints}")
 
 
 def _sane(robot: RealRobot, verdict: Verdict) -> Claim:

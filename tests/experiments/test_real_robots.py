@@ -4,12 +4,16 @@ import pytest
 from made_up_diagnoses import KINDS
 
 from diagnosis.effects import all_effects
-from diagnosis.verdict import Estimate, Found, Pulse, Recordings
+from diagnosis.verdict import ChannelFit, Estimate, Found, Pulse, Recordings
 from experiments import real_robots
 from experiments.diagnosis_report.console import console_lines
 from experiments.diagnosis_report.text import answer
 from experiments.real_robot_study.cases import ROBOTS, Published, RealRobot, Sane
-from experiments.real_robot_study.page import claims_of, write_real_page
+from experiments.real_robot_study.page import (
+    claims_of,
+    number_of_values,
+    write_real_page,
+)
 from experiments.real_robots import RealRobots, main
 from experiments.runs.folder import RunFolder
 from groundwalk.errors import BadValueError
@@ -60,10 +64,18 @@ def test_all_pulses_must_be_found_at_the_actuator(pulses, holds):
     assert claim.holds is holds
 
 
-@pytest.mark.parametrize(("times", "holds"), [(2.1, True), (1.9, False)])
-def test_twice_as_well_is_twice_as_well(times, holds):
+@pytest.mark.parametrize(
+    ("times", "holds"), [((2.1, 9.0), True), ((2.1, 1.9), False), ((1.9, 9.0), False)]
+)
+def test_twice_as_well_is_twice_as_well_at_every_joint(times, holds):
     fit = verdict().fit
-    fit = replace(fit, corrected=fit.nominal / times)
+    channels = {
+        f"position.{k}": ChannelFit(
+            nominal=1.0, corrected=1 / ratio, floor=0.01, unit="rad"
+        )
+        for k, ratio in enumerate(times)
+    }
+    fit = replace(fit, channels=channels)
     robot = replace(ROBOT, published=(), twice=True)
     (claim,) = claims_of(robot, verdict(fit=fit))
     assert claim.holds is holds
@@ -77,6 +89,13 @@ def test_impossible_values_are_told():
     (wrong,) = claims_of(robot, verdict(effects=(oil(1.4, 1.6),), fit=fit))
     assert (right.holds, wrong.holds) == (True, False)
     assert wrong.found == "viscous_friction@LKneePitch 1.5"
+
+
+def test_values_that_places_share_count_once():
+    gain = Found("servo_gain", "a", {"factor": Estimate(0.9, 0.8, 1.0, "1")}, 0.9)
+    both = replace(gain, shared_with=("b",)), replace(gain, place="b", shared_with=("a",))
+    assert number_of_values(both) == 1
+    assert number_of_values((gain, replace(gain, place="b"), oil(1, 2))) == 3
 
 
 def test_joints_at_which_nothing_is_named_are_told():
