@@ -93,8 +93,8 @@ def test_impossible_values_are_told():
 
 def test_values_that_places_share_count_once():
     gain = Found("servo_gain", "a", {"factor": Estimate(0.9, 0.8, 1.0, "1")}, 0.9)
-    both = replace(gain, shared_with=("b",)), replace(gain, place="b", shared_with=("a",))
-    assert number_of_values(both) == 1
+    other = replace(gain, place="b", shared_with=("a",))
+    assert number_of_values((replace(gain, shared_with=("b",)), other)) == 1
     assert number_of_values((gain, replace(gain, place="b"), oil(1, 2))) == 3
 
 
