@@ -43,6 +43,7 @@ VERBS = {
     "diagnose": Verb("Diagnose", "find the physics that a sim lacks, from recordings"),
     "real-robots": Verb("RealRobots", "diagnose recordings of known real robots"),
     "record": Verb("Record", "make a recording, with hidden physics if wanted"),
+    "convert": Verb("Convert", "make recordings from files of ROS, LeRobot and others"),
     "concealed": Verb(
         "STUDIES", "test the diagnosis on recordings with hidden physics"
     ),

@@ -60,6 +60,10 @@ class BadRecordingError(GroundwalkError):
     """A recording cannot be read, or contradicts the recording format."""
 
 
+class ForeignFileError(GroundwalkError):
+    """A file of another program cannot be turned into a recording as it is."""
+
+
 class BadModelError(GroundwalkError):
     """A file holds no robot model, or another kind of model than the caller needs."""
 
