@@ -129,6 +129,9 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "groundwalk diagnose air.parquet --robot nao": Run(
             "--out runs/air", writes=below("runs/air", DIAGNOSED), says="verdict"
         ),
+        "groundwalk convert arm.db3 --out arm.parquet": Run(
+            writes=("arm.parquet",), says="torques from the efforts"
+        ),
         "groundwalk concealed make set --cases 20 --seed 7": Run(
             "--cases 1 --seed 53", writes=CONCEALED
         ),
@@ -224,6 +227,39 @@ JOURNEYS: dict[str, dict[str, Step]] = {
             "recordings of real robots, which are not in the repository",
             "make -n results-diagnosis DATA=data",
         ),
+    },
+    "recordings.md": {
+        "groundwalk convert log.csv --out swing.parquet": NotRun(
+            "it shows what it makes of a table, and asks",
+            "groundwalk convert log.csv --out swing.parquet",
+            status=2,
+            says="position.elbow  elbow_pos_deg  deg   its name",
+        ),
+        "groundwalk convert log.csv --out swing.parquet --yes": Run(
+            writes=("swing.parquet",), says="joints elbow"
+        ),
+        "groundwalk convert log.csv --map time=t_ms*ms "
+        "position.elbow=elbow_pos_deg*deg command.elbow=elbow_cmd_deg*deg "
+        "torque.elbow=none --out elbow.csv": Run(
+            writes=("elbow.csv", "elbow.json"), says="time, position, command"
+        ),
+        "groundwalk convert arm.mcap --state-topic /joint_states "
+        "--command-topic /targets --out arm.parquet": Run(
+            writes=("arm.parquet",), says="commands from /targets"
+        ),
+        "groundwalk convert pick_place --unit deg gripper=percent_0_100 "
+        "--calibration follower.json --out pick_place_recordings": Run(
+            writes=("pick_place_recordings/pick_place_episode_001.parquet",)
+        ),
+        "groundwalk convert pick_place --unit percent --calibration follower.json "
+        "--without gripper --out arm_recordings": Run(
+            writes=("arm_recordings/*.parquet",), says="joints shoulder_pan; "
+        ),
+        "groundwalk convert lift.json --rename pendulum=elbow --out lift.parquet": Run(
+            writes=("lift.parquet",), says="joints elbow"
+        ),
+        "groundwalk convert chirp.npz --joints LF_HAA LF_HFE LF_KFE "
+        "--out chirp.parquet": Run(writes=("chirp.parquet",), says="LF_KFE"),
     },
     "architecture.md": {
         "make lint": NotRun("a minute, beside the tests", "make -n lint", says="ruff"),

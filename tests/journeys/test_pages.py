@@ -1,6 +1,7 @@
 """What the pages tell people to type works: each command, in the order of its page."""
 
 import pytest
+from foreign_things import write_foreign_things
 from made_up_urdf import two_legged
 from steps import JOURNEYS, NotRun
 from travel import ROOT, take
@@ -14,9 +15,10 @@ TYPED = [page for page in PAGES if typed(page)]
 @pytest.mark.parametrize("page", TYPED, ids=lambda page: page.name)
 def test_a_page(page, tmp_path):
     """Readers begin in a clone: what it holds of docs/results is there,
-    and so is the URDF of a robot of their own."""
+    and so are the URDF of a robot of their own and files of other programs."""
     (tmp_path / "docs").symlink_to(ROOT / "docs")
     (tmp_path / "my_robot.urdf").write_text(two_legged())
+    write_foreign_things(tmp_path)
     for command in typed(page):
         take(tmp_path, command, JOURNEYS[page.name][command])
 

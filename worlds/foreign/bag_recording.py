@@ -164,7 +164,7 @@ class _Rows:
         return joint_columns(column, self.state.joints, values[self.first])
 
     def commands(self, command: JointMessages) -> dict[str, FloatArray]:
-        """Columns of position targets, or of torque targets if those alone are there."""
+        """Columns of position targets, or of torque targets if there are none."""
         names = self._names(command)
         arrival_ns = command.received_ns - self.lag_ns
         last = np.searchsorted(arrival_ns, self.time_ns, side="right") - 1

@@ -86,8 +86,8 @@ def _times(path: Path, data: Mapping[str, Any]) -> FloatArray:
     """Times [s]; logs without time stamps have a fixed step `dt`."""
     entries = data["entries"]
     if "timestamp" not in entries[0] and is_number(data.get("dt")):
-        step_s: float = data["dt"]
-        times: FloatArray = np.arange(len(entries)) * step_s
+        rows = np.arange(len(entries), dtype=np.float64)
+        times: FloatArray = rows * float(data["dt"])
         return times
     return _values(path, entries, "timestamp")
 

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from groundwalk.arrays import FloatArray
 from groundwalk.errors import BadValueError, ForeignFileError
-from groundwalk.json_data import parse_json
+from groundwalk.json_data import is_number, parse_json
 from worlds.foreign.joint_units import JointScale, joint_scales
 from worlds.foreign.recording import ForeignRecording, joint_columns
 
@@ -138,6 +138,8 @@ def _info(path: Path) -> _Info:
             f"{', '.join(names[0])}; both must be of the same joints"
         )
     robot, rate = plain.get("robot_type") or "", _key(where, plain, "fps")
+    if not (is_number(rate) and rate > 0):
+        raise ForeignFileError(f"{where}: 'fps' must be a number above 0, not {rate!r}")
     return _Info(names[0], str(robot), float(rate))
 
 

@@ -80,7 +80,8 @@ def _joint_names(
 def _arrays(path: Path) -> dict[str, npt.NDArray[np.generic]]:
     """All arrays of the archive; none that would need Python code to be run."""
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file:
+            archive = np.load(file, allow_pickle=False)
             if not hasattr(archive, "files"):
                 raise ForeignFileError(f"{path}: one array, no archive of named ones")
             return {name: archive[name] for name in archive.files}
