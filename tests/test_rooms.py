@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
-HEAVY = {"mujoco", "pybullet", "rerun", "cma", "torch", "matplotlib"}
+HEAVY = {"mujoco", "pybullet", "rerun", "rosbags", "cma", "torch", "matplotlib"}
 
 
 def lint_imports(folder):
@@ -33,6 +33,7 @@ def small_house(tmp_path):
         "terrain/field.py": "import groundwalk",
         "robots/model.py": "def model():\n    import mujoco",
         "worlds/rerun_files/log.py": "import rerun, terrain",
+        "worlds/foreign/bags.py": "import rosbags",
         "worlds/real/world.py": "def real():\n    import pybullet, robots",
         "walk_engine/engine.py": "from robots import model",
         "sgat/models/transition_models.py": "import torch, worlds",
@@ -95,6 +96,8 @@ FORBIDDEN = (
     ("experiments", "cma"),
     ("worlds", "rerun"),
     ("experiments", "rerun"),
+    ("experiments", "rosbags"),
+    ("worlds", "rosbags"),
     ("worlds", "sgat"),
     ("sgat", "experiments"),
     ("sgat", "mujoco"),
