@@ -108,6 +108,7 @@ def _is_of(connection: Connection, topic: Topic) -> bool:
 
 def _inside(path: Path, work: Callable[[Reader], "Found"]) -> "Found":
     """Open a bag and do `work` with it; whatever is wrong becomes one line."""
+    _refuse_unwritten(path)
     try:
         bag: AbstractContextManager[Reader] = Reader(path)
         with bag as opened:
@@ -117,9 +118,25 @@ def _inside(path: Path, work: Callable[[Reader], "Found"]) -> "Found":
     except Exception as error:
         # The library lets errors of every kind through when bytes are missing.
         reason = str(error).partition("\n")[0] or type(error).__name__
+        ended = "magic" not in reason and "footer" not in reason
+        hint = "" if ended else "; `mcap recover` repairs files whose end is missing"
         raise ForeignFileError(
-            f"{path}: cannot be read as a ROS 2 bag: {reason}"
+            f"{path}: cannot be read as a ROS 2 bag: {reason.rstrip('.')}{hint}"
         ) from error
+
+
+def _refuse_unwritten(path: Path) -> None:
+    """Refuse a database whose last rows are still in the file that SQLite keeps beside.
+
+    They would silently be missing.
+    """
+    for file in path.glob("*.db3") if path.is_dir() else [path]:
+        beside = file.with_name(f"{file.name}-wal")
+        if beside.is_file() and beside.stat().st_size:
+            raise ForeignFileError(
+                f"{file}: rows of it are still in {beside.name}; write them into it "
+                f"with sqlite3 {file.name} 'pragma wal_checkpoint(truncate)'"
+            )
 
 
 def _collected(
@@ -127,7 +144,8 @@ def _collected(
 ) -> JointMessages:
     store = get_typestore(Stores.LATEST)
     received, read = [], []
-    for row, (_, stamp_ns, content) in enumerate(messages):
+    in_order = sorted(messages, key=lambda message: message[1])
+    for row, (_, stamp_ns, content) in enumerate(in_order):
         try:
             message = store.deserialize_cdr(content, topic.kind)
             read.append(_READERS[topic.kind](message))

@@ -37,6 +37,11 @@ def kind_of(path: Path) -> Kind:
             "(meta/info.json) is in this folder"
         )
     ending = path.suffix.lower()
+    if ending == ".bag":
+        raise ForeignFileError(
+            f"{path}: a bag of ROS 1; make one of ROS 2 of it: rosbags-convert --src "
+            f"{path.name} --dst {path.stem}"
+        )
     if ending not in _ENDINGS:
         raise ForeignFileError(
             f"{path}: no known kind of file; read are {', '.join(_ENDINGS)}, and the "

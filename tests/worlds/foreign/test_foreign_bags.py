@@ -167,6 +167,18 @@ def test_a_damaged_bag_gives_one_line(tmp_path, mcap, kept):
         read_bag(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
+    assert ("mcap recover" in str(caught.value)) == (mcap and kept > 0)
+
+
+def test_rows_that_are_not_in_the_database_yet(tmp_path):
+    path = write_bag(tmp_path / "arm", states(effort=[(1, 1)] * 5))
+    beside = path.with_name(f"{path.name}-wal")
+    beside.write_bytes(b"")
+    assert read_bag(path).joints == ("hip", "knee")
+    beside.write_bytes(b"rows")
+    for one in (path, path.parent):
+        with pytest.raises(ForeignFileError, match="wal_checkpoint"):
+            read_bag(one)
 
 
 def by_hand():

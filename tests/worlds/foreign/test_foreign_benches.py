@@ -111,18 +111,25 @@ def test_no_code_of_a_file_is_run(tmp_path):
     (tmp_path / "chirp.pt").write_bytes(b"anything")
     with pytest.raises(ForeignFileError, match="weights_only=True"):
         read_pace(tmp_path / "chirp.pt")
-    (tmp_path / "cut.npz").write_bytes(b"PK\x03\x04")
+
+
+@pytest.mark.parametrize("kept", [0, 4, 200, 400])
+def test_archives_that_are_cut_off(tmp_path, kept):
+    path = tmp_path / "cut.npz"
+    np.savez(path, time=TIME, dof_pos=ANGLES, des_dof_pos=ANGLES)
+    path.write_bytes(path.read_bytes()[:kept])
     with pytest.raises(ForeignFileError, match="cannot be read"):
-        read_pace(tmp_path / "cut.npz")
+        read_pace(path)
 
 
 def test_what_a_source_is(tmp_path):
     for name, kind in (("a.CSV", "table"), ("a.mcap", "bag"), ("a.json", "bam")):
         (tmp_path / name).touch()
         assert kind_of(tmp_path / name) == kind
-    (tmp_path / "a.bag").touch()
-    with pytest.raises(ForeignFileError, match="no known kind"):
-        kind_of(tmp_path / "a.bag")
+    for name, words in (("a.bag", "rosbags-convert"), ("a.h5", "no known kind")):
+        (tmp_path / name).touch()
+        with pytest.raises(ForeignFileError, match=words):
+            kind_of(tmp_path / name)
     with pytest.raises(ForeignFileError, match="neither"):
         kind_of(tmp_path)
     (tmp_path / "metadata.yaml").touch()
