@@ -26,6 +26,8 @@ if TYPE_CHECKING:  # `as` says that a name is public
     from diagnosis.pipeline import diagnose as diagnose
     from diagnosis.plant.load import load_plant as load_plant
     from diagnosis.plant.plant import Plant as Plant
+    from diagnosis.prediction import Prediction as Prediction
+    from diagnosis.prediction import predict as predict
     from diagnosis.search.hooks import Hooks as Hooks
     from diagnosis.search.rules import Rules as Rules
     from diagnosis.traces.read import read_reference as read_reference
@@ -41,6 +43,7 @@ _HOMES = {
     "pipeline": ("Diagnosis", "diagnose"),
     "plant.load": ("load_plant",),
     "plant.plant": ("Plant",),
+    "prediction": ("Prediction", "predict"),
     "search.hooks": ("Hooks",),
     "search.rules": ("Rules",),
     "traces.read": ("read_reference", "read_traces"),

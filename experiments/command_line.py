@@ -41,6 +41,7 @@ VERBS = {
     ),
     "transfer": Verb("STUDIES", "repeat an experiment of the SGAT paper"),
     "diagnose": Verb("Diagnose", "find the physics that a sim lacks, from recordings"),
+    "predict": Verb("Predict", "check a diagnosis on recordings that it has not seen"),
     "real-robots": Verb("RealRobots", "diagnose recordings of known real robots"),
     "record": Verb("Record", "make a recording, with hidden physics if wanted"),
     "convert": Verb("Convert", "make recordings from files of ROS, LeRobot and others"),

@@ -37,13 +37,14 @@ class HeldOutSeries:
 
 
 def held_out_series(
-    nominal: Predictor, corrected: Predictor, model: Model
+    nominal: Predictor, corrected: Predictor, model: Model, before: Model = ()
 ) -> list[HeldOutSeries]:
     """Measured values of held-out recordings, and those predicted by both sims.
 
-    Both predictors are of the same recordings, `corrected` is calibrated at `model`.
+    Both predictors are of the same recordings, `nominal` is calibrated at the effects
+    `before`, `corrected` at `model`.
     """
-    sim, after = _by_trace(nominal, ()), _by_trace(corrected, model)
+    sim, after = _by_trace(nominal, before), _by_trace(corrected, model)
     series = []
     for k, trace in enumerate(corrected.traces):
         rows = corrected.seen_rows(trace)

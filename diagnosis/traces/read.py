@@ -40,7 +40,7 @@ def read_traces(
       >>> plant, traces = read_traces([Path("air.parquet")], "nao")
       >>> plant.joints[:2], traces[0].position_rad.shape
     """
-    paths = _files(paths)
+    paths = recording_files(paths)
     if not paths:
         raise BadRecordingError("no recordings are given")
     recordings = [read_recording(path) for path in paths]
@@ -97,7 +97,7 @@ def read_reference(
     return Reference(own, traces)
 
 
-def _files(paths: Sequence[Path]) -> list[Path]:
+def recording_files(paths: Sequence[Path]) -> list[Path]:
     """Paths of recordings, in which each folder is replaced by the recordings in it."""
     found = []
     for path in paths:

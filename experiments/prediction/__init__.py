@@ -1,0 +1,1 @@
+"""A diagnosis' corrected sim on new recordings: its promise, checked and judged."""
