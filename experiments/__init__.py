@@ -13,13 +13,16 @@ if TYPE_CHECKING:
     from experiments.diagnose import Diagnose, run_diagnosis
     from experiments.diagnosis_report.console import print_verdict
     from experiments.optimize_gait import OptimizeGait, tune_gait
+    from experiments.predict import Predict, predict_recordings
     from experiments.record import Record, make_recording
 
 __all__ = [
     "Diagnose",
     "OptimizeGait",
+    "Predict",
     "Record",
     "make_recording",
+    "predict_recordings",
     "print_verdict",
     "run_diagnosis",
     "run_script",
@@ -33,6 +36,7 @@ __getattr__ = lazy_face(
         "diagnose": ["Diagnose", "run_diagnosis"],
         "diagnosis_report.console": ["print_verdict"],
         "optimize_gait": ["OptimizeGait", "tune_gait"],
+        "predict": ["Predict", "predict_recordings"],
         "record": ["Record", "make_recording"],
     },
 )

@@ -58,6 +58,10 @@ TUNED = (
     "history.json", "walk.rrd", "walk.png", "search.png", "recordings/*.parquet",
 )  # fmt: skip
 CONCEALED = ("set/cases/case_000/**/*.parquet", "set/sealed.sha256")
+PREDICTED = (
+    "report.html", "result.json", "result.md", "audit.json", "config.json",
+    "provenance.json", "channel_1.png",
+)  # fmt: skip
 DIAGNOSED = ("report.html", "diagnosis.json", "audit.json", "overlay.rrd")
 
 
@@ -128,6 +132,12 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         ),
         "groundwalk diagnose air.parquet --robot nao": Run(
             "--out runs/air", writes=below("runs/air", DIAGNOSED), says="verdict"
+        ),
+        "groundwalk predict runs/air new.parquet": NotRun(
+            "this diagnosis of a short recording need not name anything; "
+            "docs/diagnosis.md has one that does",
+            "groundwalk predict --help",
+            says="RECORDING...",
         ),
         "groundwalk convert arm.db3 --out arm.parquet": Run(
             writes=("arm.parquet",), says="torques from the efforts"
@@ -212,6 +222,15 @@ JOURNEYS: dict[str, dict[str, Step]] = {
         "speed_limit@LKneePitch:speed=2.5": Run(
             f"--methods 'diagnosed sim' {SMALL_STUDY} --out runs/nao",
             writes=("runs/nao/report.html",),
+        ),
+        "groundwalk record --robot so101 --motion steps --seed 3 --hidden "
+        "coulomb_friction@elbow_flex:torque=0.1 --out c.parquet": Run(
+            "--duration 4", writes=("c.parquet",)
+        ),
+        "groundwalk predict runs/elbow c.parquet": Run(
+            "--out runs/predicted",
+            writes=below("runs/predicted", PREDICTED),
+            says="holds: the corrected sim's error is",
         ),
         "groundwalk diagnose air.parquet --robot nao": NotRun(
             "how commands look in general; those above are of this kind",

@@ -35,7 +35,9 @@ def event(recording):
 
 def fit(names):
     numbers = {"nominal": 5.0, "corrected": 1.0, "floor": 1.0}
-    return Fit(**numbers, channels={one: ChannelFit(**numbers, unit="") for one in names})
+    return Fit(
+        **numbers, channels={one: ChannelFit(**numbers, unit="") for one in names}
+    )
 
 
 def write_run(folder, verdict, model=(), **options):

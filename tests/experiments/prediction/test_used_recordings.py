@@ -12,7 +12,9 @@ from worlds.recordings.files import write_recording
 def recording(seed, **columns):
     rng = np.random.default_rng(seed)
     known = {"time": 0.01 * np.arange(20)}
-    known |= {f"{one}.swing": rng.standard_normal(20) for one in ("position", "command")}
+    known |= {
+        f"{one}.swing": rng.standard_normal(20) for one in ("position", "command")
+    }
     about = RecordingMetadata(robot="pendulum", base="fixed", source=f"a test, {seed}")
     return Recording(known | columns, about)
 
