@@ -85,7 +85,7 @@ class DiagnosisRun:
         Raises:
           BadValueError: none is given, and the run's model file is gone.
         """
-        robot = other or str(self.options["robot"])
+        robot = other or str(self.options.get("robot") or "")
         if not other and Path(robot).suffix in MODEL_FILES and not Path(robot).exists():
             raise BadValueError(
                 f"{robot}, the robot model of {self.path}, is no longer there: give it "

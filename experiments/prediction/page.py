@@ -170,8 +170,8 @@ def _caption(channel: str) -> str:
     return f"{words[:1].upper()}{words[1:]}"
 
 
-def _limits(result: PredictionResult) -> list[str]:
-    """Lines of Markdown on what the result does not tell."""
+def limits_of(result: PredictionResult) -> list[str]:
+    """Sentences on what the result does not tell."""
     said = list(result.limits)
     if result.verdict == "unknown":
         said.insert(
@@ -184,7 +184,13 @@ def _limits(result: PredictionResult) -> list[str]:
         said.append(
             f"Left out of the corrected sim, since of one recording only: {events}."
         )
-    return ["## Limits", "", *(f"- {one}" for one in said)] if said else []
+    return said
+
+
+def _limits(result: PredictionResult) -> list[str]:
+    """Lines of Markdown with the limits; none if there are none."""
+    said = [f"- {sentence(one)}" for one in limits_of(result)]
+    return ["## Limits", "", *said] if said else []
 
 
 def console_lines(result: PredictionResult) -> list[tuple[str, str]]:
@@ -205,4 +211,7 @@ def console_lines(result: PredictionResult) -> list[tuple[str, str]]:
                 f"{listing(used, 'and')} {were} used by the diagnosis: not counted",
             )
         )
+    if said := limits_of(result):
+        more = f" (and {len(said) - 1} more)" if len(said) > 1 else ""
+        lines.append(("limits", said[0].rstrip(".") + more))
     return lines

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from known_arms import NOISE_RAD, measured
 from made_up_traces import arm
+from torque_arm import arm as torque_arm
+from torque_arm import loaded, moved
 
 from diagnosis import PlacedEffect, predict
 from groundwalk.errors import BadRecordingError
@@ -77,3 +79,19 @@ def test_each_recording_has_its_own_errors():
 def test_a_recording_that_is_too_short():
     with pytest.raises(BadRecordingError, match="at least 1 s"):
         predict(arm(), [measured(9, viscous, duration_s=0.3)], FRICTION)
+
+
+def test_where_only_torques_are_known_they_are_compared():
+    """A load of 0.5 kg, of which the model knows nothing, and one that is not there."""
+    recording = moved(loaded(0.5, "lower"), seed=5)
+    right, wrong = (
+        predict(torque_arm(), [recording], (PlacedEffect("payload_mass", *one),))
+        for one in (("lower", (0.5,)), ("turret", (0.5,)))
+    )
+    names = [f"torque.{joint}" for joint in ("yaw", "shoulder", "elbow")]
+    assert list(right.channels) == names
+    assert right.squares().ratios(SEED)[0].low > 5
+    _, after = right.squares().rms()
+    assert (after < 1.2).all()
+    # a turret that turns about its own axis does not feel a load on it
+    assert wrong.squares().ratios(SEED)[0].value == pytest.approx(1.0, abs=1e-6)

@@ -1,4 +1,4 @@
-"""What is read from the run of a diagnosis, made up here: its sims, and what it lacks."""
+"""What is read from the run of a diagnosis, made up here: its sims, what it lacks."""
 
 import json
 
