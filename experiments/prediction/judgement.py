@@ -18,19 +18,18 @@ NOISE = 1.1
 def judge(ratio: Ratio, nominal: float) -> Judgement:
     """Judge by the interval of how many times smaller the corrected sim's error is.
 
-    It holds if the whole interval is above 1. It does not if the whole interval is
-    below 1, or below 1.1 while the sim's `nominal` error [noise floors] is more than
-    noise, so that an improvement would have shown.
+    It holds if the whole interval is above 1, and not all of it below 1.1. It does not
+    if the whole interval is below 1, or below 1.1 while the sim's `nominal` error
+    [noise floors] is more than noise, so that an improvement would have shown.
 
     Example:
       >>> judge(Ratio(7.0, 5.0, 9.0), 20.0)
       'holds'
     """
-    if ratio.low > 1:
-        return "holds"
-    if ratio.high < 1 or (ratio.high < LITTLE and nominal > NOISE):
-        return "does not hold"
-    return "undecided"
+    if ratio.high < LITTLE:
+        shows = ratio.high < 1 or nominal > NOISE
+        return "does not hold" if shows else "undecided"
+    return "holds" if ratio.low > 1 else "undecided"
 
 
 def judgement_line(ratio: Ratio, nominal: float) -> str:
@@ -45,8 +44,8 @@ def judgement_line(ratio: Ratio, nominal: float) -> str:
         few = "these recordings hardly show what the sim lacks"
         why = few if nominal <= NOISE else "more recordings would tell"
         return (
-            f"{word}: {error} may be smaller or larger than the sim's, their ratio is "
-            f"{number(ratio.value)} {_interval(ratio.low, ratio.high)}; {why}"
+            f"{word}: whether {error} is smaller does not show, the ratio of the sim's "
+            f"to it is {number(ratio.value)} {_interval(ratio.low, ratio.high)}; {why}"
         )
     if ratio.high < 1:
         ends = _interval(1 / ratio.high, 1 / ratio.low)
@@ -56,7 +55,7 @@ def judgement_line(ratio: Ratio, nominal: float) -> str:
         many = f"{number(ratio.value)} times smaller"
         return f"{word}: {error} is {many} than the sim's {ends}"
     return (
-        f"{word}: {error} is hardly smaller than the sim's, their ratio is "
+        f"{word}: {error} is hardly smaller, the ratio of the sim's to it is "
         f"{number(ratio.value)} {ends}"
     )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from diagnosis.conclude.held_out_errors import SURPRISE
 from diagnosis.conclude.held_out_series import HeldOutSeries, rms
 from diagnosis.verdict import ChannelFit
 from experiments.diagnosis_report.figures import overlay_figure
@@ -73,10 +74,22 @@ def promise_sentence(result: PredictionResult) -> str:
     )
 
 
-def exceptions_of(result: PredictionResult) -> str:
-    """Recordings that say otherwise than all together; "" if there are none."""
+def doubts_of(result: PredictionResult) -> list[str]:
+    """Sentences on recordings that say otherwise, and if far more error is left.
+
+    That is said from twice the error on the recordings that the diagnosis held out.
+    """
     ratios = {one.name: one.together.ratio for one in result.recordings if one.together}
-    return exceptions(result.judgement, ratios)
+    other, left = exceptions(result.judgement, ratios), result.together.corrected
+    said = [sentence(other)] if other else []
+    usual = max(result.promise.corrected if result.promise else 1.0, 1.0)
+    if left >= SURPRISE * usual:
+        said.append(
+            f"The corrected sim leaves {number(left)} times the noise floor here, "
+            f"{number(left / usual)} times as much as the diagnosis led to expect: "
+            "something is missing that its recordings hardly showed."
+        )
+    return said
 
 
 def interval_sentence(result: PredictionResult) -> str:
@@ -102,8 +115,8 @@ def write_page(
         f"{sentence(result.sentence)}",
         f"The corrected sim has {effects}. {promise_sentence(result)}",
     ]
-    if other := exceptions_of(result):
-        answer.insert(1, sentence(other))
+    if doubts := doubts_of(result):
+        answer.insert(1, " ".join(doubts))
     body = [*_errors(result), *_pictures(folder, result, series), *_limits(result)]
     Report(question, answer, body, Origin.of_run(folder)).write(folder.path)
 
@@ -201,8 +214,8 @@ def console_lines(result: PredictionResult) -> list[tuple[str, str]]:
         ("promised", promise_sentence(result).rstrip(".")),
         ("interval", interval_sentence(result).rstrip(".")),
     ]
-    if other := exceptions_of(result):
-        lines.append(("but", other))
+    for k, doubt in enumerate(doubts_of(result)):
+        lines.append(("" if k else "but", doubt.rstrip(".")))
     if used:
         were = "was" if len(used) == 1 else "were"
         lines.append(

@@ -5,11 +5,10 @@ The other engine (PyBullet) makes the recordings, with friction that it has by i
 
 import json
 import shutil
-import subprocess
-import sys
 from functools import partial
 
 import pytest
+from copied_processes import groundwalk
 from made_once import made_once
 
 from diagnosis import Rules
@@ -168,15 +167,9 @@ def test_a_model_that_has_moved_is_given_anew(made, tmp_path):
 
 
 def test_on_the_command_line_bad_input_has_the_status_2(made, tmp_path):
-    command = [sys.executable, "-m", "experiments.command_line", "predict"]
-    done = subprocess.run(
-        [*command, made / "run", made / "again.csv"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 2
-    assert done.stderr.startswith("groundwalk: all of these recordings were used")
-    assert len(done.stderr.splitlines()) == 1
+    words = ["predict", str(made / "run"), str(made / "again.csv")]
+    status, printed = groundwalk(tmp_path, words)
+    assert status == 2
+    assert printed.startswith("groundwalk: all of these recordings were used")
+    assert len(printed.splitlines()) == 1
     assert list(tmp_path.iterdir()) == []

@@ -8,6 +8,7 @@ from diagnosis.verdict import PlacedEffect
 from experiments.prediction.page import (
     by_size,
     console_lines,
+    doubts_of,
     interval_sentence,
     limits_of,
     promise_sentence,
@@ -75,6 +76,15 @@ def test_the_console_says_what_was_left_out_and_what_contradicts():
     assert "limits" not in lines
     good = replace(RESULT, recordings=RESULT.recordings[:1])
     assert {"but", "used"} & set(dict(console_lines(good))) == set()
+
+
+def test_error_that_is_left_beyond_what_was_promised_is_a_doubt():
+    """The promise is twice the noise floor, three times are left; then four."""
+    good = replace(RESULT, recordings=())
+    assert doubts_of(good) == []
+    far = replace(good, together=replace(TOGETHER, corrected=4.0))
+    (said,) = doubts_of(far)
+    assert "leaves 4.0 times the noise floor here, 2.0 times as much" in said
 
 
 def test_what_the_diagnosis_promised():
