@@ -87,7 +87,7 @@ def doubts_of(result: PredictionResult) -> list[str]:
         said.append(
             f"The corrected sim leaves {number(left)} times the noise floor here, "
             f"{number(left / usual)} times as much as the diagnosis led to expect: "
-            "something is missing that its recordings hardly showed."
+            "something is missing, or has changed, that its recordings hardly showed."
         )
     return said
 
