@@ -4,7 +4,7 @@ import io
 import json
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -29,9 +29,11 @@ from diagnosis.audit import audit
 from diagnosis.corrected.effects_json import CORRECTED_JSON, Correction
 from diagnosis.corrected.mjcf import CORRECTED_XML, corrected_mjcf
 from diagnosis.search.hooks import Saved
+from diagnosis.seen import Seen
 from diagnosis.traces.trace import DriveBy
 from experiments.command_line import run_verb
 from experiments.diagnosis_report.console import print_verdict
+from experiments.diagnosis_report.joints_shown import look_at
 from experiments.diagnosis_report.overlay import write_overlay
 from experiments.diagnosis_report.page import ReportFacts, write_report
 from experiments.reports.origin import command_of, shown
@@ -52,8 +54,8 @@ from worlds import ServoGains
 
 VERB = "diagnose"
 _NO_SETTINGS = ("recordings", "out", "resume", "json", "audit_only")
-VERDICT, REPORT, OVERLAY, AUDIT = (
-    "diagnosis.json", "report.html", "overlay.rrd", "audit.json",
+VERDICT, REPORT, OVERLAY, AUDIT, SEEN = (
+    "diagnosis.json", "report.html", "overlay.rrd", "audit.json", "seen.json",
 )  # fmt: skip
 STAGES = "stages"
 """Name of a run's folder of intermediate results, deleted when the run is complete."""
@@ -183,9 +185,10 @@ def run_diagnosis(config: Diagnose) -> tuple[RunFolder, Verdict]:
         return folder, Verdict.from_json((folder.path / VERDICT).read_text())
     with Stages("diagnosis", config.threads) as stages:
         hooks = Hooks(stages, checkpoint)
-        found = _diagnosed(config, read or _read(config), folder, hooks)
+        read = read or _read(config)
+        found = _diagnosed(config, read, folder, hooks)
         stages.stage("report", 3)
-        _write(config, folder, found, stages.advance)
+        _write(config, folder, found, read[1], stages.advance)
     checkpoint.delete()
     return folder, found.verdict
 
@@ -225,7 +228,11 @@ def _diagnosed(
 
 
 def _write(
-    config: Diagnose, folder: RunFolder, found: Diagnosis, advance: Callable[[], None]
+    config: Diagnose,
+    folder: RunFolder,
+    found: Diagnosis,
+    traces: Sequence[Trace],
+    advance: Callable[[], None],
 ) -> None:
     """Write the verdict, then the report and the other files that explain it."""
     folder.write_text(VERDICT, found.verdict.to_json())
@@ -234,9 +241,13 @@ def _write(
         write_correction(folder, found)
     advance()
     series = found.held_out()
+    seen: Seen | None = None
+    with extra(SEEN):
+        seen = look_at(found, traces)
+        folder.write_text(SEEN, seen.to_json())
     with extra(REPORT):
         facts = _facts(config, folder, found)
-        write_report(folder.path / REPORT, found.verdict, series, facts)
+        write_report(folder.path / REPORT, found.verdict, series, facts, seen)
     advance()
     with extra(OVERLAY):
         fit = found.verdict.fit
@@ -274,6 +285,7 @@ def _facts(config: Diagnose, folder: RunFolder, found: Diagnosis) -> ReportFacts
         VERDICT: "the verdict, for programs",
         OVERLAY: "real, sim and corrected sim in Rerun",
         AUDIT: "rate, noise and defects of the recordings",
+        SEEN: "what each joint shows, before any effect is named",
     }
     if found.verdict.effects:
         files[CORRECTED_XML] = "the corrected model, with the effects that MuJoCo has"

@@ -46,7 +46,8 @@ def binned(
     count = np.bincount(cell, minlength=bins * pieces).reshape(bins, pieces)
 
     def totals(each: FloatArray) -> FloatArray:
-        return np.bincount(cell, each[inside], bins * pieces).reshape(bins, pieces)
+        total = np.bincount(cell, each[inside], bins * pieces)
+        return np.asarray(total.reshape(bins, pieces), float)
 
     def means(each: FloatArray) -> FloatArray:
         mean = totals(each) / np.maximum(count, 1)
@@ -54,6 +55,8 @@ def binned(
 
     mean = means(values)
     full = np.isfinite(mean).sum(axis=1) >= FEWEST_PIECES
+    if not full.any():
+        return Binned(*np.empty((len(Binned._fields), 0)))
     low, middle, high = np.nanquantile(mean[full], BAND, axis=1)
     at = totals(over)[full].sum(axis=1) / count[full].sum(axis=1)
     lawful = np.nanmedian(means(law)[full], axis=1)
@@ -61,7 +64,7 @@ def binned(
 
 
 def quantile_edges(values: FloatArray, bins: int) -> FloatArray:
-    """Rising edges of up to `bins` bins with equally many of the values (n,) in each."""
+    """Rising edges of up to `bins` bins, each with equally many of the values (n,)."""
     return np.unique(np.quantile(values, np.linspace(0, 1, bins + 1)))
 
 

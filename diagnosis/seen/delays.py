@@ -1,4 +1,4 @@
-"""How late a joint's motion follows its command, by cross-correlation of their rates."""
+"""How late a joint follows its command, by cross-correlation of their rates."""
 
 from collections.abc import Sequence
 
@@ -17,8 +17,18 @@ LONGEST_S = 0.5
 SHORTEST_S = 1.0
 """Shortest piece [s] in which one is looked for."""
 
-ALIKE = 0.5
+FEWEST_ROWS = 20
+"""Fewest rows of a piece in which a delay is looked for."""
+
+EDGE = 2
+"""Rows at the ends of a piece whose rates are left out: not both sides of them are
+known, and of slow motion a single wrong rate shifts the delay."""
+
+ALIKE = 0.6
 """Correlation of command rate and velocity from which on a motion follows a command."""
+
+MOST = 0.5
+"""Share of the pieces with motion in which a joint must follow: one may by chance."""
 
 MOVED = 20.0
 """Standard deviations of a position's noise over which a joint must move in a piece."""
@@ -34,7 +44,7 @@ def delay_of(
 
     `pieces` are the piece (T,) of each row of each trace, `names` those of all pieces.
     """
-    found = dict[str, float]()
+    found, moved = dict[str, float](), 0
     for trace, own in zip(traces, pieces, strict=True):
         if trace.command_rad is None:
             continue
@@ -42,33 +52,43 @@ def delay_of(
         noise = noise_of(trace.time_s, position).total
         for piece in np.unique(own):
             rows = own == piece
-            times = trace.time_s[rows]
-            delay = _delay_s(times, command[rows], position[rows], noise)
+            part = trace.time_s[rows], command[rows], position[rows]
+            if not _moves(*part, noise):
+                continue
+            moved += 1
+            delay = _delay_s(*part)
             if delay is not None:
                 found[names[int(piece)]] = delay
-    if not found:
+    if not found or len(found) < MOST * moved:
         return None
     low, middle, high = np.quantile(list(found.values()), BAND).tolist()
     return Delay(middle, low, high, found)
 
 
-def _delay_s(
+def _moves(
     time_s: FloatArray, command_rad: FloatArray, position_rad: FloatArray, noise: float
+) -> bool:
+    """Whether a piece is long enough, and both command and position move in it."""
+    known = np.isfinite(position_rad) & np.isfinite(command_rad)
+    if known.sum() < FEWEST_ROWS or time_s[-1] - time_s[0] < SHORTEST_S:
+        return False
+    far = np.ptp(position_rad[known]) > MOVED * noise
+    return bool(far and np.ptp(command_rad[known]) > 0)
+
+
+def _delay_s(
+    time_s: FloatArray, command_rad: FloatArray, position_rad: FloatArray
 ) -> float | None:
     """The delay [s] in one piece; None if the joint does not follow its command."""
     known = np.isfinite(position_rad) & np.isfinite(command_rad)
-    if known.sum() < 8 or time_s[-1] - time_s[0] < SHORTEST_S:
-        return None
-    if np.ptp(position_rad[known]) < MOVED * noise or not np.ptp(command_rad[known]):
-        return None
     tick_s = float(np.median(np.diff(time_s)))
     even = np.arange(time_s[0], time_s[-1], tick_s)
     rates = [
-        np.gradient(np.interp(even, time_s[known], one[known]))
+        np.gradient(np.interp(even, time_s[known], one[known]))[EDGE:-EDGE]
         for one in (command_rad, position_rad)
     ]
     longest = min(round(LONGEST_S / tick_s), len(even) // 2)
-    return _latest(*rates, longest, tick_s)
+    return _latest(rates[0], rates[1], longest, tick_s)
 
 
 def _latest(

@@ -18,23 +18,24 @@ def drivers_of(rows: Rows, chosen: IntArray, joint: int) -> dict[str, FloatArray
     """Columns (n, k) of each quantity, by its name, in n chosen rows of one joint.
 
     Each is a simple additive law. Speed is linear, without the jump at zero that is the
-    sign's. Load includes friction that grows with load. History fades with the
+    sign's. Load includes friction that grows with load, but not friction at the mean
+    load, which is the sign's, too. History fades with the
     travel since the last turn, and so differs from the sign near turns only.
     """
     v = rows.velocity_rad_s[chosen, joint]
     q = rows.position_rad[chosen, joint]
     needed, way = rows.needed_nm[chosen, joint], np.sign(v)
+    heavier = np.abs(needed) - np.mean(np.abs(needed))
     others = [k for k in range(rows.velocity_rad_s.shape[1]) if k != joint]
     found = {
         "sign of speed": way[:, None],
         "speed": v[:, None],
         "acceleration": rows.acceleration_rad_s2[chosen, joint][:, None],
-        "load": np.column_stack([_hats(needed, LOAD_KNOTS), np.abs(needed) * way]),
+        "load": np.column_stack([_hats(needed, LOAD_KNOTS), heavier * way]),
         "position": _hats(q, POSITION_KNOTS),
         "travel since turn": _fading(rows, chosen, joint, way),
         "other joints": np.column_stack(
-            [rows.velocity_rad_s[np.ix_(chosen, others)]]
-            + [rows.needed_nm[np.ix_(chosen, others)]]
+            [rows.velocity_rad_s[chosen][:, others], rows.needed_nm[chosen][:, others]]
         ),
     }
     return {name: one for name, one in found.items() if one.shape[1]}

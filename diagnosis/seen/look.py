@@ -1,6 +1,7 @@
 """Looks at recordings: what each joint shows, before any effect is named."""
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -50,15 +51,18 @@ def look(plant: Plant, traces: Sequence[Trace], model: Model = ()) -> Seen:
     pieces, names = pieces_of(traces)
     torques, sources = known_torques(plant, traces)
     rows: Rows | None = None
+    by_servo = np.array([source == "servo" for source in sources])
     if plant.base == "fixed" and set(sources) != {"unknown"}:
-        rows = rows_of(plant, traces, torques, model)
+        rows = rows_of(plant, traces, torques, by_servo, model)
     piece = np.concatenate(pieces)
     found = []
     for j, source in enumerate(sources):
         delay = delay_of(traces, pieces, names, j)
         found.append(_joint(plant, traces, rows, piece, j, source, delay))
+    by: Literal["recordings", "blocks"]
     by = "recordings" if len(traces) >= ENOUGH else "blocks"
-    return Seen(tuple(found), tuple(names), by, rows and rows.cutoff_hz)
+    highest_hz = None if rows is None else rows.cutoff_hz
+    return Seen(tuple(found), tuple(names), by, highest_hz)
 
 
 def _joint(

@@ -1,4 +1,4 @@
-"""Divides recordings into pieces, whose differences tell how far curves can be trusted."""
+"""Divides recordings into pieces, whose differences tell how sure curves are."""
 
 from collections.abc import Sequence
 

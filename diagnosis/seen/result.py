@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import asdict, dataclass
-from typing import Literal
+from typing import Any, Literal
 
 Source = Literal["measured", "servo", "target", "unknown"]
 """Where the torque that a joint had is known from: it was measured, its servo asks for
@@ -73,7 +73,7 @@ class Share:
 
 @dataclass(frozen=True)
 class Delay:
-    """How late a joint's motion follows its command [s]: the servo's lag and all delays.
+    """How late a joint follows its command [s]: its servo's lag and all delays.
 
     A command counts as that of the middle of the tick in which it holds.
 
@@ -149,5 +149,16 @@ class Seen:
     cutoff_hz: float | None = None
 
     def to_json(self) -> str:
-        """All of this as JSON, in SI units."""
-        return json.dumps(asdict(self), indent=1) + "\n"
+        """All of this as JSON, in SI units, numbers with six digits."""
+        return json.dumps(_shortened(asdict(self))) + "\n"
+
+
+def _shortened(value: Any) -> Any:
+    """A JSON value with at most six digits in each number."""
+    if isinstance(value, float):
+        return float(f"{value:.6g}")
+    if isinstance(value, dict):
+        return {key: _shortened(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_shortened(one) for one in value]
+    return value

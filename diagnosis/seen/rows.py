@@ -1,4 +1,4 @@
-"""The rows of recordings from which curves and shares are made, one array a quantity."""
+"""The rows of recordings, an array for each quantity that curves are made of."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from diagnosis.plant.plant import Plant
-from diagnosis.replay.asked import centred
+from diagnosis.replay.asked import AskedTorques, centred
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.replays import Model, variants_of
 from diagnosis.residuals.torques.torque_evidence import (
@@ -47,7 +47,8 @@ class Rows:
       position_rad, velocity_rad_s, acceleration_rad_s2: (T, j) motion.
       torque_nm: (T, j) torque that the joints had; NaN where unknown.
       needed_nm: (T, j) torque that the motion needs by the nominal model.
-      law_nm: (T, j) what the effects of a verdict change of it.
+      law_nm: (T, j) what the effects of a verdict change of it; where servos ask for
+        torques, what they change of these.
       error_rad: (T, j) command less position; NaN without commands.
       way: (T, j) direction of motion since the last turn, 1 or -1; NaN before it.
       travel_rad: (T, j) travel since the last turn; NaN before it.
@@ -81,16 +82,21 @@ class Rows:
 
 
 def rows_of(
-    plant: Plant, traces: Sequence[Trace], torques: Sequence[FloatArray], model: Model
+    plant: Plant,
+    traces: Sequence[Trace],
+    torques: Sequence[FloatArray],
+    by_servo: BoolArray,
+    model: Model,
 ) -> Rows:
     """The rows of recordings of a fixed-base robot with (T, j) torques [N m] each.
 
-    The cut-off frequency is the one that a diagnosis by torques would choose.
+    `by_servo` (j,) says at which joints they are what servos ask for. The cut-off
+    frequency is the one that a diagnosis by torques would choose.
     """
     known = [replace(t, torque_nm=u) for t, u in zip(traces, torques, strict=True)]
     highest_hz = cutoff_hz(plant, shortened(known, CHOSEN_S))
     ready = [_with_motion(trace, highest_hz) for trace in known]
-    needed, law = _needed(plant, ready, model)
+    needed, law = _needed(plant, ready, by_servo, model)
     parts = [_columns(trace, highest_hz) for trace in ready]
     columns = {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
     moving = [_moving(trace, highest_hz) for trace in ready]
@@ -164,8 +170,12 @@ def _moving(trace: Trace, highest_hz: float) -> BoolArray:
 
 def _columns(trace: Trace, highest_hz: float) -> dict[str, FloatArray]:
     """Torques, tracking errors, directions and travels (T, j) of one trace."""
-    assert trace.motion is not None and trace.torque_nm is not None
-    position, error = trace.motion.position_rad, np.full_like(trace.position_rad, np.nan)
+    assert trace.motion is not None
+    assert trace.torque_nm is not None
+    position, error = (
+        trace.motion.position_rad,
+        np.full_like(trace.position_rad, np.nan),
+    )
     if trace.command_rad is not None:
         late = _below(trace.time_s, centred(trace), highest_hz)
         error = late - position
@@ -195,7 +205,7 @@ def _below(time_s: FloatArray, values: FloatArray, highest_hz: float) -> FloatAr
 
 
 def _needed(
-    plant: Plant, traces: Sequence[Trace], model: Model
+    plant: Plant, traces: Sequence[Trace], by_servo: BoolArray, model: Model
 ) -> tuple[FloatArray, FloatArray]:
     """(T, j) torques of the nominal model, and what the effects of `model` change.
 
@@ -207,8 +217,13 @@ def _needed(
         assert trace.motion is not None
         own = tuple(one for one in model if one.recording in (None, trace.recording))
         models = [(), own] if own else [()]
-        torques = NeededTorques(plant, [trace]).of(variants_of(plant, models))
+        variants = variants_of(plant, models)
+        torques = NeededTorques(plant, [trace]).of(variants)
+        changed = torques[-1] - torques[0]
+        if own and trace.command_rad is not None:
+            asked = AskedTorques([trace]).of(torques, variants)
+            changed = np.where(by_servo, asked[-1] - asked[0], changed)
         emf = plant.servo.back_emf_nm_s_rad * trace.motion.velocity_rad_s
         needed.append(torques[0] - emf)
-        law.append(torques[-1] - torques[0])
+        law.append(changed)
     return np.concatenate(needed), np.concatenate(law)

@@ -1,4 +1,4 @@
-"""How much of the variance of a loss torque goes with what, in data that were not used."""
+"""How much of a loss torque's variance goes with what, in data that were not used."""
 
 from collections.abc import Sequence
 
@@ -48,9 +48,7 @@ def shares_of(
     drivers = drivers_of(rows, chosen, joint)
     sums = _Sums(np.column_stack(list(drivers.values())), loss[chosen], own)
     ends = np.cumsum([0, *(one.shape[1] for one in drivers.values())])
-    groups = {
-        name: list(range(ends[k], ends[k + 1])) for k, name in enumerate(drivers)
-    }
+    groups = {name: list(range(ends[k], ends[k + 1])) for k, name in enumerate(drivers)}
     every = range(int(ends[-1]))
     together = sums.share(every)
     found = []
@@ -73,7 +71,10 @@ class _Sums:
     They are all that a linear regression needs, so that many are quick.
     """
 
-    def __init__(self, columns: FloatArray, values: FloatArray, piece: IntArray):
+    def __init__(
+        self, columns: FloatArray, values: FloatArray, piece: IntArray
+    ) -> None:
+        """Sum up n rows: columns (n, k), values (n,) and the piece of each (n,)."""
         size = np.std(columns, axis=0)
         columns = (columns - columns.mean(axis=0)) / np.where(size > 0, size, 1.0)
         whole = np.column_stack([np.ones(len(values)), columns, values])
@@ -83,7 +84,7 @@ class _Sums:
         self._others = [total - one for one in self._own]
 
     def share(self, columns: Sequence[int]) -> float:
-        """Share of the variance explained in pieces not used; below 0 if it did harm."""
+        """Share of the variance explained in pieces not used; below 0 if it harms."""
         left = sum(self._left(columns, k) for k in range(len(self._own)))
         before = sum(self._left((), k) for k in range(len(self._own)))
         return float(1 - left / before) if before > 0 else 0.0
@@ -123,4 +124,4 @@ def _noise_share(
     variance = float(np.var(loss))
     if len(squares) < FEWEST_PAIRS or variance <= 0:
         return None
-    return float(min(0.5 * np.mean(squares) / variance, 1.0))
+    return min(0.5 * float(np.mean(squares)) / variance, 1.0)

@@ -9,6 +9,7 @@ from diagnosis import Verdict
 from diagnosis.conclude.held_out_series import HeldOutSeries, by_error
 from diagnosis.effects import effect as kind_of
 from diagnosis.residuals.channels import LEAST_TORQUE
+from diagnosis.seen import Seen
 from diagnosis.verdict import Errors, Fit, Found
 from experiments.diagnosis_report.figure_style import inline_svg
 from experiments.diagnosis_report.figures import (
@@ -19,6 +20,7 @@ from experiments.diagnosis_report.figures import (
     worst_cells,
 )
 from experiments.diagnosis_report.findings import parameter_rows
+from experiments.diagnosis_report.joints_shown import joints_shown
 from experiments.diagnosis_report.numbers import (
     DASH,
     amount_text,
@@ -79,7 +81,11 @@ class ReportFacts:
 
 
 def write_report(
-    path: Path, verdict: Verdict, series: Sequence[HeldOutSeries], facts: ReportFacts
+    path: Path,
+    verdict: Verdict,
+    series: Sequence[HeldOutSeries],
+    facts: ReportFacts,
+    seen: Seen | None = None,
 ) -> None:
     """Write the page; after an error no partial file remains.
 
@@ -88,6 +94,7 @@ def write_report(
       verdict: the verdict of the diagnosis.
       series: held-out recordings, the most important first; may be empty.
       facts: origin of the diagnosis.
+      seen: what each joint shows before any effect is named; None leaves it out.
 
     Raises:
       UnknownNameError: the verdict names an unknown effect.
@@ -97,6 +104,7 @@ def write_report(
       >>> write_report(Path("report.html"), found.verdict, found.held_out(), facts)
     """
     parts = _words(verdict, facts) | _shown(verdict, series)
+    parts["joints"] = None if seen is None else joints_shown(seen)
     write_text(path, render(TEMPLATE, **parts))
 
 
