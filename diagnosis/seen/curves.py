@@ -27,9 +27,9 @@ def curves_of(
 ) -> tuple[Curve, ...]:
     """The curves of one joint, of whose torque the source is given.
 
-    `piece` (T,) is the piece of each row. The tracking error is shown over the measured
-    torque or, as a servo's torque follows from its error, over the one that the motion
-    needs.
+    `piece` (T,) is the piece of each row. The tracking error is shown over the torque
+    that the servo's stiffness must give: the measured one or, as a servo's torque
+    follows from its error, the one that the motion needs, plus declared damping.
     """
     makers = (_speed, _load, _position, _turn, _error)
     drawn = _Drawn(plant, rows, piece, joint, source)
@@ -49,6 +49,7 @@ class _Drawn:
         self.loss, self.law = rows.loss_nm[:, joint], rows.law_nm[:, joint]
         self.needed, self.torque = rows.needed_nm[:, joint], rows.torque_nm[:, joint]
         self.error, self.travel = rows.error_rad[:, joint], rows.travel_rad[:, joint]
+        self.damping = rows.damping_nm[:, joint]
         self.way, self.measured = rows.way[:, joint], source == "measured"
         self.counts = rows.counts[:, joint] & np.isfinite(self.loss)
         self.moves = rows.moves[:, joint] & np.isfinite(self.loss)
@@ -111,9 +112,9 @@ def _turn(joint: _Drawn) -> Iterator[Curve]:
 
 
 def _error(joint: _Drawn) -> Iterator[Curve]:
-    axis = "torque that the motion needs", "N m", joint.needed
+    axis = "needed torque and damping", "N m", joint.needed + joint.damping
     if joint.measured:
-        axis = "measured torque", "N m", joint.torque
+        axis = "measured torque and damping", "N m", joint.torque + joint.damping
     for way, sign in WAYS:
         rows = joint.counts & (joint.speed * sign > 0)
         yield from joint.curve("error", way, axis, rows, _quantiles(LOAD_BINS))

@@ -15,7 +15,7 @@ BLOCKS = 6
 
 
 def pieces_of(traces: Sequence[Trace]) -> tuple[list[IntArray], list[str]]:
-    """The piece of each row (T,) of each trace, and the names of all pieces.
+    """The piece of each row (T,) of each trace, and different names of all pieces.
 
     Recordings are pieces if there are three or more. Fewer are divided into blocks of
     equal numbers of rows, as what differs from block to block in one recording, such as
@@ -23,9 +23,11 @@ def pieces_of(traces: Sequence[Trace]) -> tuple[list[IntArray], list[str]]:
     """
     parts = 1 if len(traces) >= ENOUGH else BLOCKS // max(len(traces), 1)
     found, names = list[IntArray](), list[str]()
-    for trace in traces:
+    for number, trace in enumerate(traces):
         own = np.arange(trace.ticks) * parts // trace.ticks
         found.append(own + len(names))
-        part = [f"{trace.name}, part {k + 1}" for k in range(parts)]
-        names += [trace.name] if parts == 1 else part
+        same = sum(one.name == trace.name for one in traces[:number])
+        name = f"{trace.name} ({same + 1})" if same else trace.name
+        part = [f"{name}, part {k + 1}" for k in range(parts)]
+        names += [name] if parts == 1 else part
     return found, names

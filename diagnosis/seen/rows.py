@@ -11,7 +11,6 @@ from diagnosis.replay.asked import AskedTorques, centred
 from diagnosis.replay.inverse import NeededTorques
 from diagnosis.residuals.replays import Model, variants_of
 from diagnosis.residuals.torques.torque_evidence import (
-    CHOSEN_S,
     SLOW,
     SURE,
     cutoff_hz,
@@ -24,6 +23,9 @@ from diagnosis.traces.smoothing import smooth_below
 from diagnosis.traces.split import shortened
 from diagnosis.traces.trace import Trace
 from groundwalk.arrays import BoolArray, FloatArray
+
+CHOSEN_S = 15.0
+"""Most seconds of the recordings on which the cut-off frequency is chosen."""
 
 STILL = 0.01
 """Speed, as a share of a joint's rms speed, below which it rests: then dry friction may
@@ -49,6 +51,7 @@ class Rows:
       needed_nm: (T, j) torque that the motion needs by the nominal model.
       law_nm: (T, j) what the effects of a verdict change of it; where servos ask for
         torques, what they change of these.
+      damping_nm: (T, j) torque against the speed by declared damping and back-EMF.
       error_rad: (T, j) command less position; NaN without commands.
       way: (T, j) direction of motion since the last turn, 1 or -1; NaN before it.
       travel_rad: (T, j) travel since the last turn; NaN before it.
@@ -67,6 +70,7 @@ class Rows:
     torque_nm: FloatArray
     needed_nm: FloatArray
     law_nm: FloatArray
+    damping_nm: FloatArray
     error_rad: FloatArray
     way: FloatArray
     travel_rad: FloatArray
@@ -91,12 +95,12 @@ def rows_of(
     """The rows of recordings of a fixed-base robot with (T, j) torques [N m] each.
 
     `by_servo` (j,) says at which joints they are what servos ask for. The cut-off
-    frequency is the one that a diagnosis by torques would choose.
+    frequency is chosen as in a diagnosis by torques.
     """
     known = [replace(t, torque_nm=u) for t, u in zip(traces, torques, strict=True)]
     highest_hz = cutoff_hz(plant, shortened(known, CHOSEN_S))
     ready = [_with_motion(trace, highest_hz) for trace in known]
-    needed, law = _needed(plant, ready, by_servo, model)
+    needed, law = _needed(plant, ready, by_servo, model, highest_hz)
     parts = [_columns(trace, highest_hz) for trace in ready]
     columns = {name: np.concatenate([one[name] for one in parts]) for name in parts[0]}
     moving = [_moving(trace, highest_hz) for trace in ready]
@@ -169,7 +173,7 @@ def _moving(trace: Trace, highest_hz: float) -> BoolArray:
 
 
 def _columns(trace: Trace, highest_hz: float) -> dict[str, FloatArray]:
-    """Torques, tracking errors, directions and travels (T, j) of one trace."""
+    """Torques, damping, tracking errors, directions and travels (T, j) of one trace."""
     assert trace.motion is not None
     assert trace.torque_nm is not None
     position, error = (
@@ -183,7 +187,9 @@ def _columns(trace: Trace, highest_hz: float) -> dict[str, FloatArray]:
         turns(q, _least_turn(trace.time_s, raw))
         for q, raw in zip(position.T, trace.position_rad.T, strict=True)
     ]
+    damping = trace.servo.kd_nm_s_rad + trace.servo.back_emf_nm_s_rad
     return {
+        "damping_nm": damping * trace.motion.velocity_rad_s,
         "torque_nm": _below(trace.time_s, trace.torque_nm, highest_hz),
         "error_rad": error,
         "way": np.stack([way for way, _ in found], axis=1),
@@ -205,12 +211,17 @@ def _below(time_s: FloatArray, values: FloatArray, highest_hz: float) -> FloatAr
 
 
 def _needed(
-    plant: Plant, traces: Sequence[Trace], by_servo: BoolArray, model: Model
+    plant: Plant,
+    traces: Sequence[Trace],
+    by_servo: BoolArray,
+    model: Model,
+    highest_hz: float,
 ) -> tuple[FloatArray, FloatArray]:
     """(T, j) torques of the nominal model, and what the effects of `model` change.
 
-    The motors' back-EMF, which the model has as damping, is part of the torque that
-    joints have, not of the torque that they need.
+    That change is smoothed as the torques are that it is compared with. The motors'
+    back-EMF, which the model has as damping, is part of the torque that joints have,
+    not of the torque that they need.
     """
     needed, law = [], []
     for trace in traces:
@@ -225,5 +236,5 @@ def _needed(
             changed = np.where(by_servo, asked[-1] - asked[0], changed)
         emf = plant.servo.back_emf_nm_s_rad * trace.motion.velocity_rad_s
         needed.append(torques[0] - emf)
-        law.append(changed)
+        law.append(_below(trace.time_s, changed, highest_hz) if own else changed)
     return np.concatenate(needed), np.concatenate(law)

@@ -5,7 +5,7 @@ from typing import Any
 
 from diagnosis import Diagnosis, Trace
 from diagnosis.seen import Delay, Seen, SeenJoint, look
-from experiments.diagnosis_report.figure_style import inline_svg
+from experiments.diagnosis_report.figure_style import inline_svg, slim
 from experiments.diagnosis_report.joint_figures import NOTHING, joint_figure
 from experiments.diagnosis_report.numbers import DASH, percent
 from experiments.diagnosis_report.place_words import listing
@@ -15,6 +15,10 @@ MOST_FIGURES = 8
 
 MOST_NAMED = 6
 """Largest number of joints that a sentence names."""
+
+BY_CHANCE = 0.03
+"""Share below which the table names no quantity: the best of several may have as much
+by chance."""
 
 SOURCES = {
     "measured": "measured",
@@ -30,11 +34,11 @@ READ = (
     "opens over the load; a wrong mass, a spring or a cable tilts or bends both "
     "directions alike over position. A joint that winds up before it slides needs some "
     "travel after a turn. Bars, grey: the share of the loss torque's variance that a "
-    "quantity explains by itself, in parts of the recordings that were not used. Black: "
-    "what no other quantity explains. Joints that move together explain each other's "
-    "loss torque; then only black tells. Dotted: the most that could be explained, as "
-    "far as like motions came with like torques. The dashes through the tracking errors "
-    "are what the declared stiffness says."
+    "quantity explains by itself, in parts of the recordings that were not used. "
+    "Black: what no other quantity explains. Joints that move together explain each "
+    "other's loss torque; then only black tells. Dotted: the most that could be "
+    "explained, as far as like motions came with like torques. The dashes through the "
+    "tracking errors are what the declared stiffness says."
 )
 """The explanation below the figures."""
 
@@ -106,7 +110,7 @@ def _most(joint: SeenJoint) -> str:
     if not joint.shares:
         return DASH
     best = max(joint.shares, key=lambda one: one.alone)
-    if best.alone < NOTHING:
+    if best.alone < BY_CHANCE:
         return "nothing"
     return f"{best.name} ({percent(best.alone)})"
 
@@ -148,4 +152,4 @@ def _title(joint: SeenJoint) -> str:
 
 def _svg(joint: SeenJoint, name: str) -> str:
     alternative = f"loss torque of {joint.joint} over speed, load and position"
-    return inline_svg(joint_figure(joint), name, alternative)
+    return slim(inline_svg(joint_figure(joint), name, alternative))

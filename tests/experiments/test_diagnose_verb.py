@@ -62,6 +62,7 @@ def test_a_diagnosis_writes_all_that_it_promises(recording, diagnosed):
     assert verdict.fit.corrected < 0.3 * verdict.fit.nominal
     assert {path.name for path in out.iterdir()} >= {
         "report.html", "overlay.rrd", "audit.json", "config.json", "provenance.json",
+        "seen.json",
     }  # fmt: skip
     config = json.loads((out / "config.json").read_text())
     assert config["recordings"] == [str(recording)]

@@ -44,9 +44,7 @@ def test_an_inertia_goes_with_acceleration():
 
 
 def test_two_laws_need_both():
-    _, shares, found = best_of(
-        lambda q, v, needed: 0.5 * np.sign(v) + 0.5 * np.sin(3 * q)
-    )
+    _, _, found = best_of(lambda q, v, needed: 0.5 * np.sign(v) + 0.5 * np.sin(3 * q))
     assert found.together > 0.9
     assert max(one.alone for one in found.shares) < 0.8
     largest = sorted(found.shares, key=lambda one: -one.lost)[:2]
