@@ -31,7 +31,9 @@ def curves_of(
     that the servo's stiffness must give: the measured one or, as a servo's torque
     follows from its error, the one that the motion needs, plus declared damping.
     """
-    makers = (_speed, _load, _position, _turn, _error)
+    makers = [_speed, _position, _turn]
+    if source != "passive":  # else its loss torque is its load, with the other sign
+        makers = [_speed, _load, _position, _turn, _error]
     drawn = _Drawn(plant, rows, piece, joint, source)
     found = [curve for maker in makers for curve in maker(drawn)]
     return tuple(one for one in found if len(one.at) >= FEWEST_BINS)

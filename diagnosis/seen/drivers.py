@@ -9,6 +9,12 @@ from groundwalk.arrays import FloatArray, IntArray
 POSITION_KNOTS, LOAD_KNOTS = 16, 5
 """Number of knots of the piecewise linear functions of position and of load."""
 
+BY_LOAD = "load", "acceleration"
+"""Names of the quantities from which the loss torque of a passive joint is computed."""
+
+OTHERS = "other joints"
+"""Name of the quantity that is not the joint's own."""
+
 FADES = (0.003, 0.01, 0.03)
 """Distances since a turn, as shares of the joint's range, over which a loss torque that
 depends on history fades."""
@@ -19,8 +25,8 @@ def drivers_of(rows: Rows, chosen: IntArray, joint: int) -> dict[str, FloatArray
 
     Each is a simple additive law. Speed is linear, without the jump at zero that is the
     sign's. Load includes friction that grows with load, but not friction at the mean
-    load, which is the sign's, too. History fades with the
-    travel since the last turn, and so differs from the sign near turns only.
+    load, which is the sign's, too. History fades with the travel since the last turn,
+    and so differs from the sign near turns only.
     """
     v = rows.velocity_rad_s[chosen, joint]
     q = rows.position_rad[chosen, joint]
@@ -34,7 +40,7 @@ def drivers_of(rows: Rows, chosen: IntArray, joint: int) -> dict[str, FloatArray
         "load": np.column_stack([_hats(needed, LOAD_KNOTS), heavier * way]),
         "position": _hats(q, POSITION_KNOTS),
         "travel since turn": _fading(rows, chosen, joint, way),
-        "other joints": np.column_stack(
+        OTHERS: np.column_stack(
             [rows.velocity_rad_s[chosen][:, others], rows.needed_nm[chosen][:, others]]
         ),
     }

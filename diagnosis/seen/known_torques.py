@@ -25,7 +25,8 @@ def known_torques(
     """(T, j) torques [N m] of each trace, NaN if unknown, and each joint's source.
 
     Of each joint the source counts that most recordings have; of several a measured
-    torque, then that of the servo, then a torque target. All zeros are no measurement.
+    torque, then that of the servo, then a torque target. All zeros are no measurement,
+    unless nothing was commanded: then nothing drives the joint.
     """
     order: list[tuple[Source, Callable[[Trace], FloatArray | None]]] = [
         ("measured", lambda trace: trace.torque_nm),
@@ -42,7 +43,19 @@ def known_torques(
             most[j], sources[j] = known[j], source
             for own, one in zip(found, each, strict=True):
                 own[:, j] = np.nan if one is None else one[:, j]
+    if all(map(_is_passive, traces)):
+        for j in np.flatnonzero(most == 0):
+            sources[j] = "passive"
+            for own in found:
+                own[:, j] = 0.0
     return found, sources
+
+
+def _is_passive(trace: Trace) -> bool:
+    """Whether all torques and torque targets are 0, and no position was commanded."""
+    torques = [trace.torque_nm, trace.command_torque_nm]
+    known = [one for one in torques if one is not None]
+    return trace.command_rad is None and bool(known) and not np.any(known)
 
 
 def _known(torque_nm: FloatArray | None, joints: int) -> FloatArray:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Literal
 
+import mujoco
 import numpy as np
 
 from diagnosis.plant.plant import Plant
@@ -26,6 +27,10 @@ FEW = (
 )
 STILL_DELAY = "It does not follow its commands closely enough to tell a delay."
 NO_COMMANDS = "No position commands were recorded: no delay and no tracking error."
+COUPLED = (
+    "The model couples it with another joint: what the coupling passes from one to the "
+    "other is part of its loss torque."
+)
 FEWEST_ROWS = 20
 """Fewest rows in which a joint must move for its loss torque to show anything."""
 
@@ -88,7 +93,9 @@ def _joint(
     moving = rows.counts[:, joint] & np.isfinite(loss)
     if moving.sum() < FEWEST_ROWS:
         return SeenJoint(name, source, (HARDLY, *unknown), unit, delay=delay)
-    shares, together, noise = shares_of(rows, piece, joint)
+    if name in _coupled(plant):
+        unknown.append(COUPLED)
+    shares, together, noise = shares_of(rows, piece, joint, source == "passive")
     return SeenJoint(
         joint=name,
         source=source,
@@ -103,6 +110,17 @@ def _joint(
         noise_share=noise,
         delay=delay,
     )
+
+
+def _coupled(plant: Plant) -> frozenset[str]:
+    """Names of the joints that an equality of the model couples with another joint.
+
+    Inverse dynamics leaves out the torque that passes between them.
+    """
+    model = plant.model
+    pairs = np.flatnonzero(model.eq_type == int(mujoco.mjtEq.mjEQ_JOINT))
+    ids = {int(k) for one in (model.eq_obj1id, model.eq_obj2id) for k in one[pairs]}
+    return frozenset(model.joint(k).name for k in ids if k >= 0)
 
 
 def _stiffness(traces: Sequence[Trace], joint: int) -> float | None:

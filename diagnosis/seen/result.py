@@ -4,9 +4,10 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-Source = Literal["measured", "servo", "target", "unknown"]
+Source = Literal["measured", "servo", "target", "passive", "unknown"]
 """Where the torque that a joint had is known from: it was measured, its servo asks for
-it by the declared gains, or it was commanded; or it is not known."""
+it by the declared gains, or it was commanded; or nothing drives the joint; or it is not
+known."""
 
 Kind = Literal["speed", "load", "position", "turn", "error"]
 """What a curve shows: loss torque over speed, over load (the torque that the motion

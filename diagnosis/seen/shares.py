@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
-from diagnosis.seen.drivers import drivers_of
+from diagnosis.seen.drivers import BY_LOAD, drivers_of
 from diagnosis.seen.result import Share
 from diagnosis.seen.rows import Rows
 from groundwalk.arrays import FloatArray, IntArray
@@ -32,11 +32,13 @@ MOST_ROWS = 4000
 
 
 def shares_of(
-    rows: Rows, piece: IntArray, joint: int
+    rows: Rows, piece: IntArray, joint: int, passive: bool = False
 ) -> tuple[tuple[Share, ...], float | None, float | None]:
     """The shares of all quantities, of all together, and of noise, of one joint.
 
     None, and no shares, from too few rows or pieces. `piece` (T,) is that of each row.
+    Of a passive joint, whose loss torque is its load with the other sign, neither load
+    nor acceleration explains anything.
     """
     loss = rows.loss_nm[:, joint]
     apart = np.arange(len(loss)) % rows.step == 0
@@ -46,6 +48,8 @@ def shares_of(
     if len(chosen) < FEWEST_ROWS or len(np.unique(own)) < FEWEST_PIECES:
         return (), None, None
     drivers = drivers_of(rows, chosen, joint)
+    for name in BY_LOAD if passive else ():
+        del drivers[name]
     sums = _Sums(np.column_stack(list(drivers.values())), loss[chosen], own)
     ends = np.cumsum([0, *(one.shape[1] for one in drivers.values())])
     groups = {name: list(range(ends[k], ends[k + 1])) for k, name in enumerate(drivers)}
@@ -56,7 +60,7 @@ def shares_of(
         without = sums.share([k for k in every if k not in columns])
         lost = max(max(together, 0.0) - max(without, 0.0), 0.0)
         found.append(Share(name, max(sums.share(columns), 0.0), lost))
-    noise = _noise_share(rows, _few(np.flatnonzero(known)), joint, piece)
+    noise = _noise_share(rows, _few(np.flatnonzero(known)), joint, piece, passive)
     return tuple(found), max(together, 0.0), noise
 
 
@@ -101,14 +105,15 @@ class _Sums:
 
 
 def _noise_share(
-    rows: Rows, chosen: IntArray, joint: int, piece: IntArray
+    rows: Rows, chosen: IntArray, joint: int, piece: IntArray, passive: bool
 ) -> float | None:
     """Share of the variance by which rows differ that move alike in other pieces.
 
     Half the mean squared difference of such pairs is the variance of what no function
     of the joint's motion explains, and a little more, as no two rows move quite alike.
     """
-    quantities = rows.position_rad, rows.velocity_rad_s, rows.needed_nm
+    quantities = [rows.position_rad, rows.velocity_rad_s]
+    quantities += [] if passive else [rows.needed_nm]
     state = np.stack([one[chosen, joint] for one in quantities], axis=1)
     state /= np.maximum(np.std(state, axis=0), 1e-12)
     # opposite directions never move alike

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from diagnosis import Diagnosis, Trace
-from diagnosis.seen import Delay, Seen, SeenJoint, look
+from diagnosis.seen import Delay, Seen, SeenJoint, Share, look
+from diagnosis.seen.drivers import OTHERS
 from experiments.diagnosis_report.figure_style import inline_svg, slim
 from experiments.diagnosis_report.joint_figures import NOTHING, joint_figure
 from experiments.diagnosis_report.numbers import DASH, percent
@@ -20,10 +21,14 @@ BY_CHANCE = 0.03
 """Share below which the table names no quantity: the best of several may have as much
 by chance."""
 
+CLEARLY = 0.1
+"""Share by which other joints must explain more than a joint's own motion."""
+
 SOURCES = {
     "measured": "measured",
     "servo": "servo's gains",
     "target": "torque target",
+    "passive": "nothing drives it",
     "unknown": "not known",
 }
 """Words for where a joint's torque is known from."""
@@ -106,10 +111,17 @@ def _row(joint: SeenJoint) -> dict[str, str]:
 
 
 def _most(joint: SeenJoint) -> str:
-    """The quantity that explains most by itself, and its share."""
+    """The quantity that explains most by itself, and its share.
+
+    Joints often move together, so others must explain clearly more to be named.
+    """
     if not joint.shares:
         return DASH
-    best = max(joint.shares, key=lambda one: one.alone)
+
+    def told(one: Share) -> float:
+        return one.alone - CLEARLY * (one.name == OTHERS)
+
+    best = max(joint.shares, key=told)
     if best.alone < BY_CHANCE:
         return "nothing"
     return f"{best.name} ({percent(best.alone)})"

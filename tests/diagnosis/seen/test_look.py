@@ -4,6 +4,7 @@ from dataclasses import replace
 import joint_rigs
 import known_losses
 import made_up_traces
+import mujoco
 import numpy as np
 import pytest
 import torque_arm
@@ -180,6 +181,30 @@ def test_what_is_not_known_is_said():
         assert "No position commands" in joint.unknown[1]
 
 
+def test_nothing_drives_a_passive_joint():
+    """Its friction is what slows it down."""
+    plant = joint_rigs.plant_of(joint_rigs.PENDULUM)
+    rubbing_nm_s = 0.02
+
+    def law(t, y, k):
+        pull = -joint_rigs.PENDULUM_LEVER_NM * np.sin(y[0]) - rubbing_nm_s * y[1]
+        return [y[1], pull / joint_rigs.INERTIA]
+
+    time_s = joint_rigs.ticks(6.0)
+    position = joint_rigs.integrated(law, time_s, (1.0, 0.0))[:, 0]
+    still = joint_rigs.trace_of(plant, time_s, position, torque_nm=0.0)
+    (joint,) = look(plant, [still]).joints
+    assert joint.source == "passive"
+    found = curve(joint, "speed")
+    wanted = rubbing_nm_s * np.array(found.at)
+    np.testing.assert_allclose(found.middle, wanted, atol=0.1 * np.abs(wanted).max())
+    assert {one.name for one in joint.shares}.isdisjoint({"load", "acceleration"})
+    assert max(joint.shares, key=lambda one: one.alone).name == "speed"
+    assert {one.kind for one in joint.curves} == {"speed", "position", "turn"}
+    driven = replace(still, command_rad=still.position_rad)
+    assert look(plant, [driven]).joints[0].source == "unknown"
+
+
 def test_a_free_base_hides_the_torque_that_motion_needs():
     plant = replace(torque_arm.arm(), base="floating")
     joint = look(plant, [known_losses.moved()]).joints[0]
@@ -194,6 +219,19 @@ def test_a_joint_that_rests_shows_nothing():
     joint = look(torque_arm.arm(), [replace(trace, position_rad=position)]).joints[1]
     assert "hardly moves" in joint.unknown[0]
     assert joint.curves == ()
+
+
+def test_a_coupling_is_said():
+    xml = torque_arm.XML.replace(
+        "<actuator>",
+        '<equality><joint joint1="yaw" joint2="shoulder"/></equality><actuator>',
+    )
+    plant = replace(torque_arm.arm(), spec=mujoco.MjSpec.from_string(xml))
+    said = [
+        any("couples it" in text for text in joint.unknown)
+        for joint in look(plant, [known_losses.moved()]).joints
+    ]
+    assert said == [True, True, False]
 
 
 def test_gaps_and_wrong_samples_change_little(rubbed):

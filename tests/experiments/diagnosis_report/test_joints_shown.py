@@ -112,6 +112,18 @@ def test_the_same_joints_make_the_same_page(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("others", "named"), [(0.95, "sign of speed (93 %)"), (1.0, "sign of speed")]
+)
+def test_joints_that_move_together_are_not_named(tmp_path, others, named):
+    shares = (*KNEE.shares, Share("other joints", others, 0.0))
+    knee = replace(KNEE, shares=shares)
+    assert named in Page(report(tmp_path, replace(SEEN, joints=(knee,)))).text
+    weak = replace(knee, shares=(Share("load", 0.2, 0), shares[-1]))
+    said = Page(report(tmp_path, replace(SEEN, joints=(weak,)))).text
+    assert "other joints (" in said
+
+
+@pytest.mark.parametrize(
     "joint",
     [
         replace(KNEE, curves=KNEE.curves[:1], shares=(), together=None),
