@@ -40,8 +40,8 @@ READ = (
     "directions alike over position. A joint that winds up before it slides needs some "
     "travel after a turn. Bars, grey: the share of the loss torque's variance that a "
     "quantity explains by itself, in parts of the recordings that were not used. "
-    "Black: what no other quantity explains. Joints that move together explain each "
-    "other's loss torque; then only black tells. Dotted: the most that could be "
+    "Dark: what no other quantity explains. Joints that move together explain each "
+    "other's loss torque; then only dark tells. Dotted: the most that could be "
     "explained, as far as like motions came with like torques. The dashes through the "
     "tracking errors are what the declared stiffness says."
 )
